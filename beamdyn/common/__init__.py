@@ -1,0 +1,1 @@
+"""What knows no mechanics: checks, units, tables, stores."""

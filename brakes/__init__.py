@@ -1,0 +1,1 @@
+"""Statics of brake mechanisms."""
