@@ -1,2 +1,78 @@
-"""Vibration of a cantilever on a carrier that rotates and translates."""
+"""Vibration of a cantilever on a carrier that rotates and translates.
+
+The public face; names load their modules when first used, so that importing the package is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 __version__ = "0.1.0"
+
+__all__ = [
+    "Beam",
+    "Fem",
+    "Locus",
+    "Modes",
+    "Mount",
+    "Ritz",
+    "Scene",
+    "SteadyRotation",
+    "Table",
+    "TipMass",
+    "critical_point",
+    "critical_speed",
+    "frequency_locus",
+    "load_scene",
+    "natural_modes",
+    "setting_angle_limits",
+]
+
+_HOME = {
+    "Beam": "beam",
+    "Fem": "fem",
+    "Locus": "spectrum",
+    "Modes": "spectrum",
+    "Mount": "scene",
+    "Ritz": "ritz",
+    "Scene": "scene",
+    "SteadyRotation": "motion",
+    "Table": "profile",
+    "TipMass": "beam",
+    "critical_point": "spectrum",
+    "critical_speed": "spectrum",
+    "frequency_locus": "spectrum",
+    "load_scene": "config",
+    "natural_modes": "spectrum",
+    "setting_angle_limits": "spectrum",
+}
+
+if TYPE_CHECKING:
+    from beamdyn.beam import Beam, TipMass
+    from beamdyn.config import load_scene
+    from beamdyn.fem import Fem
+    from beamdyn.motion import SteadyRotation
+    from beamdyn.profile import Table
+    from beamdyn.ritz import Ritz
+    from beamdyn.scene import Mount, Scene
+    from beamdyn.spectrum import (
+        Locus,
+        Modes,
+        critical_point,
+        critical_speed,
+        frequency_locus,
+        natural_modes,
+        setting_angle_limits,
+    )
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its module."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'beamdyn' has no attribute {name!r}")
+    return getattr(import_module(f"beamdyn.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

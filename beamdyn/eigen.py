@@ -10,12 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 from scipy.linalg import solve_triangular
 
 from beamdyn.equations import SteadyPencil
 
 _EPS = np.finfo(float).eps
+_BACKWARD = 16 * _EPS  # rounding of the matrices' entries, relative to the sum of their terms
+_FORWARD = 4 * _EPS  # rounding of the eigensolution, relative to its largest eigenvalue
 _SAFE = 0.1  # share of the stiffness at rest that must be left for a solution without a shift
+_DENSE = 64  # largest matrices whose eigenvectors are computed all, in one batched call
 _REAL = 1e-8  # relative growth below which a coupled mode counts as stable: rounding of a double root
 
 
@@ -57,6 +61,11 @@ class Solver:
         self.rest = 1 / np.linalg.eigvalsh(self.mass)[-1]  # lowest squared frequency at rest
 
     @property
+    def size(self) -> int:
+        """Number of modes of the equations."""
+        return len(self.growth)
+
+    @property
     def critical_speed(self) -> float:
         """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
         return float(1 / np.sqrt(-self.growth[0])) if self.growth[0] < 0 else np.inf
@@ -64,7 +73,7 @@ class Solver:
     @property
     def critical_rounding(self) -> float:
         """Estimated relative error of the critical speed by rounding."""
-        return float(4 * _EPS * np.abs(self.growth).max() / abs(self.growth[0]))
+        return float(_BACKWARD * np.abs(self.growth).max() / abs(self.growth[0]))
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """The `count` lowest modes at each speed."""
@@ -72,6 +81,15 @@ class Solver:
             return self._conservative(speeds, count)
         solved = [self._coupled(speed, count) for speed in speeds]
         return Eigen(*(np.array([getattr(e, name)[0] for e in solved]) for name in ("eigenvalue", "vector", "rounding")))
+
+    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
+        """Eigenvalues alone, without vectors where that saves time."""
+        stiffness = 1 + speeds[:, None] ** 2 * self.growth
+        if not self.pencil.conservative or stiffness.min() < _SAFE:
+            return self.solve(speeds, count).eigenvalue
+        scale = 1 / np.sqrt(stiffness)
+        mu = np.linalg.eigvalsh(scale[:, :, None] * self.mass * scale[:, None, :])
+        return 1j / np.sqrt(mu[:, : -count - 1 : -1])
 
     # Real symmetric problem -----------------------------------------------------------------------
 
@@ -88,8 +106,9 @@ class Solver:
                 )
         terms = 1 + speeds[:, None] ** 2 * np.abs(self.growth)
         cancelled = np.einsum("snk,sn->sk", z**2, terms)  # sum of the terms whose difference is left
+        inertia = (z**2).sum(axis=1) / self.rest  # share of the mass matrix's rounding, which is of its norm
         with np.errstate(divide="ignore", invalid="ignore"):
-            rounding = rounding + 4 * _EPS * cancelled / np.abs(squared)
+            rounding = rounding + _BACKWARD * cancelled / np.abs(squared) + _FORWARD * inertia
         root = np.sqrt(np.abs(squared))
         eigenvalue = np.where(squared > 0, 1j * root, root)
         return Eigen(eigenvalue, self.basis @ z, np.where(squared == 0, np.inf, rounding))
@@ -123,9 +142,8 @@ def _symmetric(A: np.ndarray) -> np.ndarray:
 def _scaled(M: np.ndarray, d: np.ndarray, count: int, rest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Modes of (diag d, M) for positive d of shape (S, n): squared frequencies, vectors, rounding."""
     scale = 1 / np.sqrt(d)
-    mu, z = np.linalg.eigh(scale[:, :, None] * M * scale[:, None, :])
-    mu, z = mu[:, : -count - 1 : -1], z[:, :, : -count - 1 : -1]
-    return 1 / mu, z * scale[:, :, None] / np.sqrt(mu)[:, None, :], 4 * _EPS * mu[:, :1] / mu
+    mu, z = _largest(scale[:, :, None] * M * scale[:, None, :], count)
+    return 1 / mu, z * scale[:, :, None] / np.sqrt(mu)[:, None, :], _FORWARD * mu[:, :1] / mu
 
 
 def _shifted(M: np.ndarray, d: np.ndarray, count: int, rest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -135,12 +153,22 @@ def _shifted(M: np.ndarray, d: np.ndarray, count: int, rest: float) -> tuple[np.
     K[:, np.arange(len(M)), np.arange(len(M))] += d
     L = np.linalg.cholesky(K)
     half = np.linalg.solve(L, np.broadcast_to(M, K.shape))
-    mu, x = np.linalg.eigh(_symmetric(np.linalg.solve(L, np.swapaxes(half, 1, 2))))
-    mu, x = mu[:, : -count - 1 : -1], x[:, :, : -count - 1 : -1]
+    mu, x = _largest(_symmetric(np.linalg.solve(L, np.swapaxes(half, 1, 2))), count)
     z = np.linalg.solve(np.swapaxes(L, 1, 2), x) / np.sqrt(mu)[:, None, :]
     squared = 1 / mu - shift[:, None]
     lost = mu[:, :1] / mu * np.abs(1 / mu / np.where(squared == 0, np.inf, squared))
-    return squared, z, 4 * _EPS * lost
+    return squared, z, _FORWARD * lost
+
+
+def _largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The largest eigenvalues, descending, and their vectors, of a batch of symmetric matrices."""
+    n = A.shape[-1]
+    if n <= _DENSE:
+        mu, z = np.linalg.eigh(A)
+    else:  # large matrices: most of the time is in the vectors, which only a few are wanted of
+        solved = [scipy.linalg.eigh(a, subset_by_index=(n - count, n - 1)) for a in A]
+        mu, z = np.array([m for m, _ in solved]), np.array([v for _, v in solved])
+    return mu[:, : -count - 1 : -1], z[:, :, : -count - 1 : -1]
 
 
 def _definite_shift(M: np.ndarray, d: np.ndarray, rest: float) -> np.ndarray:

@@ -61,6 +61,16 @@ class Spaces(Protocol):
 class Discretization(Protocol):
     """A way to turn a beam into spaces; frozen, so that it can stand in a result's provenance."""
 
+    @property
+    def order(self) -> int | None:
+        """Order of convergence of eigenvalues when the size doubles; None where it is not a power."""
+        ...
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of eigenvalues by rounding in its own integrals."""
+        ...
+
     def spaces(self, beam: Beam) -> Spaces:
         """The spaces for a beam."""
         ...

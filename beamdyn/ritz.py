@@ -28,7 +28,7 @@ class Ritz:
     ----------
     functions : int
         Number of functions for the deflection, and as many for the stretch where it is modelled,
-        from 2 to 200; shared out among the segments between the beam's breakpoints.
+        from 1 to 200; of Legendre functions, on each segment between the beam's breakpoints.
     basis : {"legendre", "eigenfunctions"}
         Integrated Legendre polynomials, or the modes of the uniform beam at rest, which the papers
         use and which converge slowly under rotation (like N^-5).
@@ -38,37 +38,47 @@ class Ritz:
     basis: Literal["legendre", "eigenfunctions"] = "legendre"
 
     def __post_init__(self) -> None:
-        if count("functions", self.functions, least=2) > MOST_FUNCTIONS:
+        if count("functions", self.functions, least=1) > MOST_FUNCTIONS:
             raise ValueError(f"functions = {self.functions}: at most {MOST_FUNCTIONS}; use fewer, or method='fem'")
         if self.basis not in _BASES:
             raise ValueError(f"basis = {self.basis!r}: give one of {', '.join(map(repr, _BASES))}")
+
+    @property
+    def order(self) -> None:
+        """None: convergence is not by a power of the size."""
+        return None
+
+    @property
+    def rounding(self) -> float:
+        """0: the functions are scaled so that their integrals keep all digits."""
+        return 0.0
 
     def spaces(self, beam: Beam) -> RitzSpaces:
         """The spaces for a beam."""
         bending, stretch = _BASES[self.basis]
         edges = np.array(beam.breakpoints)
-        rule = _rule(edges, self._points(beam, len(edges) - 1))
+        rule = _rule(edges, self._points(beam))
         return RitzSpaces(
             bending=RitzSpace(bending(self.functions, edges), *rule, orders=2),
             stretch=RitzSpace(stretch(self.functions, edges), *rule, orders=1),
         )
 
-    def _points(self, beam: Beam, segments: int) -> int:
+    def _points(self, beam: Beam) -> int:
         """Gauss points a segment: exact for Legendre bases, past resolution for eigenfunctions."""
         weight = max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree)
-        own = -(-self.functions // segments) if self.basis == "legendre" else 2 * self.functions + 10
+        own = self.functions if self.basis == "legendre" else 2 * self.functions + 10
         return own + 2 + weight // 2 + 1
 
     def coarser(self) -> Ritz:
         """A basis whose distance from this one bounds this one's error by its rate of convergence."""
-        keep = 0.8 if self.basis == "legendre" else 0.5
-        return replace(self, functions=max(2, int(keep * self.functions)))
+        keep = 0.88 if self.basis == "legendre" else 0.5
+        return replace(self, functions=max(1, int(keep * self.functions)))
 
     def finer(self) -> Ritz | None:
         """The next larger basis."""
         if self.functions == MOST_FUNCTIONS:
             return None
-        return replace(self, functions=min(MOST_FUNCTIONS, int(1.4 * self.functions) + 1))
+        return replace(self, functions=min(MOST_FUNCTIONS, int(1.2 * self.functions) + 1))
 
     def fits(self, modes: int) -> bool:
         """Whether the coarser basis has functions enough for so many modes."""
@@ -154,12 +164,9 @@ def _integrated_legendre(functions: int, edges: np.ndarray, integrations: int) -
     Integrated from the root they satisfy its conditions, join smoothly at breakpoints and leave the
     higher derivatives free to jump there; scaled so that the highest derivatives are orthonormal.
     """
-    segments = len(edges) - 1
-    shares = [functions // segments + (k < functions % segments) for k in range(segments)]
-
     def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
         parts = pairwise(edges)
-        return np.concatenate([_on_segment(n, *ab, xi, integrations - order) for n, ab in zip(shares, parts)])
+        return np.concatenate([_on_segment(functions, a, b, xi, integrations - order) for a, b in parts])
 
     return evaluation
 

@@ -498,10 +498,11 @@ def test_velocity_printed_in_eq_6():
 
 
 def test_what_the_model_of_stretch_leaves_out():
-    """The tip's slope is u', not u'/(1 + s'): lost are couplings by offset and rotary inertia of the tip body.
+    """The tip's slope is u', not u'/(1 + s').
 
-    In the equations of bending -[m eps (c a_O2 + s a_O3) - omega' c (m eps (L + eps) + J_n)] phi2'(L) phi1'(L)^T,
-    in those of stretch its transpose.
+    This drops couplings by the offset and the rotary inertia of the tip body: before q1 in bending
+    -[m eps (c a_O2 + s a_O3) - omega' c (m eps (L + eps) + J_n)] phi2'(L) phi1'(L)^T,
+    and its transpose before q2 in stretch.
     """
     exact, model = derive(stretched_slope=True), derive()
     _, b2, b3 = axes()

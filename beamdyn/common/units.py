@@ -1,0 +1,166 @@
+"""Numbers with units, as people write them, in SI: "0.2 mm", "200 GPa", "525 rpm", "7850 kg/m3"."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from decimal import Decimal
+from functools import cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # pint costs 0.3 s: it is loaded with the first quantity
+    from pint import Unit, UnitRegistry
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?\d)?"
+_SEPARATOR = r"(?:\s*[*/]\s*|\s+)"
+_TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*)?)\s*", re.ASCII)
+_POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
+_PLAIN = str.maketrans({"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*"})
+
+_KINDS = {
+    "m": "length",
+    "m2": "area",
+    "m4": "second moment of area",
+    "kg": "mass",
+    "kg/m": "mass per length",
+    "kg/m3": "density",
+    "kg m2": "moment of inertia",
+    "s": "time",
+    "Hz": "frequency",
+    "rad": "angle",
+    "rad/s": "angular speed",
+    "rad/s2": "angular acceleration",
+    "m/s": "velocity",
+    "m/s2": "acceleration",
+    "N": "force",
+    "N/m": "stiffness",
+    "N m": "moment",
+    "N m2": "bending stiffness",
+    "Pa": "pressure or modulus",
+    "W": "power",
+    "K": "temperature",
+    "": "plain number",
+}
+_USUAL = {"m": "mm", "kg": "g", "rad": "deg", "rad/s": "rpm", "Pa": "GPa", "kg m2": "g mm2"}
+
+
+def quantity(text: object, unit: str) -> float:
+    """The value of a number with a unit.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit, such as "0.2 mm" or "7850 kg/m^3".
+    unit : str
+        SI unit of the result, such as "m" or "kg/m3".  Angles count as a dimension: neither "5 Hz"
+        nor "5 %" is a number of radians.
+
+    Returns
+    -------
+    float
+        The value in `unit`, converted in decimal: "5 cm" and "50 mm" are the same to the last bit.
+
+    Raises
+    ------
+    ValueError
+        If it is not a finite number with a unit of the same kind as `unit`; the message begins with
+        the value and ends with the remedy.
+    """
+    number, given = _split(text, unit)
+    kind, wanted = _parse(given), _parse(unit)
+    if kind is None or wanted is None:
+        raise ValueError(f"{show(text)}: unknown unit {given}; give {_kind(unit)}, e.g. in {_usual(unit)}")
+    if _root(kind) != _root(wanted):
+        raise ValueError(f"{show(text)}: {_mismatch(number, kind, unit)}")
+    value = _convert(number, kind, wanted)
+    if not math.isfinite(value):
+        raise ValueError(f"{show(text)}: out of range; give a finite number in {unit}")
+    return value
+
+
+def show(value: object, depth: int = 2) -> str:
+    """A value as TOML writes it, shortened where it is long or deep."""
+    text = _toml(value, depth)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _toml(value: object, depth: int) -> str:
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return json.dumps(value, ensure_ascii=False)
+        case dict() | list() if value and not depth:
+            return "..."
+        case list():
+            return f"[{', '.join(show(v, depth - 1) for v in value)}]"
+        case dict() if value:
+            return f"{{ {', '.join(f'{k} = {show(v, depth - 1)}' for k, v in value.items())} }}"
+    return repr(value)
+
+
+@cache
+def _registry() -> UnitRegistry:
+    import pint
+
+    registry = pint.UnitRegistry(non_int_type=Decimal)  # pyright: ignore[reportArgumentType]  (works; typed too narrowly)
+    registry.define("newton_meter = newton * meter = Nm")
+    return registry
+
+
+def _split(text: object, unit: str) -> tuple[str, str]:
+    """The number and the unit of a text, as written."""
+    if isinstance(text, int | float) and not isinstance(text, bool):
+        text, match = str(text), _TEXT.fullmatch(str(text))
+    else:
+        match = _TEXT.fullmatch(text.translate(_PLAIN)) if isinstance(text, str) else None
+        text = show(text)
+    if match is None:
+        raise ValueError(f'{text}: not a number with a unit; give e.g. "1 {_usual(unit)}"')
+    number, given = match.groups()
+    if not given and unit:
+        choices = dict.fromkeys((f'"{number} {unit}"', f'"{number} {_usual(unit)}"'))
+        raise ValueError(f"{text}: give a unit, e.g. {' or '.join(choices)}")
+    return number, given
+
+
+@cache
+def _parse(unit: str) -> Unit | None:
+    """The unit of a text in which m2, m^2 and m**2 are the same, or None if there is none."""
+    from pint.errors import PintError
+
+    try:
+        return _registry().Unit(_POWER.sub(r"**\1", unit))
+    except PintError:
+        return None
+
+
+def _root(unit: Unit) -> Unit:
+    """Product of base units, with radians kept: tells rpm from Hz."""
+    return _registry().get_root_units(unit)[1]
+
+
+def _convert(number: str, kind: Unit, wanted: Unit) -> float:
+    try:
+        return float(_registry().Quantity(Decimal(number), kind).to(wanted).magnitude)
+    except (ArithmeticError, TypeError):  # an exponent beyond decimal's; a logarithmic unit
+        return math.nan
+
+
+def _mismatch(number: str, kind: Unit, unit: str) -> str:
+    names = {_root(parsed): name for text, name in _KINDS.items() if (parsed := _parse(text)) is not None}
+    if unit == "rad/s" and names.get(_root(kind)) == "frequency":
+        turns = f'"{60 * float(number):g} rpm"' if f"{kind:~}" == "Hz" else "rpm"
+        return f"ambiguous for an angular speed; give {turns} if turns are meant, rad/s if radians"
+    found = names.get(_root(kind), f"{kind:~C}")
+    return f"a unit of {found} where {_kind(unit)} is wanted; give e.g. {_usual(unit)}"
+
+
+def _kind(unit: str) -> str:
+    return _KINDS.get(unit, f"a quantity in {unit}")
+
+
+def _usual(unit: str) -> str:
+    return _USUAL.get(unit, unit)

@@ -1,0 +1,474 @@
+"""Scenes in TOML: text with units in, core objects out, all mistakes in one message."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    Tag,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import CoreSchema, ErrorDetails, core_schema
+
+from beamdyn.beam import Beam, TipMass
+from beamdyn.common.inputs import Quantity, Section, describe
+from beamdyn.common.units import quantity, show
+from beamdyn.motion import SteadyRotation
+from beamdyn.profile import Table
+from beamdyn.scene import Mount, Scene
+
+
+class ConfigError(ValueError):
+    """A scene that cannot be read.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file, or what stands for it.
+    mistakes : sequence of str
+        One sentence each: the key's path, the value, what is wrong and the remedy.
+    """
+
+    def __init__(self, source: str, mistakes: Sequence[str]) -> None:
+        self.source, self.mistakes = source, tuple(mistakes)
+        one = len(mistakes) == 1
+        head = f"{source}: " if one else f"{source}: {len(mistakes)} mistakes\n  "
+        super().__init__(head + "\n  ".join(mistakes))
+
+    def __reduce__(self) -> tuple[type, tuple[str, tuple[str, ...]]]:
+        return type(self), (self.source, self.mistakes)
+
+
+def load_scene(path: str | PathLike[str]) -> Scene:
+    """Read a scene from a TOML file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    ConfigError
+        If there is no such file or it does not describe a scene; the message lists all mistakes.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ConfigError(str(path), ["there is no such file; check the name and the folder"]) from None
+    except OSError as error:
+        raise ConfigError(str(path), [f"it cannot be read ({error.strerror}); give a TOML file"]) from None
+    except ValueError:  # not UTF-8, or a name that no file can have
+        raise ConfigError(str(path), ["it is not text in UTF-8; give a TOML file"]) from None
+    return parse_scene(text, str(path))
+
+
+def parse_scene(text: str, source: str = "scene") -> Scene:
+    """Read a scene from TOML text.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    source : str
+        Name of its origin, for messages.
+
+    Raises
+    ------
+    ConfigError
+        If it does not describe a scene; the message lists all mistakes.
+    """
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        remedy = 'a quantity stands in quotes: length = "50 mm"'
+        raise ConfigError(source, [f"not valid TOML: {error}; {remedy}"]) from None
+    return scene_from_dict(data, source)
+
+
+def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
+    """A scene from the tables of a TOML file.
+
+    Parameters
+    ----------
+    data : mapping
+        Tables "beam" and "mount", and where wanted "motion" and "model", as tomllib reads them.
+    source : str
+        Name of its origin, for messages.
+
+    Raises
+    ------
+    ConfigError
+        If it does not describe a scene; the message lists all mistakes.
+    """
+    try:
+        return SceneInput.model_validate(dict(data)).core
+    except ValidationError as error:
+        mistakes = [_sentence(e) for e in error.errors(include_url=False)]
+        raise ConfigError(source, list(dict.fromkeys(mistakes))) from None
+
+
+# Kinds of values ----------------------------------------------------------------------------------
+
+
+Along = float | Polynomial | Table  # a property along the beam
+
+
+class Metres(float):
+    """A position given as a length, which becomes a fraction when the length of the beam is known."""
+
+
+class Position(Quantity):
+    """A position along the beam: a bare fraction x/L or a length with its unit."""
+
+    def convert(self, given: object) -> float:
+        """A fraction, or `Metres`."""
+        return Metres(quantity(given, "m")) if isinstance(given, str) else super().convert(given)
+
+
+_STATION = Position(meaning="position along the beam, as a fraction x/L or a length")
+_BREAKPOINT = Position(meaning="places where a property jumps or has a kink, as fractions x/L or lengths")
+
+
+class Varying(Quantity):
+    """A quantity that is constant, a polynomial in x/L or a table over stations."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        constant = core_schema.no_info_plain_validator_function(self.parse)
+        coefficient = core_schema.no_info_plain_validator_function(self.convert)
+        station = core_schema.no_info_plain_validator_function(_STATION.parse)
+        return core_schema.tagged_union_schema(
+            {
+                "<constant>": constant,
+                "<polynomial>": _table(_polynomial, polynomial=coefficient),
+                "<table>": _table(_stations, stations=station, values=constant),
+            },
+            discriminator=_kind_of_variation,
+            custom_error_type="variation",
+            custom_error_message="give a number with a unit, { polynomial = [...] } in powers of x/L, "
+            "or { stations = [...], values = [...] }",
+        )
+
+
+def _table(build: Any, **lists: CoreSchema) -> CoreSchema:
+    """Schema of an inline table of lists, from which something is built."""
+    fields = {
+        name: core_schema.typed_dict_field(core_schema.list_schema(item, strict=True, min_length=1))
+        for name, item in lists.items()
+    }
+    table = core_schema.typed_dict_schema(fields, extra_behavior="forbid")
+    return core_schema.no_info_after_validator_function(build, table)
+
+
+def _polynomial(given: dict[str, list[float]]) -> Polynomial:
+    return Polynomial(given["polynomial"])
+
+
+def _stations(given: dict[str, list[float]]) -> Table:
+    return Table(tuple(given["stations"]), tuple(given["values"]))
+
+
+def _kind_of_variation(given: Any) -> str | None:
+    if not isinstance(given, dict):
+        return None if isinstance(given, list) else "<constant>"
+    kinds = {"<polynomial>": {"polynomial"}, "<table>": {"stations", "values"}}
+    return next((kind for kind, keys in kinds.items() if keys & given.keys()), None)
+
+
+# Tables of the file -------------------------------------------------------------------------------
+
+
+class CoreSection(Section):
+    """A table that stands for a core object; what the core refuses is a mistake in the table."""
+
+    @cached_property
+    def core(self) -> Any:
+        """The core object."""
+        raise NotImplementedError
+
+    @model_validator(mode="after")
+    def _core_accepts(self) -> CoreSection:
+        with np.errstate(all="ignore"):  # what overflows is refused because it is not finite
+            self.core  # noqa: B018
+        return self
+
+
+class TipInput(CoreSection):
+    """[beam.tip]: a rigid body at the tip."""
+
+    mass: Annotated[float, Quantity("kg", symbol="m_t", meaning="mass", least=0)]
+    offset: Annotated[
+        float,
+        Quantity("m", symbol="e", meaning="distance of its centre of gravity beyond the end of the beam"),
+    ] = TipMass.offset
+    inertia: Annotated[
+        float, Quantity("kg m2", symbol="J_n", meaning="moment of inertia about the axis of bending", least=0)
+    ] = TipMass.inertia
+    transverse_inertia: (
+        Annotated[
+            float,
+            Quantity(
+                "kg m2",
+                symbol="J_e",
+                meaning="moment of inertia about the direction of bending; else inertia",
+                least=0,
+            ),
+        ]
+        | None
+    ) = TipMass.transverse_inertia
+    axial_inertia: Annotated[
+        float, Quantity("kg m2", symbol="J_1", meaning="moment of inertia about the beam axis", least=0)
+    ] = TipMass.axial_inertia
+
+    @cached_property
+    def core(self) -> TipMass:
+        """The tip body."""
+        return TipMass(**dict(self))
+
+
+class _BeamInput(CoreSection):
+    length: Annotated[float, Quantity("m", symbol="L", meaning="length", above=0)]
+    tip: TipInput | None = None
+    breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
+
+    def _arguments(self) -> dict[str, Any]:
+        """What the constructors of `Beam` take."""
+        given = {name: _to_fractions(value, self.length) for name, value in self if value is not None}
+        return given | {"tip": self.tip and self.tip.core}
+
+
+class RectangularInput(_BeamInput):
+    """[beam]: a beam of rectangular section."""
+
+    width: Annotated[Along, Varying("m", symbol="b", meaning="width of the section", above=0)]
+    thickness: Annotated[
+        Along, Varying("m", symbol="h", meaning="thickness, in the direction of bending", above=0)
+    ]
+    youngs_modulus: Annotated[float, Quantity("Pa", symbol="E", meaning="Young's modulus", above=0)]
+    density: Annotated[float, Quantity("kg/m3", symbol="rho", meaning="density", above=0)]
+
+    @cached_property
+    def core(self) -> Beam:
+        """The beam."""
+        return Beam.rectangular(**self._arguments())
+
+
+class StiffnessInput(_BeamInput):
+    """[beam]: a beam of any section, by its stiffness."""
+
+    mass_per_length: Annotated[Along, Varying("kg/m", symbol="rho A", meaning="mass per length", above=0)]
+    bending_stiffness: Annotated[Along, Varying("N m2", symbol="E I", meaning="bending stiffness", above=0)]
+    axial_stiffness: (
+        Annotated[Along, Varying("N", symbol="E A", meaning="axial stiffness, for stretch", above=0)] | None
+    ) = None
+    outer_fibre: (
+        Annotated[
+            Along,
+            Varying(
+                "m",
+                symbol="c",
+                meaning="distance of the outer fibre from the neutral axis, for strain",
+                above=0,
+            ),
+        ]
+        | None
+    ) = None
+
+    @cached_property
+    def core(self) -> Beam:
+        """The beam."""
+        return Beam.from_stiffness(**self._arguments())
+
+
+def _to_fractions(given: Any, length: float) -> Any:
+    """The same with positions in metres turned into fractions of the length."""
+    if isinstance(given, Table):
+        return Table(_to_fractions(given.stations, length), given.values)
+    if isinstance(given, list | tuple):
+        return tuple(x / length if isinstance(x, Metres) else x for x in given)
+    return given
+
+
+def _own(section: type[Section]) -> list[str]:
+    return [name for name in section.model_fields if name not in _BeamInput.model_fields]
+
+
+def _kind_of_beam(given: Any) -> str:
+    keys = given.keys() if isinstance(given, dict) else set()
+    return "<stiffness>" if keys & set(_own(StiffnessInput)) else "<rectangular>"
+
+
+def _one_kind_of_beam(given: Any) -> Any:
+    keys = given.keys() if isinstance(given, dict) else set()
+    section, stiffness = ([k for k in _own(kind) if k in keys] for kind in (RectangularInput, StiffnessInput))
+    if section and stiffness:
+        raise ValueError(
+            f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
+            f"either by {', '.join(_own(RectangularInput))} or by {', '.join(_own(StiffnessInput))}"
+        )
+    return given
+
+
+BeamInput = Annotated[
+    Annotated[RectangularInput, Tag("<rectangular>")] | Annotated[StiffnessInput, Tag("<stiffness>")],
+    Discriminator(_kind_of_beam),
+    BeforeValidator(_one_kind_of_beam),
+]
+
+
+class MountInput(CoreSection):
+    """[mount]: how the root of the beam is fixed to the carrier."""
+
+    radius: Annotated[
+        float,
+        Quantity(
+            "m",
+            symbol="r",
+            meaning="distance of the root from the axis of rotation",
+            least=0,
+            remedy='for a beam that points outward give setting_angle = "180 deg"',
+        ),
+    ]
+    setting_angle: Annotated[
+        float,
+        Quantity(
+            "rad",
+            symbol="phi",
+            meaning="direction of the beam: 0 inward, 90 deg tangential, 180 deg outward",
+            least=-2 * math.pi,
+            most=2 * math.pi,
+            remedy="that is one turn either way",
+        ),
+    ] = Mount.setting_angle
+    bending_angle: Annotated[
+        float,
+        Quantity(
+            "rad",
+            symbol="psi",
+            meaning="angle between the direction of bending and the plane of rotation",
+            least=-2 * math.pi,
+            most=2 * math.pi,
+            remedy="that is one turn either way",
+        ),
+    ] = Mount.bending_angle
+
+    @cached_property
+    def core(self) -> Mount:
+        """The mount."""
+        return Mount(**dict(self))
+
+
+class SteadyInput(CoreSection):
+    """[motion] of kind "steady": rotation at constant speed about a fixed centre."""
+
+    kind: Annotated[Literal["steady"], Field(description="kind of motion")] = "steady"
+    speed: Annotated[float, Quantity("rad/s", symbol="omega", meaning="angular speed of the carrier")]
+
+    @cached_property
+    def core(self) -> SteadyRotation:
+        """The motion."""
+        return SteadyRotation(self.speed)
+
+
+MotionInput = SteadyInput  # a union discriminated by `kind`, like BeamInput, when there are more
+
+
+class ModelInput(Section):
+    """[model]: what the model includes."""
+
+    damping_ratio: Annotated[
+        float,
+        Quantity(
+            symbol="zeta", meaning="modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"
+        ),
+    ] = Scene.damping_ratio
+    gravity: Annotated[float, Quantity("m/s2", symbol="g", meaning="gravity")] = Scene.gravity
+    stretch: Annotated[bool, Field(description="keep the stretch of the beam and its Coriolis coupling")] = (
+        Scene.stretch
+    )
+
+
+class SceneInput(CoreSection):
+    """A scene: the tables [beam], [mount], and where wanted [motion] and [model]."""
+
+    beam: BeamInput
+    mount: MountInput
+    motion: MotionInput | None = None
+    model: ModelInput = ModelInput()
+
+    @cached_property
+    def core(self) -> Scene:
+        """The scene."""
+        return Scene(self.beam.core, self.mount.core, self.motion and self.motion.core, **dict(self.model))
+
+
+# Messages -----------------------------------------------------------------------------------------
+
+_WORDS = {
+    "bool_type": "give true or false",
+    "dict_type": "give a table",
+    "list_type": "give a list in brackets",
+    "model_type": "give a table with keys",
+    "too_short": "give at least one value",
+}
+
+
+def _sentence(error: ErrorDetails) -> str:
+    """What is wrong in one place: path, value, remedy."""
+    path, value = _path(error["loc"]), show(error["input"])
+    match error["type"]:
+        case "missing":
+            return f"{path}: missing; {_how_to_give(path)}"
+        case "extra_forbidden":
+            return f"{path}: unknown key; {_nearest(path)}"
+        case "value_error":
+            reason = str(error.get("ctx", {}).get("error"))
+            return f"{path} = {reason}" if reason.startswith(value) else f"{path or 'model'}: {reason}"
+        case "literal_error":
+            return f"{path} = {value}: give {error.get('ctx', {}).get('expected')}"
+    return f"{path} = {value}: {_WORDS.get(error['type'], error['msg'])}"
+
+
+def _path(loc: tuple[int | str, ...]) -> str:
+    """The place as a TOML path; tags of alternatives, in angle brackets, are no keys."""
+    parts = [f"[{p}]" if isinstance(p, int) else f".{p}" for p in loc if not str(p).startswith("<")]
+    return "".join(parts).removeprefix(".")
+
+
+def _how_to_give(path: str) -> str:
+    inputs = describe(SceneInput)
+    if any(i.path.startswith(f"{path}.") for i in inputs):
+        return f"give a table [{path}]"
+    return next((f"give the {i.help}" for i in inputs if i.path == path), "give as many values as stations")
+
+
+def _nearest(path: str) -> str:
+    """The known key that resembles an unknown one most, or all that are known."""
+    parent, _, key = path.rpartition(".")
+    prefix = parent and f"{parent}."
+    known = [
+        i.path.removeprefix(prefix).partition(".")[0]
+        for i in describe(SceneInput)
+        if i.path.startswith(prefix)
+    ]
+    known = list(dict.fromkeys(known)) or ["polynomial", "stations", "values"]
+    near = difflib.get_close_matches(key, known, n=1)
+    return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"

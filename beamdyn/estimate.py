@@ -1,0 +1,146 @@
+"""The cheapest model that answers a question with a given accuracy, and the error that it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.eigen import Eigen, Solver
+from beamdyn.equations import Equations, equations
+from beamdyn.operators import Discretization, assemble
+from beamdyn.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.scene import Scene
+
+TARGET = 1e-11  # relative error aimed at by the defaults: two digits beyond the promised 1e-9
+_FEM_TARGET = 1e-7
+
+
+@dataclass(frozen=True)
+class Model:
+    """A scene in one discretization.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    discretization : Discretization
+        Its discretization.
+    """
+
+    scene: Scene
+    discretization: Discretization
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The equations of motion."""
+        return equations(self.scene, assemble(self.scene.beam, self.discretization, self.scene.stretch))
+
+    @cached_property
+    def solver(self) -> Solver:
+        """The eigenproblem at steady speed."""
+        return Solver(self.equations.steady())
+
+    def coarser(self) -> Model:
+        """The model that this one is compared with."""
+        return Model(self.scene, self.discretization.coarser())
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """Modes over a batch of speeds, with the error of their eigenvalues.
+
+    Parameters
+    ----------
+    model, coarse : Model
+        The model that was solved, and the one that it was compared with.
+    eigen : Eigen
+        Modes of `model`.
+    error : ndarray, shape (S, k)
+        Estimated relative error of the eigenvalues: distance of the two models and rounding.
+    """
+
+    model: Model
+    coarse: Model
+    eigen: Eigen
+    error: np.ndarray
+
+
+def estimated(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> Estimated:
+    """Solve a model and its coarser companion; `extra` modes are solved but not compared."""
+    coarse = model.coarser()
+    fine = model.solver.solve(speeds, min(modes + extra, model.solver.size))
+    s = fine.eigenvalue[:, :modes]
+    distance = s - coarse.solver.eigenvalues(speeds, modes)
+    order = model.discretization.order
+    if order is not None:  # Richardson: the two meshes know the leading term of the error
+        s = s + distance / (2**order - 1)
+        fine = Eigen(np.concatenate([s, fine.eigenvalue[:, modes:]], axis=1), fine.vector, fine.rounding)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error = np.abs(distance) / np.abs(s) + fine.rounding[:, :modes] + model.discretization.rounding
+    return Estimated(model, coarse, fine, np.where(np.isnan(error), np.inf, error))
+
+
+def choose(scene: Scene, method: str | Discretization, speeds: np.ndarray, modes: int) -> Model:
+    """The smallest model whose estimated error is below the target at the slowest and fastest speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    method : {"ritz", "fem"} or Discretization
+        The kind of model, or the very one.
+    speeds : ndarray
+        Speeds at which it will be used [rad/s].
+    modes : int
+        Modes that are wanted.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    ValueError
+        If the method is unknown or has no room for so many modes.
+    """
+    if not isinstance(method, str):
+        return Model(scene, _roomy(method, modes))
+    ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
+    target = TARGET if method == "ritz" else _FEM_TARGET
+    model = None
+    for discretization in _ladder(method, scene, modes):
+        model = Model(scene, discretization)
+        found = estimated(model, ends, modes)
+        if (found.error <= np.maximum(target, 3 * found.eigen.rounding[:, :modes])).all():
+            break
+    assert model is not None
+    return model
+
+
+def _ladder(method: str, scene: Scene, modes: int) -> Iterator[Discretization]:
+    """Discretizations of one kind from the smallest worth trying."""
+    segments = len(scene.beam.breakpoints) - 1
+    if method == "ritz":
+        start = max(5, -(-(10 + 2 * modes) // segments))
+        step: Discretization | None = _roomy(Ritz(min(start, MOST_FUNCTIONS)), modes)
+    elif method == "fem":
+        from beamdyn.fem import Fem  # loads scikit-fem, which Ritz has no need of
+
+        step = _roomy(Fem(max(80, 2 * segments, 4 * modes)), modes)
+    else:
+        raise ValueError(f"method = {method!r}: give 'ritz', 'fem', or a beamdyn.Ritz or beamdyn.Fem of your own")
+    while step is not None:
+        yield step
+        step = step.finer()
+
+
+def _roomy(discretization: Discretization, modes: int) -> Discretization:
+    if not discretization.fits(modes):
+        raise ValueError(
+            f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "
+            "has too few functions; ask for fewer modes or give it more functions"
+        )
+    return discretization

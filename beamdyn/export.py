@@ -1,0 +1,154 @@
+"""Mode shapes as mesh files, for ParaView and the like; the only module that knows meshio."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.common.checks import ascending
+
+if TYPE_CHECKING:
+    import meshio
+
+_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
+_LARGEST = 0.1  # drawn deflection over the length
+
+
+def write_shapes(
+    path: str | Path,
+    x: np.ndarray | Sequence[float],
+    shapes: np.ndarray,
+    labels: Sequence[str],
+    width: float | np.ndarray | Sequence[float] | None = None,
+    force: bool = False,
+) -> None:
+    """Write mode shapes as a mesh with one displacement field a mode.
+
+    The file is in the beam's own axes, wherever the carrier holds it: x along the beam from its root,
+    y across its width, z the direction in which it bends.  The size of a mode being arbitrary, the
+    largest deflection of each is a tenth of the length: ParaView's "Warp By Vector" shows it at scale 1.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write; its suffix .vtu or .vtk chooses the format; the latter, the legacy
+        format, has underscores for the spaces in labels.
+    x : array_like, shape (n,)
+        Positions along the beam [m], ascending, at least two.
+    shapes : ndarray, shape (m, n)
+        Deflections of the modes at the positions, real, in any unit.
+    labels : sequence of str, length m
+        Name of each mode's field, e.g. "mode 1: 65.23 Hz"; no two alike.
+    width : float or array_like, shape (n,), optional
+        Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
+    force : bool
+        Overwrite a file that exists.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is unknown or the arrays do not fit together.
+    FileExistsError
+        If the file exists and `force` is not set.
+    FileNotFoundError
+        If there is no such directory.
+    """
+    path = output_path(path, _SUFFIXES, force)
+    kind = path.suffix[1:].lower()
+    strip = _strip(x := ascending("x", x), width)
+    fields = _scaled(_checked(x, shapes, labels), _LARGEST * (x[-1] - x[0]))
+    for label, deflection in zip(labels, fields, strict=True):
+        name = label.replace(" ", "_") if kind == "vtk" else label
+        strip.point_data[name] = _displacement(deflection, len(strip.points))
+    strip.write(path, file_format=kind)
+
+
+def output_path(path: str | Path, suffixes: Sequence[str], force: bool = False) -> Path:
+    """A path that may be written, or an error that says why not.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write.
+    suffixes : sequence of str
+        Suffixes allowed, in lower case, with their dots.
+    force : bool
+        Overwrite a file that exists.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    ValueError
+        If the suffix is none of those allowed.
+    FileExistsError
+        If the file exists and `force` is not set.
+    FileNotFoundError
+        If there is no such directory.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}")
+    if path.exists() and not force:
+        raise FileExistsError(f"{path} exists; choose another name, or overwrite it with force")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no directory {path.parent}; create it first")
+    return path
+
+
+def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> meshio.Mesh:
+    """A strip of quadrilaterals along x, or a line if it has no width."""
+    import meshio
+
+    if len(x) < 2:
+        raise ValueError(f"x has {len(x)} position: a mesh needs at least two")
+    half = _half_width(x, width)
+    i = np.arange(len(x) - 1)
+    if not half.any():
+        return meshio.Mesh(_points(x, half), [("line", np.stack([i, i + 1], axis=1))])
+    j = i + len(x)
+    points = np.concatenate([_points(x, -half), _points(x, half)])
+    return meshio.Mesh(points, [("quad", np.stack([i, i + 1, j + 1, j], axis=1))])
+
+
+def _half_width(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> np.ndarray:
+    given = np.asarray(_LARGEST * (x[-1] - x[0]) if width is None else width, dtype=float)
+    if given.shape not in ((), x.shape) or not (np.isfinite(given) & (given >= 0)).all():
+        raise ValueError(
+            f"width = {width}: give a width of 0 or more [m], or one for each of {len(x)} positions"
+        )
+    return np.broadcast_to(given / 2, x.shape)
+
+
+def _points(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    return np.stack([x, y, np.zeros_like(x)], axis=1)
+
+
+def _checked(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str]) -> np.ndarray:
+    shapes = np.asarray(shapes)
+    if np.iscomplexobj(shapes) or not np.isfinite(shapes).all():
+        raise ValueError("shapes: deflections must be real and finite; of a complex mode give the real part")
+    if shapes.shape != (len(labels), len(x)):
+        raise ValueError(
+            f"shapes has shape {shapes.shape}: {len(labels)} labels times {len(x)} positions expected"
+        )
+    if len(set(labels)) < len(labels):
+        raise ValueError(f"labels {list(labels)}: two are alike; a mode's field needs a name of its own")
+    return shapes
+
+
+def _scaled(shapes: np.ndarray, largest: float) -> np.ndarray:
+    """Shapes whose largest deflection is as given; a shape of zeros stays."""
+    size = np.abs(shapes).max(axis=1, keepdims=True)
+    return shapes * (largest / np.where(size == 0, 1.0, size))
+
+
+def _displacement(deflection: np.ndarray, points: int) -> np.ndarray:
+    """Displacement vectors along z, the same on both edges of a strip."""
+    z = np.tile(deflection, points // len(deflection))
+    return np.stack([np.zeros_like(z), np.zeros_like(z), z], axis=1)

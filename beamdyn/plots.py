@@ -1,0 +1,270 @@
+"""Pictures: arrays and Axes in, Axes out; nothing is shown, and pyplot is loaded only to make new axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from beamdyn.export import output_path
+
+# Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+_DASHES = ("-", "--", "-.", ":")
+_MANY = 6  # entries from which the legend stands beside the data
+_SUFFIXES = (".png", ".svg", ".pdf")
+_SPEED = "angular speed [rad/s]"
+
+
+def plot_locus(
+    speeds: np.ndarray,
+    frequency: np.ndarray,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    critical_speed: float | None = None,
+) -> Axes:
+    """Draw natural frequencies over speed, one line a mode.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    frequency : ndarray, shape (S, m)
+        Frequencies [Hz]; nan, where a mode does not oscillate, leaves a gap.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    labels : sequence of str, length m, optional
+        For the legend; "mode 1" and so on if not given.
+    critical_speed : float, optional
+        Speed [rad/s] to mark, as `mark_critical` does.
+
+    Returns
+    -------
+    Axes
+    """
+    return _over_speed(speeds, frequency, "natural frequency [Hz]", ax, labels, critical_speed)
+
+
+def plot_growth(
+    speeds: np.ndarray,
+    growth_rate: np.ndarray,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    critical_speed: float | None = None,
+) -> Axes:
+    """Draw growth rates over speed, one line a mode, in the colours of `plot_locus`.
+
+    Frequencies say nothing of a mode that grows: this belongs below a locus that passes the critical speed.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    growth_rate : ndarray, shape (S, m)
+        Growth rates [1/s]: positive where a mode is unstable, negative where it is damped.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    labels : sequence of str, length m, optional
+        For the legend; "mode 1" and so on if not given.
+    critical_speed : float, optional
+        Speed [rad/s] to mark, as `mark_critical` does.
+
+    Returns
+    -------
+    Axes
+    """
+    return _over_speed(speeds, growth_rate, "growth rate [1/s]", ax, labels, critical_speed)
+
+
+def plot_loci_by_angle(
+    speeds: np.ndarray,
+    frequency: np.ndarray,
+    angles_deg: Sequence[float] | np.ndarray,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw one frequency over speed, one line a setting angle.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    frequency : ndarray, shape (k, S)
+        Frequency [Hz] at each setting angle; nan leaves a gap.
+    angles_deg : sequence of float, length k
+        Setting angles [degrees].
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    labels = [f"setting angle {angle:.10g}°" for angle in angles_deg]
+    return _over_speed(speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels, None)
+
+
+def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Axes | None = None) -> Axes:
+    """Draw mode shapes, each over its own largest deflection.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Positions along the beam [m].
+    shapes : ndarray, shape (m, n)
+        Deflections of the modes, real, in any unit.
+    labels : sequence of str, length m
+        For the legend.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    largest = np.abs(shapes).max(axis=1, keepdims=True)
+    scaled = shapes / np.where(largest == 0, 1.0, largest)
+    ax = _dressed(ax, "position along the beam [m]", "deflection / its largest value")
+    ax.axhline(0, color="0.4", linewidth=0.8)
+    _lines(ax, x, scaled, labels)
+    return _with_legend(ax)
+
+
+def mark_points(
+    ax: Axes, x: np.ndarray | Sequence[float], y: np.ndarray | Sequence[float], label: str
+) -> Axes:
+    """Lay points, such as published ones, over a picture.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw.
+    x, y : array_like, shape (n,)
+        The points, in the units of the axes.
+    label : str
+        For the legend: where they come from.
+
+    Returns
+    -------
+    Axes
+    """
+    ax.plot(x, y, "o", color="black", markerfacecolor="white", markersize=7, zorder=3, label=label)
+    return _with_legend(ax)
+
+
+def mark_critical(ax: Axes, speed: float) -> Axes:
+    """Mark a critical speed by a line, and shade what lies past it.
+
+    Parameters
+    ----------
+    ax : Axes
+        With angular speed [rad/s] on x; its limits stay.
+    speed : float
+        Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
+
+    Returns
+    -------
+    Axes
+    """
+    left, right = ax.get_xlim()
+    if left <= speed < right:
+        ax.axvline(speed, color="0.3", linestyle="--", linewidth=1, label=f"critical speed {speed:.5g} rad/s")
+        ax.axvspan(speed, right, color="0.93", zorder=0)
+        ax.set_xlim(left, right)
+    return _with_legend(ax)
+
+
+def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> Path:
+    """Write a picture as PNG, SVG or PDF.
+
+    Parameters
+    ----------
+    drawn : Axes or Figure
+        The picture, or axes in it.
+    path : str or Path
+        File to write; its suffix .png, .svg or .pdf chooses the format.
+    force : bool
+        Overwrite a file that exists.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is unknown.
+    FileExistsError
+        If the file exists and `force` is not set.
+    FileNotFoundError
+        If there is no such directory.
+    """
+    path = output_path(path, _SUFFIXES, force)
+    figure: Any = drawn if isinstance(drawn, Figure) else drawn.figure.figure  # past a subfigure
+    figure.savefig(path, dpi=150, bbox_inches="tight")
+    return path
+
+
+def _over_speed(
+    speeds: np.ndarray,
+    values: np.ndarray,
+    quantity: str,
+    ax: Axes | None,
+    labels: Sequence[str] | None,
+    critical_speed: float | None,
+) -> Axes:
+    values = np.asarray(values)
+    ax = _dressed(ax, _SPEED, quantity)
+    _lines(ax, speeds, values.T, labels or [f"mode {i}" for i in range(1, values.shape[1] + 1)])
+    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
+    return _with_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
+
+
+def _dressed(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
+    """The axes, new if there are none, with labels, a grid and plain numbers."""
+    ax = _new_axes() if ax is None else ax
+    ax.set_xlabel(xlabel, fontsize=12)
+    ax.set_ylabel(ylabel, fontsize=12)
+    ax.tick_params(labelsize=11)
+    ax.ticklabel_format(useOffset=False)
+    ax.margins(x=0.02)
+    ax.grid(color="0.85", linewidth=0.7)
+    ax.set_axisbelow(True)
+    return ax
+
+
+def _new_axes() -> Axes:
+    from matplotlib import pyplot
+
+    return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
+
+
+def _lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
+    for i, (y, label) in enumerate(zip(rows, labels, strict=True)):
+        (line,) = ax.plot(x, y, label=label, linewidth=1.8, **_look(i))
+        if (alone := _alone(y)).any():
+            line.set(marker=".", markevery=alone)
+
+
+def _look(i: int) -> dict[str, Any]:
+    """Colour of line i; the dashes change when the colours are used up."""
+    turn, colour = divmod(i, len(COLOURS))
+    return {"color": COLOURS[colour], "linestyle": _DASHES[turn % len(_DASHES)]}
+
+
+def _alone(y: np.ndarray) -> np.ndarray:
+    """Which values lie between gaps: a line does not show these, so they need a marker."""
+    known = np.pad(np.isfinite(y), 1)
+    return known[1:-1] & ~known[:-2] & ~known[2:]
+
+
+def _with_legend(ax: Axes) -> Axes:
+    count = len(ax.get_legend_handles_labels()[1])
+    beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
+    place: dict[str, Any] = beside if count > _MANY else {"loc": "best"}
+    ax.legend(fontsize=10, **place)
+    return ax

@@ -1,0 +1,284 @@
+"""The published numbers again: each beside ours, with its deviation and a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.polynomial import Polynomial
+
+from beamdyn.beam import Beam, TipMass
+from beamdyn.plots import mark_points, plot_loci_by_angle, plot_locus, save_figure
+from beamdyn.published import load
+from beamdyn.report import Comparison
+from beamdyn.ritz import Ritz
+from beamdyn.scene import Mount, Scene
+from beamdyn.spectrum import critical_point, frequency_locus, natural_modes, setting_angle_limits
+
+_PAPER, _ANSYS, _OWN = "the paper", "ANSYS, in the paper", "independent solution"
+_ROUNDING = 1e-12  # relative, of a value that is defined by a basis of given size
+_TOP = 150.0  # rad/s: Fig. 6 ends here; Fig. 8 and 9 do not say where they end
+
+
+def published_scene() -> Scene:
+    """The scene of Lee and Yoo (2019), Table 1."""
+    given = {name: entry["value"] for name, entry in load("lee_yoo_2019")["input"].items()}
+    names = ("length", "width", "thickness", "youngs_modulus", "density")
+    return Scene(Beam.rectangular(**{name: given[name] for name in names}), Mount(given["radius"]))
+
+
+# Lee and Yoo ---------------------------------------------------------------------------------------
+
+
+def first_frequencies() -> Iterator[Comparison]:
+    """Table 2: the first frequency at three speeds, by the paper and by ANSYS, against three models of ours."""
+    paper, scene = load("lee_yoo_2019"), published_scene()
+    models = (
+        ("Ritz", scene, "ritz"),
+        ("FE", scene, "fem"),
+        ("Ritz with stretch", replace(scene, stretch=True), "ritz"),
+    )
+    for row, exact in zip(paper["first_frequency"], paper["reference"]["first_frequency"], strict=True):
+        speed = row["speed"]["value"]
+        for name, model, method in models:
+            found = natural_modes(model, speed, 1, method)
+            ours = float(found.frequency[0])
+            error = float(found.error[0]) * ours
+            what = f"f1 at {speed:g} rad/s, {name}"
+            for source, entry in ((_PAPER, row["proposed"]), (_ANSYS, row["ansys"])):
+                reason = "cause unknown (1)" if source == _PAPER and speed == 0 else ""
+                yield Comparison(what, source, entry["value"], ours, error, "Hz", entry["decimals"], reason)
+            value = exact["stretch" if model.stretch else "bending"]["value"]
+            yield Comparison(what, _OWN, value, ours, error, "Hz", 8)
+
+
+def limits_and_buckling() -> Iterator[Comparison]:
+    """Section 3.3: the two setting-angle limits and the speed of buckling."""
+    paper, scene = load("lee_yoo_2019"), published_scene()
+    yield from _first_limit(paper, scene)
+    yield from _second_limit_of_modes(paper, scene)
+    yield from _second_limit(paper, scene)
+    entry = paper["reference"]["critical_speed"]
+    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+        found = critical_point(scene, method)
+        what = f"buckling speed, {name}"
+        yield Comparison(what, _OWN, entry["value"], found.speed, found.error * found.speed, "rad/s", 4)
+
+
+def _first_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    printed, exact = paper["setting_angle_limits"]["first"], paper["reference"]["first_setting_angle_limit"]
+    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+        found = setting_angle_limits(scene, _TOP, method)
+        what, ours, error = f"first limit, {name}", float(np.degrees(found.first)), float(np.degrees(found.error))
+        yield Comparison(what, _PAPER, tuple(printed["value"]), ours, error, "deg", 2)
+        yield Comparison(what, _OWN, exact["value"], ours, error, "deg", 5)
+
+
+def _second_limit_of_modes(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    """Of a basis of N eigenfunctions, whose limit at any speed is a number of that basis."""
+    printed, exact = (
+        paper["setting_angle_limits"]["second"],
+        paper["reference"]["second_setting_angle_limit_of_modes"],
+    )
+    for modes, value in zip(exact["modes"], exact["value"], strict=True):
+        found = setting_angle_limits(scene, np.inf, Ritz(modes, "eigenfunctions"))
+        what, ours = f"second limit, {modes} eigenfunctions", float(np.degrees(found.second))
+        if modes == 5:
+            yield Comparison(what, _PAPER, tuple(printed["value"]), ours, ours * _ROUNDING, "deg", 2)
+        yield Comparison(what, _OWN, value, ours, ours * _ROUNDING, "deg", _decimals(value))
+
+
+def _second_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    """Converged, for several top speeds."""
+    printed = tuple(paper["setting_angle_limits"]["second"]["value"])
+    exact = [(e["top_speed"]["value"], e["value"]) for e in paper["reference"]["second_setting_angle_limit"]]
+    for top, value in [(_TOP, None), *exact]:
+        found = setting_angle_limits(scene, top)
+        what, ours = f"second limit converged, to {top:g} rad/s", float(np.degrees(found.second))
+        error = float(np.degrees(found.error))
+        if value is None:
+            yield Comparison(what, _PAPER, printed, ours, error, "deg", 2, "no property of the beam (2)")
+        else:
+            yield Comparison(what, _OWN, value, ours, error, "deg", _decimals(value))
+
+
+def notes() -> Iterator[str]:
+    """What the tables do not say."""
+    scene = published_scene()
+    rest = natural_modes(scene, 0.0, 1)
+    second = setting_angle_limits(scene, 400.0)
+    yield (
+        f"(1) The paper prints 65.231 Hz at rest; its own input gives {rest.frequency[0]:.6f} Hz, which ANSYS rounds "
+        "to 65.230. The cause of the difference of 0.0005 Hz is unknown."
+    )
+    yield (
+        "(2) Above the second limit the first frequency rises up to the top speed, so the limit depends on where "
+        "one stops; the paper does not say where. Its 89.62 to 89.63 deg is what exactly five clamped-free "
+        "eigenfunctions give at any speed; with more of them the limit tends to 90 deg."
+    )
+    yield (
+        "(3) The limits are results of the linear equations outside their range: at the second limit for "
+        f"400 rad/s the rotation bends the tip by {second.static_deflection:.2g} times the length of the beam."
+    )
+    yield "'independent solution' is not in the paper: 40-digit Rayleigh-Ritz and power series, made apart from this program."
+
+
+def draw(folder: Path) -> list[Path]:
+    """Draw Fig. 4, 8 and 9 into a folder, which is made if needed; files of the same names are replaced."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pictures = {"fig_4.png": _fig_4, "fig_8.png": _fig_8, "fig_9.png": _fig_9}
+    return [save_figure(picture(), folder / name, force=True) for name, picture in pictures.items()]
+
+
+def _fig_4() -> Figure:
+    rows = load("lee_yoo_2019")["first_frequency"]
+    scene, figure = published_scene(), Figure(figsize=(7.5, 4.8), layout="constrained")
+    speeds = np.linspace(0, 200, 401)
+    found = frequency_locus(scene, speeds, 1)
+    critical = critical_point(scene).speed
+    ax = plot_locus(speeds, found.frequency, figure.subplots(), ["ours (Ritz)"], critical)
+    mark_points(ax, [r["speed"]["value"] for r in rows], [r["ansys"]["value"] for r in rows], "ANSYS, in the paper")
+    ax.set_title("Fig. 4: first natural frequency, setting angle 0")
+    return figure
+
+
+def _fig_8() -> Figure:
+    angles = load("lee_yoo_2019")["figures"]["fig_8"]["setting_angle"]
+    figure = Figure(figsize=(12, 4.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    speeds = np.linspace(0, _TOP, 301)
+    plot_loci_by_angle(speeds, _first_by_angle(angles, speeds), angles, left)
+    speeds = np.linspace(0, 17, 171)
+    first = _first_by_angle(angles, speeds)
+    plot_loci_by_angle(speeds, (first - first[:, :1]) * 1e6, angles, right)
+    right.set(ylim=(-0.5, 0.5), ylabel="change of the natural frequency from rest [µHz]")
+    left.set_title("over speed")
+    right.set_title("near rest: one falls, the other first rises")
+    figure.suptitle("Fig. 8: first natural frequency on either side of the first setting-angle limit")
+    return figure
+
+
+def _fig_9() -> Figure:
+    angles = load("lee_yoo_2019")["figures"]["fig_9"]["setting_angle"]
+    figure = Figure(figsize=(12, 4.8), layout="constrained")
+    cases = ((12000.0, Ritz(5, "eigenfunctions"), "five eigenfunctions: one turns, the other rises on"))
+    cases = (cases, (5000.0, "ritz", "converged: both turn (their limits depend on the top speed)"))
+    for ax, (top, method, title) in zip(figure.subplots(1, 2), cases, strict=True):
+        speeds = np.linspace(0, top, 501)
+        plot_loci_by_angle(speeds, _first_by_angle(angles, speeds, method), angles, ax)
+        ax.set_title(title)
+    figure.suptitle("Fig. 9: first natural frequency on either side of the paper's second setting-angle limit")
+    return figure
+
+
+def _first_by_angle(angles: Sequence[float], speeds: np.ndarray, method: str | Ritz = "ritz") -> np.ndarray:
+    """First frequency at setting angles [deg] over speeds: shape (angles, speeds)."""
+    scene = published_scene()
+    mounts = [replace(scene.mount, setting_angle=float(np.radians(angle))) for angle in angles]
+    loci = [frequency_locus(replace(scene, mount=mount), speeds, 1, method) for mount in mounts]
+    return np.array([locus.frequency[:, 0] for locus in loci])
+
+
+# Rotating beams of many sources ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Many values of one source against one method.
+
+    Parameters
+    ----------
+    source, method : str
+        Of which values, by which method.
+    values : int
+        How many.
+    printed : float
+        Largest relative half unit of the last digit printed.
+    deviation, error : float
+        Largest relative deviation and largest estimated relative error.
+    outside : int
+        How many deviate by more than both together.
+    """
+
+    source: str
+    method: str
+    values: int
+    printed: float
+    deviation: float
+    error: float
+    outside: int
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether all values agree."""
+        return not self.outside
+
+    def cells(self) -> list[str]:
+        """Its row of the table."""
+        numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
+        verdict = f"differs: {self.outside} value(s)" if self.outside else "agrees"
+        return [self.source, self.method, str(self.values), *numbers, verdict]
+
+
+def summaries() -> Iterator[Summary]:
+    """All cases of the published tables, and the critical speeds, by source and method."""
+    data = load("rotating_beams")
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for case in data["case"]:
+        groups.setdefault(case["source"], []).append(case)
+    groups["critical speeds, computed"] = [c for c in data["critical"] if np.isfinite(c["gamma"])]
+    for source, cases in groups.items():
+        for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+            yield _summary(source, name, [_solved(case, method) for case in cases])
+
+
+def _summary(source: str, method: str, parts: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Summary:
+    printed, ours, error = (np.concatenate(column) for column in zip(*parts, strict=True))
+    rounding = np.array([0.5 * 10.0 ** -_decimals(value) for value in printed]) / printed
+    deviation = np.abs(ours / printed - 1)
+    outside = int((deviation > rounding + error).sum())
+    return Summary(source, method, len(ours), rounding.max(), deviation.max(), error.max(), outside)
+
+
+def _solved(case: dict[str, Any], method: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Published values, ours, and our relative errors."""
+    scene = nondimensional(case)
+    if "frequency" in case:
+        found = natural_modes(scene, case["gamma"], len(case["frequency"]), method)
+        return np.array(case["frequency"]), np.abs(found.eigenvalue), found.error
+    point = critical_point(scene, method)
+    return np.array([case["gamma"]]), np.array([point.speed]), np.array([point.error])
+
+
+def nondimensional(case: dict[str, Any]) -> Scene:
+    """The scene of a nondimensional case: root stiffness, root mass per length and length are 1.
+
+    Parameters
+    ----------
+    case : dict
+        A ``case`` or ``critical`` of ``rotating_beams.toml``.
+
+    Returns
+    -------
+    Scene
+        Its eigenvalues at gamma rad/s are lambda in size.
+    """
+    delta, alpha = case["delta"], case.get("alpha")
+    beam = Beam.from_stiffness(
+        1.0,
+        mass_per_length=Polynomial(case["mass"]),
+        bending_stiffness=Polynomial(case["stiffness"]),
+        axial_stiffness=alpha and alpha**2,
+        tip=TipMass(**case["tip"]) if "tip" in case else None,
+    )
+    mount = Mount(abs(delta), 0.0 if delta < 0 else np.pi, float(np.radians(case["bending_angle_deg"])))
+    return Scene(beam, mount, stretch=alpha is not None)
+
+
+def _decimals(value: float) -> int:
+    """Decimals with which a value is written."""
+    return len(np.format_float_positional(value).partition(".")[2])

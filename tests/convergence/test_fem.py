@@ -1,0 +1,32 @@
+"""Convergence of the finite elements, without extrapolation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.estimate import Model
+from tests.reference.power_series import bending_eigenvalues
+from tests.scenes import of_case
+
+CASE = {"model": "bending", "delta": 1.0, "bending_angle_deg": 90.0, "mass": [1.0, -0.5], "stiffness": [1.0, -0.8, 0.2]}
+
+
+@pytest.mark.parametrize("mesh", ["uniform", "graded"])
+def test_fourth_order(mesh: str) -> None:
+    expected = np.sqrt(float(bending_eigenvalues(6, 1, np.pi / 2, (1, -0.5), (1, -0.8, 0.2), count=1)[0]))
+    sizes = np.array([5, 10, 20, 40])
+    errors = []
+    for n in sizes:
+        model = Model(of_case(CASE), bd.Fem(int(n), mesh))  # pyright: ignore[reportArgumentType]
+        errors.append(abs(model.solver.solve(np.array([6.0]), 1).eigenvalue[0, 0]) / expected - 1)
+    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
+    assert -4.3 < slope < -3.7
+
+
+def test_extrapolation_gains_at_least_an_order() -> None:
+    expected = np.sqrt(float(bending_eigenvalues(6, 1, np.pi / 2, (1, -0.5), (1, -0.8, 0.2), count=1)[0]))
+    plain = Model(of_case(CASE), bd.Fem(40)).solver.solve(np.array([6.0]), 1).eigenvalue[0, 0]
+    better = bd.natural_modes(of_case(CASE), 6.0, 1, bd.Fem(40)).eigenvalue[0]
+    assert abs(abs(better) - expected) < 0.05 * abs(abs(plain) - expected)

@@ -1,0 +1,50 @@
+"""Both discretizations against published rotating beams and the power-series reference."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from tests.scenes import generated_cases, of_case, published_cases
+
+RITZ, FEM = 1e-9, 1e-6  # promised relative errors of the defaults
+BOUNDS = {"ritz": RITZ, "fem": FEM}
+
+published = pytest.mark.parametrize("case", published_cases(), ids=lambda c: c["name"])
+generated = pytest.mark.parametrize("case", generated_cases(), ids=lambda c: c["name"])
+methods = pytest.mark.parametrize("method", ["ritz", "fem"])
+
+
+def solve(case: dict[str, Any], modes: int, method: str) -> bd.Modes:
+    return bd.natural_modes(of_case(case), case["gamma"], modes, method)
+
+
+@methods
+@published
+def test_published(case: dict[str, Any], method: str) -> None:
+    expected = np.array(case["frequency"])
+    found = solve(case, len(expected), method)
+    np.testing.assert_allclose(2 * np.pi * found.frequency, expected, rtol=BOUNDS[method])
+
+
+@methods
+@generated
+def test_generated_and_its_error(case: dict[str, Any], method: str) -> None:
+    squared = np.array([float(text) for text in case["lambda_squared"]])
+    found = solve(case, len(squared), method)
+    np.testing.assert_array_equal(np.isnan(found.frequency), squared < 0)
+    true = np.abs((found.eigenvalue**2).real / -squared - 1) / 2
+    assert (true < BOUNDS[method]).all()
+    assert (true <= found.error).all()
+
+
+@pytest.mark.parametrize("method", ["ritz", "fem"])
+def test_critical_speeds(method: str) -> None:
+    from beamdyn.published import load
+
+    for case in load("rotating_beams")["critical"]:
+        speed = bd.critical_speed(of_case(case | {"model": "bending"}), method)
+        np.testing.assert_allclose(speed, case["gamma"], rtol=BOUNDS[method])

@@ -1,0 +1,46 @@
+"""Scenes that several tests share."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import tomllib
+from numpy.polynomial import Polynomial
+
+import beamdyn as bd
+from beamdyn.published import load
+
+HARVESTER = bd.Scene(
+    bd.Beam.rectangular(
+        length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0
+    ),
+    bd.Mount(radius=0.215),
+)
+
+
+def of_case(case: dict[str, Any]) -> bd.Scene:
+    """The scene of a nondimensional case of the published or generated tables: length, mass and stiffness 1."""
+    alpha, delta = case.get("alpha"), case["delta"]
+    beam = bd.Beam.from_stiffness(
+        length=1.0,
+        mass_per_length=Polynomial(case["mass"]),
+        bending_stiffness=Polynomial(case["stiffness"]),
+        axial_stiffness=None if alpha is None else alpha**2,
+        tip=bd.TipMass(**case["tip"]) if "tip" in case else None,
+    )
+    angle = 0.0 if delta < 0 else math.pi
+    mount = bd.Mount(abs(delta), angle, math.radians(case["bending_angle_deg"]))
+    return bd.Scene(beam, mount, stretch=case["model"] == "coupled")
+
+
+def published_cases() -> list[dict[str, Any]]:
+    """Cases printed in the literature, to the digits of the published file."""
+    return load("rotating_beams")["case"]
+
+
+def generated_cases() -> list[dict[str, Any]]:
+    """Cases of the power-series reference, to 20 digits."""
+    path = Path(__file__).parent / "data" / "rotating_beams_more.toml"
+    return tomllib.loads(path.read_text())["case"]
