@@ -40,12 +40,12 @@ _HOME = {
     "SteadyRotation": "motion",
     "Table": "profile",
     "TipMass": "beam",
-    "critical_point": "spectrum",
-    "critical_speed": "spectrum",
+    "critical_point": "stability",
+    "critical_speed": "stability",
     "frequency_locus": "spectrum",
     "load_scene": "config",
     "natural_modes": "spectrum",
-    "setting_angle_limits": "spectrum",
+    "setting_angle_limits": "stability",
 }
 
 if TYPE_CHECKING:
@@ -56,15 +56,8 @@ if TYPE_CHECKING:
     from beamdyn.profile import Table
     from beamdyn.ritz import Ritz
     from beamdyn.scene import Mount, Scene
-    from beamdyn.spectrum import (
-        Locus,
-        Modes,
-        critical_point,
-        critical_speed,
-        frequency_locus,
-        natural_modes,
-        setting_angle_limits,
-    )
+    from beamdyn.spectrum import Locus, Modes, frequency_locus, natural_modes
+    from beamdyn.stability import critical_point, critical_speed, setting_angle_limits
 
 
 def __getattr__(name: str) -> Any:

@@ -206,7 +206,7 @@ class CoreSection(Section):
 
     @model_validator(mode="after")
     def _core_accepts(self) -> CoreSection:
-        with np.errstate(all="ignore"):  # what overflows is refused because it is not finite
+        with np.errstate(all="ignore"):  # a warning of numpy would be no answer to a mistyped exponent
             self.core  # noqa: B018
         return self
 
@@ -303,7 +303,8 @@ def _to_fractions(given: Any, length: float) -> Any:
     if isinstance(given, Table):
         return Table(_to_fractions(given.stations, length), given.values)
     if isinstance(given, list | tuple):
-        return tuple(x / length if isinstance(x, Metres) else x for x in given)
+        # Rounded, or 20 mm of 50 mm would lie beside the fraction 0.4, with a sliver between them.
+        return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
 
 

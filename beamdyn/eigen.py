@@ -80,7 +80,12 @@ class Solver:
         if self.pencil.conservative:
             return self._conservative(speeds, count)
         solved = [self._coupled(speed, count) for speed in speeds]
-        return Eigen(*(np.array([getattr(e, name)[0] for e in solved]) for name in ("eigenvalue", "vector", "rounding")))
+        return Eigen(
+            *(
+                np.array([getattr(e, name)[0] for e in solved])
+                for name in ("eigenvalue", "vector", "rounding")
+            )
+        )
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
         """Eigenvalues alone, without vectors where that saves time."""
@@ -139,14 +144,18 @@ def _symmetric(A: np.ndarray) -> np.ndarray:
     return (A + np.swapaxes(A, -1, -2)) / 2
 
 
-def _scaled(M: np.ndarray, d: np.ndarray, count: int, rest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _scaled(
+    M: np.ndarray, d: np.ndarray, count: int, rest: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Modes of (diag d, M) for positive d of shape (S, n): squared frequencies, vectors, rounding."""
     scale = 1 / np.sqrt(d)
     mu, z = _largest(scale[:, :, None] * M * scale[:, None, :], count)
     return 1 / mu, z * scale[:, :, None] / np.sqrt(mu)[:, None, :], _FORWARD * mu[:, :1] / mu
 
 
-def _shifted(M: np.ndarray, d: np.ndarray, count: int, rest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _shifted(
+    M: np.ndarray, d: np.ndarray, count: int, rest: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same for any d, through the definite pencil (diag d + shift M, M)."""
     shift = _definite_shift(M, d, rest)
     K = shift[:, None, None] * M
@@ -206,7 +215,7 @@ def _general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, n
 
 def _one_of_each_pair(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """The lowest modes: s with Im s > 0, unstable real ones, and the slower of two decaying real ones."""
-    inverse = np.where(np.abs(inverse.real) < _REAL * np.abs(inverse), 1j * inverse.imag, inverse)
+    inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
     s = 1 / inverse
     oscillating = np.flatnonzero(s.imag > 0)

@@ -131,7 +131,9 @@ def _ladder(method: str, scene: Scene, modes: int) -> Iterator[Discretization]:
 
         step = _roomy(Fem(max(80, 2 * segments, 4 * modes)), modes)
     else:
-        raise ValueError(f"method = {method!r}: give 'ritz', 'fem', or a beamdyn.Ritz or beamdyn.Fem of your own")
+        raise ValueError(
+            f"method = {method!r}: give 'ritz', 'fem', or a beamdyn.Ritz or beamdyn.Fem of your own"
+        )
     while step is not None:
         yield step
         step = step.finer()

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, MeshLine
-from skfem.helpers import dd, dot, grad
 
 from beamdyn.beam import Beam
 from beamdyn.common.checks import count
@@ -36,7 +35,9 @@ class Fem:
 
     def __post_init__(self) -> None:
         if count("elements", self.elements, least=2) > MOST_ELEMENTS:
-            raise ValueError(f"elements = {self.elements}: at most {MOST_ELEMENTS}; method='ritz' needs far fewer")
+            raise ValueError(
+                f"elements = {self.elements}: at most {MOST_ELEMENTS}; method='ritz' needs far fewer"
+            )
         if self.mesh not in ("graded", "uniform"):
             raise ValueError(f"mesh = {self.mesh!r}: give 'graded' or 'uniform'")
 
@@ -138,7 +139,7 @@ class FemSpace:
     @property
     def free(self) -> np.ndarray:
         """Degrees of freedom that the root leaves free."""
-        root = self.basis.nodal_dofs[: self.held, 0]
+        root = np.asarray(self.basis.nodal_dofs)[: self.held, 0]
         return np.setdiff1d(np.arange(self.basis.N), root)
 
     @property
@@ -172,28 +173,31 @@ class FemSpace:
         values = np.zeros((self.basis.N, x.size))
         for k in range(self.basis.Nbfun):
             field = element.gbasis(mapping, local, k, tind=cells)[0]
-            derivative = field if order == 0 else (field.grad, field.hess)[order - 1]
+            derivative: Any = field if order == 0 else (field.grad, field.hess)[order - 1]
             values[self.basis.element_dofs[k, cells], np.arange(x.size)] = np.reshape(derivative, x.size)
         return values[self.free]
 
 
+# Weak forms; u and v are scikit-fem's fields, whose types its forms leave open
+
+
 @BilinearForm
-def _product(u, v, w):  # noqa: ANN001, ANN202
+def _product(u: Any, v: Any, w: Any) -> Any:
     return w.weight * u * v
 
 
 @BilinearForm
-def _slopes(u, v, w):  # noqa: ANN001, ANN202
-    return w.weight * dot(grad(u), grad(v))
+def _slopes(u: Any, v: Any, w: Any) -> Any:
+    return w.weight * u.grad[0] * v.grad[0]
 
 
 @BilinearForm
-def _curvatures(u, v, w):  # noqa: ANN001, ANN202
-    return w.weight * dd(u)[0][0] * dd(v)[0][0]
+def _curvatures(u: Any, v: Any, w: Any) -> Any:
+    return w.weight * u.hess[0][0] * v.hess[0][0]
 
 
 @LinearForm
-def _load(v, w):  # noqa: ANN001, ANN202
+def _load(v: Any, w: Any) -> Any:
     return w.weight * v
 
 

@@ -196,7 +196,7 @@ def _from_function(name: str, function: Callable, edges: Sequence[float]) -> Pro
 
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
-    """Legendre series of a user's function on [a, b], of the lowest tried degree that is exact to rounding."""
+    """Legendre series of a user's function on [a, b], of the lowest tried degree exact to rounding."""
     check = np.linspace(a, b, 259)[1:-1]
     wanted = _sample(name, function, check)
     local = ((check - a) - (b - check)) / (b - a)
@@ -228,7 +228,9 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
         )
     bad = ~np.isfinite(values)
     if bad.any():
-        raise ValueError(f"{name}: the function is {values[bad][0]} at x/L = {x[bad][0]:.3f}; it must be finite")
+        raise ValueError(
+            f"{name}: the function is {values[bad][0]} at x/L = {x[bad][0]:.3f}; it must be finite"
+        )
     return values
 
 

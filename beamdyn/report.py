@@ -6,13 +6,19 @@ import math
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
+import numpy as np
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
+if TYPE_CHECKING:
+    from beamdyn.spectrum import Locus, Modes
+    from beamdyn.stability import SettingAngleLimits
+
 _DIGITS = 10  # most that a table shows
-_PIPE_WIDTH = 128  # of tables that go to a file or another program
+_PIPE_WIDTH = 112  # of tables that go to a file or another program
 
 
 def console() -> Console:
@@ -52,10 +58,12 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
         decimals = min(decimals, math.floor(-math.log10(2 * error)))
     if decimals + lead < 0:
         return f"0 ± {abs(value) + error:.1g}"
-    return f"{value:.{max(decimals, 0)}f}" if -4 < lead and decimals >= 0 else f"{value:.{decimals + lead}e}"
+    return f"{value:.{decimals}f}" if lead > -4 and decimals >= 0 else f"{value:.{decimals + lead}e}"
 
 
-def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)) -> Table:
+def table(
+    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)
+) -> Table:
     """A table of text.
 
     Parameters
@@ -149,10 +157,11 @@ class Comparison:
     def cells(self) -> list[str]:
         """Its row of the table."""
         return [
-            f"{self.what} [{self.unit}]",
+            self.what,
             self.source,
             self._published(),
             supported(self.ours, self.error, 12),
+            self.unit,
             self._deviation(),
             self.verdict,
         ]
@@ -169,10 +178,76 @@ class Comparison:
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Table:
-    """The table of comparisons, with a line between different `what`."""
+    """The table of comparisons, with a line where the first two words of `what` change."""
     cells: list[list[str]] = []
     for row in rows:
-        if cells and cells[-1][0].split(",")[0] != row.what.split(",")[0]:
+        if cells and _topic(cells[-1][0]) != _topic(row.what):
             cells.append([])
         cells.append(row.cells())
-    return table(title, ("what", "published by", "published", "ours", "deviation", "verdict"), cells, (0, 1, 5))
+    return table(
+        title,
+        ("what", "published by", "published", "ours", "unit", "deviation", "verdict"),
+        cells,
+        (0, 1, 4, 6),
+    )
+
+
+def _topic(what: str) -> list[str]:
+    return what.replace(",", "").split()[:2]
+
+
+# Analyses -------------------------------------------------------------------------------------------
+
+_SHOWN = 16  # rows of a locus, apart from those where a mode turns unstable
+
+
+def modes_table(found: Modes) -> Table:
+    """The table of natural modes."""
+    rows = []
+    size = np.abs(found.eigenvalue) * found.error  # absolute error of the eigenvalues
+    for i, status in enumerate(found.status):
+        frequency = supported(found.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
+        growth = "0" if found.growth_rate[i] == 0 else supported(found.growth_rate[i], size[i])
+        rows.append((str(i + 1), frequency, f"{found.error[i]:.0e}", growth, str(status)))
+    title = f"Natural modes at {found.speed:.10g} rad/s, by {found.provenance.method}"
+    return table(
+        title, ("mode", "frequency [Hz]", "relative error", "growth rate [1/s]", "status"), rows, (4,)
+    )
+
+
+def locus_table(found: Locus) -> Table:
+    """The table of a locus: some of its speeds, each frequency or, where there is none, the growth rate."""
+    rows = []
+    size = np.abs(found.eigenvalue) * found.error
+    for s in (shown := _shown(found)):
+        cells = [_cell(found, size, s, mode) for mode in range(found.frequency.shape[1])]
+        sure = f"{found.confidence[s].min():.2f}"
+        rows.append((f"{found.speeds[s]:.8g}", *cells, f"{found.error[s].max():.0e}", sure))
+    heads = [f"mode {mode} [Hz]" for mode in range(1, found.frequency.shape[1] + 1)]
+    count = len(found.speeds)
+    part = f" ({len(shown)} of {count} speeds; --csv or --json has all)" if len(shown) < count else ""
+    title = f"Natural frequencies, by {found.provenance.method}{part}"
+    return table(title, ("speed [rad/s]", *heads, "largest error", "tracking"), rows, ())
+
+
+def _shown(found: Locus) -> np.ndarray:
+    """Indices of speeds for people: evenly spread, and those before and after a change of status."""
+    count = len(found.speeds)
+    spread = np.linspace(0, count - 1, min(count, _SHOWN)).round().astype(int)
+    change = np.flatnonzero((found.status[1:] != found.status[:-1]).any(axis=1))[:_SHOWN]
+    return np.unique(np.concatenate([spread, change, change + 1]))
+
+
+def _cell(found: Locus, size: np.ndarray, s: int, mode: int) -> str:
+    if found.status[s, mode] == "stable":
+        return supported(found.frequency[s, mode], size[s, mode] / (2 * np.pi))
+    return f"{found.status[s, mode]}, {found.growth_rate[s, mode]:+.3g} 1/s"
+
+
+def limits_table(found: SettingAngleLimits) -> Table:
+    """The table of setting-angle limits."""
+    degrees = [supported(float(np.degrees(limit)), float(np.degrees(found.error))) for limit in found]
+    meaning = "below it the first frequency falls with speed", "above it it rises"
+    title = f"Setting-angle limits up to {found.top_speed:.10g} rad/s, by {found.provenance.method}"
+    rows = zip(("first", "second"), degrees, meaning, strict=True)
+    return table(title, ("limit", "angle [deg]", ""), rows, (0, 2))

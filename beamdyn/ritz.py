@@ -1,4 +1,4 @@
-"""Assumed modes: Rayleigh-Ritz spaces of integrated Legendre polynomials or of clamped-free eigenfunctions."""
+"""Assumed modes: Rayleigh-Ritz spaces of integrated Legendre polynomials or of eigenfunctions at rest."""
 
 from __future__ import annotations
 
@@ -39,7 +39,9 @@ class Ritz:
 
     def __post_init__(self) -> None:
         if count("functions", self.functions, least=1) > MOST_FUNCTIONS:
-            raise ValueError(f"functions = {self.functions}: at most {MOST_FUNCTIONS}; use fewer, or method='fem'")
+            raise ValueError(
+                f"functions = {self.functions}: at most {MOST_FUNCTIONS}; use fewer, or method='fem'"
+            )
         if self.basis not in _BASES:
             raise ValueError(f"basis = {self.basis!r}: give one of {', '.join(map(repr, _BASES))}")
 
@@ -164,6 +166,7 @@ def _integrated_legendre(functions: int, edges: np.ndarray, integrations: int) -
     Integrated from the root they satisfy its conditions, join smoothly at breakpoints and leave the
     higher derivatives free to jump there; scaled so that the highest derivatives are orthonormal.
     """
+
     def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
         parts = pairwise(edges)
         return np.concatenate([_on_segment(functions, a, b, xi, integrations - order) for a, b in parts])
@@ -177,7 +180,7 @@ def _on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -
     scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))
     if integrations < 0:
         raise ValueError("only as many derivatives as the basis was integrated")
-    series = [scale * np.eye(n)]
+    series: list[np.ndarray] = [scale * np.eye(n)]
     for _ in range(integrations):
         series.append(legendre.legint(series[-1], lbnd=-1, scl=half))
     inside = (xi >= a) & (xi <= b)

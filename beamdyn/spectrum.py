@@ -1,21 +1,18 @@
-"""Analyses at steady speed: modes, loci, the critical speed, and the setting angles of changing character."""
+"""Natural modes at a steady speed, and their loci over speeds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.linalg import eigh
-from scipy.optimize import brentq
 
 from beamdyn import __version__
-from beamdyn.common.checks import ascending, count, positive, real
-from beamdyn.eigen import Solver
-from beamdyn.equations import SteadyPencil
-from beamdyn.estimate import TARGET, Estimated, Model, choose, estimated
+from beamdyn.common.checks import ascending, count, real
+from beamdyn.estimate import Estimated, Model, choose, estimated
 from beamdyn.operators import Discretization, tension
 from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
@@ -25,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _LARGE_STRAIN = 0.01
-_LARGE_DEFLECTION = 0.1  # of the length: the limit of linear theory
+LARGE_DEFLECTION = 0.1  # of the length: the limit of linear theory
 _CANDIDATES = 2  # modes above the wanted ones that tracking may exchange with them
 
 
@@ -96,11 +93,20 @@ class Modes(Result):
         from beamdyn.plots import plot_shapes
 
         x = np.linspace(0, self.scene.beam.length, 201)
-        return plot_shapes(x, self.shape(x).real, self.labels(), ax)
+        return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax)
+
+    def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
+        """Write the mode shapes as a mesh file that opens in ParaView; see `beamdyn.export.write_shapes`."""
+        from beamdyn.export import write_shapes
+
+        x = np.linspace(0, self.scene.beam.length, 101)
+        write_shapes(path, x, np.real(self.shape(x)), self.labels(), width, force)
 
     def labels(self) -> list[str]:
         """One line of text for each mode."""
-        return [_label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)]
+        return [
+            _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
+        ]
 
 
 def _label(i: int, frequency: float, growth: float) -> str:
@@ -139,17 +145,17 @@ def natural_modes(
     bending = found.model.equations.operators.bending
     part = vectors[: len(bending.P)]
     status = _status(s)
-    deflection, strain = _static(found.model, speeds)
+    deflection, strain = static_load(found.model, speeds)
     return Modes(
         speed=float(speed),
         frequency=_frequency(s, status),
         error=found.error[0],
-        growth_rate=s.real + 0.0,
+        growth_rate=np.real(s) + 0.0,
         status=status,
         eigenvalue=s,
-        tip=(bending.space.end(0) @ part).real,
-        load=_real_if_close(bending.P @ part),
-        angular_load=_real_if_close(bending.Q @ part),
+        tip=np.real(bending.space.end(0) @ part),
+        load=np.real(bending.P @ part),
+        angular_load=np.real(bending.Q @ part),
         static_deflection=float(deflection[0]),
         axial_strain=float(strain[0]),
         warnings=tuple(_warnings(scene, speeds, deflection, strain, found.error, status[None])),
@@ -168,26 +174,39 @@ def _tip_positive(model: Model, vectors: np.ndarray) -> np.ndarray:
     return vectors / phase
 
 
-def _real_if_close(values: np.ndarray) -> np.ndarray:
-    return values.real if np.iscomplexobj(values) else values
-
-
 def _status(s: np.ndarray) -> np.ndarray:
-    growing, turning = s.real > 0, s.imag != 0
+    growing, turning = np.real(s) > 0, np.imag(s) != 0
     names = ["flutter", "divergence", "stable"]
-    return np.select([growing & turning, growing, turning], names, np.where(s == 0, "divergence", "overdamped"))
+    return np.select(
+        [growing & turning, growing, turning], names, np.where(s == 0, "divergence", "overdamped")
+    )
 
 
 def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
-    return np.where(status == "stable", s.imag / (2 * np.pi), np.nan)
+    return np.where(status == "stable", np.imag(s) / (2 * np.pi), np.nan)
 
 
-def _static(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Static tip deflection [m] (nan past the critical speed) and largest static axial strain."""
+def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Static effects of rotation.
+
+    Parameters
+    ----------
+    model : Model
+        A discretized scene.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    deflection : ndarray, shape (S,)
+        Static tip deflection [m]; nan from the critical speed on.
+    strain : ndarray, shape (S,)
+        Largest static axial strain; nan if the axial stiffness is not given.
+    """
     solver, beam, mount = model.solver, model.scene.beam, model.scene.mount
     bending = model.equations.operators.bending
     stiffness = 1 + speeds[:, None] ** 2 * solver.growth
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         q = (solver.basis.T @ solver.pencil.f2) * speeds[:, None] ** 2 / stiffness
     tip = q @ (solver.basis[: len(bending.P)].T @ bending.space.end(0))
     deflection = np.where(stiffness.min(axis=1) > 0, tip, np.nan)
@@ -212,8 +231,8 @@ def _warnings(
         s = int(unstable.any(axis=1).argmax())
         yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
     if strain.max(initial=0) > _LARGE_STRAIN:
-        yield f"static axial strain reaches {strain.max():.2g}: above 1 % the material model is in doubt"
-    bent = np.abs(deflection) > _LARGE_DEFLECTION * scene.beam.length
+        yield f"static axial strain reaches {strain.max():.2g}: above 1 % stretch is not negligible"
+    bent = np.abs(deflection) > LARGE_DEFLECTION * scene.beam.length
     if bent.any():
         yield _bent(scene, speeds[bent][0], deflection[bent][0])
     if error.max() > 1e-6:
@@ -222,8 +241,8 @@ def _warnings(
 
 def _bent(scene: Scene, speed: float, deflection: float) -> str:
     return (
-        f"at {speed:.6g} rad/s the rotation bends the tip by {abs(deflection) / scene.beam.length:.2g} of the "
-        "length: past 0.1 the answer is outside linear theory"
+        f"at {speed:.6g} rad/s the rotation bends the tip by {abs(deflection) / scene.beam.length:.2g} of "
+        "the length: past 0.1 the answer is outside linear theory"
     )
 
 
@@ -317,11 +336,11 @@ def frequency_locus(
     s = np.take_along_axis(found.eigen.eigenvalue, order, axis=1)[:, :modes]
     error = _tracked_error(found, order[:, :modes])
     status = _status(s)
-    deflection, strain = _static(found.model, speeds)
+    deflection, strain = static_load(found.model, speeds)
     return Locus(
         speeds=speeds,
         frequency=_frequency(s, status),
-        growth_rate=s.real + 0.0,
+        growth_rate=np.real(s) + 0.0,
         confidence=confidence[:, :modes],
         error=error,
         status=status,
@@ -335,220 +354,8 @@ def frequency_locus(
 
 
 def _tracked_error(found: Estimated, order: np.ndarray) -> np.ndarray:
-    """Errors in tracked order; a mode that comes from above the compared ones has the largest of its speed."""
+    """Errors in tracked order; a mode from above the compared ones gets the largest error of its speed."""
     compared = found.error.shape[1]
     beyond = np.repeat(found.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
     beyond[:, :compared] = found.error[:, : beyond.shape[1]]
     return np.take_along_axis(beyond, order, axis=1)
-
-
-# Critical speed -----------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class CriticalPoint(Result):
-    """Where the stiffness of the rotating beam vanishes.
-
-    Parameters
-    ----------
-    speed : float
-        Critical speed [rad/s]; inf if there is none.
-    error : float
-        Its estimated relative error.
-    provenance : Provenance
-        How it was found.
-    """
-
-    speed: float
-    error: float
-    provenance: Provenance
-
-
-def critical_speed(scene: Scene, method: str | Discretization = "ritz") -> float:
-    """Speed at which the beam buckles dynamically [rad/s]; inf if there is none.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene; its motion is not used.
-    method : {"ritz", "fem"} or Discretization
-        As for `natural_modes`.
-
-    Returns
-    -------
-    float
-    """
-    return critical_point(scene, method).speed
-
-
-def critical_point(scene: Scene, method: str | Discretization = "ritz") -> CriticalPoint:
-    """The critical speed with its error: the lowest speed whose stiffness K0 + omega^2 K2 is singular.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene; its motion is not used.
-    method : {"ritz", "fem"} or Discretization
-        As for `natural_modes`.
-
-    Returns
-    -------
-    CriticalPoint
-    """
-    start = perf_counter()
-    model = choose(scene, method, np.zeros(1), 1)
-    while True:
-        speed, error = _critical(model)
-        finer = None if not isinstance(method, str) else model.discretization.finer()
-        if finer is None or error <= max(TARGET, 3 * model.solver.critical_rounding):
-            break
-        model = Model(scene, finer)
-    names = str(model.discretization), str(model.coarser().discretization)
-    return CriticalPoint(speed, error, Provenance(__version__, *names, wall_time=perf_counter() - start))
-
-
-def _critical(model: Model) -> tuple[float, float]:
-    fine, coarse = model.solver.critical_speed, model.coarser().solver.critical_speed
-    if np.isinf(fine):
-        return fine, 0.0
-    if np.isinf(coarse):
-        return fine, 1.0
-    order = model.discretization.order
-    speed = fine if order is None else fine + (fine - coarse) / (2**order - 1)
-    return float(speed), float(abs(fine - coarse) / speed + model.solver.critical_rounding + model.discretization.rounding)
-
-
-# Setting angles at which the locus changes its character -----------------------------------------
-
-
-@dataclass(frozen=True)
-class SettingAngleLimits(Result):
-    """Setting angles between which the first frequency rises and then falls with speed; unpacks as two.
-
-    Below `first` it falls from rest on; between the two it rises and then falls below the top speed;
-    above `second` it rises up to the top speed.
-
-    Parameters
-    ----------
-    first, second : float
-        The limits [rad]; nan where there is none.
-    error : float
-        Estimated error of the two [rad].
-    top_speed : float
-        The top speed [rad/s].
-    static_deflection : float
-        Static tip deflection at the second limit and the top speed, as a fraction of the length.
-    warnings : tuple of str
-        What limits the answer.
-    provenance : Provenance
-        How it was found.
-    """
-
-    first: float
-    second: float
-    error: float
-    top_speed: float
-    static_deflection: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-
-    def __iter__(self) -> Iterator[float]:
-        return iter((self.first, self.second))
-
-
-def setting_angle_limits(
-    scene: Scene, top_speed: float, method: str | Discretization = "ritz"
-) -> SettingAngleLimits:
-    """Setting angles at which the first frequency stops falling, and starts rising up to the top speed.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene; its setting angle, motion, damping and stretch are not used.
-    top_speed : float
-        Top speed [rad/s]; inf only with a basis of given size, as its answer is of that basis and
-        not of the beam.
-    method : {"ritz", "fem"} or Discretization
-        As for `natural_modes`.
-
-    Returns
-    -------
-    SettingAngleLimits
-
-    Raises
-    ------
-    ValueError
-        If the top speed is not positive, or infinite without a basis of given size.
-    """
-    start = perf_counter()
-    if not (np.isinf(top_speed) and not isinstance(method, str)):
-        remedy = "a converged limit needs a finite top speed; method=Ritz(5, 'eigenfunctions') allows inf"
-        positive("top_speed", top_speed, "rad/s", remedy)
-    scene = replace(scene, damping_ratio=0.0, stretch=False)
-    speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
-    tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
-    model = choose(tangential, method, speeds, 1)
-    first, second = _limits(model, top_speed)
-    coarse = model.coarser()
-    rough = _limits(coarse, top_speed)
-    bent = _bent_at(scene, second, top_speed, model)
-    return SettingAngleLimits(
-        first=first,
-        second=second,
-        error=float(np.nanmax([abs(first - rough[0]), abs(second - rough[1]), 0.0])) + 1e-14,
-        top_speed=float(top_speed),
-        static_deflection=bent,
-        warnings=tuple(_limit_warnings(first, second, bent)),
-        provenance=Provenance(
-            __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
-        ),
-    )
-
-
-def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Both limits from the parts of the stiffness per squared speed, K2 = A - cos(phi) r KGA."""
-    pencil, bending = tangential.solver.pencil, tangential.equations.operators.bending
-    A, B = pencil.K2, tangential.scene.mount.radius * bending.KGA
-    v = tangential.solver.solve(np.zeros(1), 1).vector[0, :, 0]
-    first = _arccos(v @ A @ v, v @ B @ v)
-    if np.isinf(top_speed):
-        return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
-    return first, _second_limit(pencil, A, B, first, top_speed)
-
-
-def _arccos(a: float, b: float) -> float:
-    return float(np.arccos(a / b)) if abs(a) <= abs(b) and b else np.nan
-
-
-def _second_limit(pencil: SteadyPencil, A: np.ndarray, B: np.ndarray, first: float, top_speed: float) -> float:
-    """The angle at which the slope of the first squared frequency vanishes at the top speed."""
-
-    def slope(phi: float) -> float:
-        K2 = A - np.cos(phi) * B
-        v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
-        return float(v @ K2 @ v)
-
-    low = 0.0 if np.isnan(first) else first
-    if slope(low) * slope(np.pi) >= 0:
-        return np.nan
-    return float(brentq(slope, low, np.pi, xtol=1e-15, rtol=1e-15))  # pyright: ignore[reportArgumentType]
-
-
-def _bent_at(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
-    if np.isnan(phi) or np.isinf(top_speed):
-        return np.nan
-    mounted = replace(scene, mount=replace(scene.mount, setting_angle=phi))
-    deflection, _ = _static(Model(mounted, model.discretization), np.array([top_speed]))
-    return float(abs(deflection[0]) / scene.beam.length)
-
-
-def _limit_warnings(first: float, second: float, bent: float) -> Iterator[str]:
-    if np.isnan(first):
-        yield "no first limit: at rest the first frequency changes the same way at every setting angle"
-    if np.isnan(second):
-        yield "no second limit: at the top speed the first frequency changes the same way at every setting angle"
-    if not bent <= _LARGE_DEFLECTION:
-        yield (
-            "at such angles the rotation bends the beam past linear theory "
-            f"(static tip deflection {bent:.3g} of the length at the top speed): a result of the linear equations"
-        )

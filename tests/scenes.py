@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 from typing import Any
 
-import tomllib
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.published import load
 
 HARVESTER = bd.Scene(
-    bd.Beam.rectangular(
-        length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0
-    ),
+    bd.Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0),
     bd.Mount(radius=0.215),
 )
 
 
 def of_case(case: dict[str, Any]) -> bd.Scene:
-    """The scene of a nondimensional case of the published or generated tables: length, mass and stiffness 1."""
+    """The scene of a nondimensional case of the published or generated tables."""
     alpha, delta = case.get("alpha"), case["delta"]
     beam = bd.Beam.from_stiffness(
         length=1.0,

@@ -57,8 +57,8 @@ class Quantity:
         """Bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
         words = {
             "greater than": self.above,
-            "below": self.below,
             "at least": self.least,
+            "below": self.below,
             "at most": self.most,
         }
         return ", ".join(f"{word} {bound:g}" for word, bound in words.items() if bound is not None)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # pint costs 0.3 s: it is loaded with the first quantity
     from pint import Unit, UnitRegistry
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?\d)?"
+_FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?[1-9])?"
 _SEPARATOR = r"(?:\s*[*/]\s*|\s+)"
 _TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*)?)\s*", re.ASCII)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
@@ -110,20 +110,18 @@ def _registry() -> UnitRegistry:
     return registry
 
 
-def _split(text: object, unit: str) -> tuple[str, str]:
-    """The number and the unit of a text, as written."""
-    if isinstance(text, int | float) and not isinstance(text, bool):
-        text, match = str(text), _TEXT.fullmatch(str(text))
-    else:
-        match = _TEXT.fullmatch(text.translate(_PLAIN)) if isinstance(text, str) else None
-        text = show(text)
+def _split(given: object, unit: str) -> tuple[str, str]:
+    """The number and the unit, as written."""
+    bare = isinstance(given, int | float) and not isinstance(given, bool)
+    text = str(given) if bare or isinstance(given, str) else ""
+    match = _TEXT.fullmatch(text.translate(_PLAIN))
     if match is None:
-        raise ValueError(f'{text}: not a number with a unit; give e.g. "1 {_usual(unit)}"')
-    number, given = match.groups()
-    if not given and unit:
+        raise ValueError(f'{show(given)}: not a number with a unit; give e.g. "1 {_usual(unit)}"')
+    number, name = match.groups()
+    if unit and not name:
         choices = dict.fromkeys((f'"{number} {unit}"', f'"{number} {_usual(unit)}"'))
-        raise ValueError(f"{text}: give a unit, e.g. {' or '.join(choices)}")
-    return number, given
+        raise ValueError(f"{show(given)}: give a unit, e.g. {' or '.join(choices)}")
+    return number, name
 
 
 @cache

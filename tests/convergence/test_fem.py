@@ -10,7 +10,13 @@ from beamdyn.estimate import Model
 from tests.reference.power_series import bending_eigenvalues
 from tests.scenes import of_case
 
-CASE = {"model": "bending", "delta": 1.0, "bending_angle_deg": 90.0, "mass": [1.0, -0.5], "stiffness": [1.0, -0.8, 0.2]}
+CASE = {
+    "model": "bending",
+    "delta": 1.0,
+    "bending_angle_deg": 90.0,
+    "mass": [1.0, -0.5],
+    "stiffness": [1.0, -0.8, 0.2],
+}
 
 
 @pytest.mark.parametrize("mesh", ["uniform", "graded"])

@@ -47,7 +47,9 @@ def test_eigenfunctions_are_stable_to_number_150() -> None:
     """Each is its own mode at rest: the Rayleigh quotients are the fourth powers of the wave numbers."""
     op = assemble(of_case(UNIFORM).beam, bd.Ritz(150, "eigenfunctions")).bending
     b = np.sqrt(np.sqrt(np.diag(op.KB) / np.diag(op.M)))
-    np.testing.assert_allclose(b[9:], np.pi * (np.arange(10, 151) - 0.5), rtol=1e-12)  # cosh b is inf to rounding
+    np.testing.assert_allclose(
+        b[9:], np.pi * (np.arange(10, 151) - 0.5), rtol=1e-12
+    )  # cosh b is inf to rounding
     np.testing.assert_allclose(b[:5] ** 2, five_lowest(0), rtol=1e-12)
 
 

@@ -74,7 +74,11 @@ def test_conversion_is_decimal():
         ("5 %", "rad", "a unit of plain number where angle is wanted; give e.g. deg"),
         ("2 N m", "N m2", "a unit of moment where bending stiffness is wanted; give e.g. N m2"),
         ("7850 kg/m4", "kg/m3", "a unit of kg/m**4 where density is wanted; give e.g. kg/m3"),
-        ("5 Hz", "rad/s", 'ambiguous for an angular speed; give "300 rpm" if turns are meant, rad/s if radians'),
+        (
+            "5 Hz",
+            "rad/s",
+            'ambiguous for an angular speed; give "300 rpm" if turns are meant, rad/s if radians',
+        ),
         ("5 s^-1", "rad/s", "ambiguous for an angular speed; give rpm if turns are meant"),
         ("5 rpm", "Hz", "a unit of angular speed where frequency is wanted; give e.g. Hz"),
         ("2 parsnips", "m", "unknown unit parsnips; give length, e.g. in mm"),
@@ -90,6 +94,7 @@ def test_conversion_is_decimal():
         ("", "m", "not a number with a unit"),
         ("mm", "m", "not a number with a unit"),
         ("9**9**9 m", "m", "not a number with a unit"),
+        ("2 A0", "m", "not a number with a unit"),
         ("2*3 m", "m", "not a number with a unit"),
         ("1,5 mm", "m", "not a number with a unit"),
         ("2 m^(1+1)", "m2", "not a number with a unit"),
@@ -102,7 +107,7 @@ def test_conversion_is_decimal():
 def test_refusal_gives_value_and_remedy(text, unit, remedy):
     with pytest.raises(ValueError) as refusal:
         quantity(text, unit)
-    assert str(refusal.value).startswith(f"{show(text).strip(chr(34)) if text == '0.2' else show(text)}: ")
+    assert str(refusal.value).startswith(f"{show(text)}: ")
     assert remedy in str(refusal.value)
 
 
@@ -111,13 +116,19 @@ def test_round_trip(number, unit):
     assert quantity(f"{number!r} {unit}", unit) == number
 
 
-@given(st.floats(-1e6, 1e6), st.sampled_from([("mm", "m", 1e-3), ("GPa", "Pa", 1e9), ("deg", "rad", math.pi / 180)]))
+@given(
+    st.floats(-1e6, 1e6, allow_subnormal=False),
+    st.sampled_from([("mm", "m", 1e-3), ("GPa", "Pa", 1e9), ("deg", "rad", math.pi / 180)]),
+)
 def test_round_trip_through_another_unit(number, units):
     text, unit, factor = units
-    assert quantity(f"{number!r} {text}", unit) == pytest.approx(number * factor, rel=1e-15, abs=1e-320)
+    assert quantity(f"{number!r} {text}", unit) == pytest.approx(number * factor, rel=1e-15, abs=1e-300)
 
 
-@given(st.text() | st.from_regex(r"-?[0-9.eE+-]{1,9} ?[A-Za-zµ°%/*^ 0-9]{0,9}", fullmatch=True), st.sampled_from(["m", ""]))
+@given(
+    st.text() | st.from_regex(r"-?[0-9.eE+-]{1,9} ?[A-Za-zµ°%/*^ 0-9]{0,9}", fullmatch=True),
+    st.sampled_from(["m", ""]),
+)
 def test_any_text_is_a_finite_number_or_refused(text, unit):
     try:
         assert math.isfinite(quantity(text, unit))

@@ -1,0 +1,409 @@
+"""Scenes in TOML: what they mean, and one clear message for every mistake."""
+
+import copy
+import math
+import pickle
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beamdyn.beam import Beam, TipMass
+from beamdyn.common.inputs import Quantity, Section, describe
+from beamdyn.common.units import quantity
+from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, scene_from_dict
+from beamdyn.motion import SteadyRotation
+from beamdyn.profile import Table
+from beamdyn.scene import Mount, Scene
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+HARVESTER = {
+    "beam": {
+        "length": "50 mm",
+        "width": "10 mm",
+        "thickness": "0.2 mm",
+        "youngs_modulus": "200 GPa",
+        "density": "7850 kg/m3",
+    },
+    "mount": {"radius": "215 mm"},
+}
+BY_STIFFNESS = {
+    "beam": {"length": "50 mm", "mass_per_length": "15.7 g/m", "bending_stiffness": "1.3e-3 N m2"},
+    "mount": {"radius": "215 mm"},
+}
+
+
+def changed(path, value, scene=HARVESTER):
+    """A copy of a scene with one key set, or deleted where the value is None."""
+    scene = copy.deepcopy(scene)
+    *tables, key = path.split(".")
+    inner = scene
+    for table in tables:
+        inner = inner.setdefault(table, {})
+    inner.pop(key, None)
+    if value is not None:
+        inner[key] = value
+    return scene
+
+
+def mistakes(data):
+    with pytest.raises(ConfigError) as refusal:
+        scene_from_dict(data)
+    return refusal.value.mistakes
+
+
+def only_mistake(data):
+    (mistake,) = mistakes(data)
+    return mistake
+
+
+# What a scene means ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_load(path):
+    assert isinstance(load_scene(path), Scene)
+
+
+def test_published_scene():
+    beam = Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0)
+    assert load_scene(EXAMPLES / "tyre_harvester.toml") == Scene(beam, Mount(radius=0.215))
+
+
+def test_defaults_are_those_of_the_core():
+    scene = scene_from_dict(HARVESTER)
+    assert scene == Scene(scene.beam, Mount(0.215))
+
+
+def test_tapered_blade():
+    scene = load_scene(EXAMPLES / "blade.toml")
+    x = np.linspace(0, 1, 9)
+    width, thickness = 0.060 - 0.020 * x, 0.006 - 0.004 * x + 0.001 * x**2
+    np.testing.assert_allclose(scene.beam.mass_per_length(x), 2700 * width * thickness, rtol=1e-13)
+    np.testing.assert_allclose(scene.beam.bending_stiffness(x), 70e9 * width * thickness**3 / 12, rtol=1e-13)
+    assert scene.mount == Mount(0.1, math.pi, math.pi / 2)
+    assert scene.motion == SteadyRotation(50 * math.pi)
+
+
+def test_jump_and_tip_body():
+    scene = load_scene(EXAMPLES / "patched.toml")
+    assert scene.beam.breakpoints == (0.0, 0.4, 1.0)
+    before, after = scene.beam.bending_stiffness(np.array([0.4 - 1e-9, 0.4]))
+    assert before / after == pytest.approx(8, rel=1e-12)
+    assert scene.beam.tip == TipMass(0.002, offset=0.003, inertia=2e-8, axial_inertia=2e-8)
+    assert (scene.damping_ratio, scene.gravity, scene.stretch) == (0.01, 9.81, False)
+
+
+@pytest.mark.parametrize("stations", [[0, 0.5, 1.0], ["0 m", "2.5 cm", "50 mm"], [0, "25 mm", 1]])
+def test_stations_are_fractions_or_lengths(stations):
+    table = {"stations": stations, "values": ["0.3 mm", "0.2 mm", "0.2 mm"]}
+    wanted = Beam.rectangular(0.05, 0.01, Table((0, 0.5, 1), (3e-4, 2e-4, 2e-4)), 200e9, 7850)
+    assert scene_from_dict(changed("beam.thickness", table)).beam == wanted
+
+
+@pytest.mark.parametrize("place", [0.4, "20 mm"])
+def test_breakpoints_are_fractions_or_lengths(place):
+    assert scene_from_dict(changed("beam.breakpoints", [place])).beam.breakpoints == (0, 0.4, 1)
+
+
+def test_beam_by_stiffness():
+    data = changed("beam.axial_stiffness", {"polynomial": ["400 kN", "-100 kN"]}, BY_STIFFNESS)
+    scene = scene_from_dict(changed("model.stretch", True, changed("beam.outer_fibre", "0.1 mm", data)))
+    assert scene.beam.mass_per_length(np.array([0.3])) == pytest.approx(0.0157)
+    assert scene.beam.axial_stiffness(np.array([1.0])) == pytest.approx(300e3)
+    assert scene.stretch
+
+
+def test_every_input_of_the_tip_arrives():
+    tip = {"mass": "1 g", "offset": "-1 mm", "inertia": "3 g mm2"}
+    tip |= {"transverse_inertia": "2 g mm2", "axial_inertia": "4 g mm2"}
+    assert scene_from_dict(changed("beam.tip", tip)).beam.tip == TipMass(1e-3, -1e-3, 3e-9, 2e-9, 4e-9)
+
+
+@pytest.mark.parametrize("motion", [{"speed": "525 rpm"}, {"speed": "525 rpm", "kind": "steady"}])
+def test_steady_motion(motion):
+    assert scene_from_dict(changed("motion", motion)).motion == SteadyRotation(quantity("525 rpm", "rad/s"))
+
+
+# Mistakes -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        ("beam.thickness", 0.2, 'beam.thickness = 0.2: give a unit, e.g. "0.2 m" or "0.2 mm"'),
+        (
+            "beam.thickness",
+            "0.2 kg",
+            'beam.thickness = "0.2 kg": a unit of mass where length is wanted; give e.g. mm',
+        ),
+        ("beam.thickness", "0 mm", 'beam.thickness = "0 mm": it must be greater than 0 m'),
+        ("beam.thickness", None, "beam.thickness: missing; give the thickness"),
+        ("beam.thickness", [1], "beam.thickness = [1]: give a number with a unit, { polynomial"),
+        (
+            "beam.thickness",
+            {"poly": ["1 mm"]},
+            'beam.thickness = { poly = ["1 mm"] }: give a number with a unit',
+        ),
+        ("beam.thickness", {"polynomial": []}, "beam.thickness.polynomial = []: give at least one value"),
+        ("beam.thickness", {"polynomial": "1 mm"}, 'beam.thickness.polynomial = "1 mm": give a list'),
+        ("beam.thickness", {"polynomial": ["1 mm", 2]}, "beam.thickness.polynomial[1] = 2: give a unit"),
+        (
+            "beam.thickness",
+            {"polynomial": ["1 mm", "-2 mm"]},
+            "beam: thickness = -0.001 at x/L = 1.000: it must be pos",
+        ),
+        ("beam.thickness", {"values": ["1 mm"]}, "beam.thickness.stations: missing; give as many"),
+        (
+            "beam.thickness",
+            {"stations": [0, 1], "values": ["1 mm", "-1 mm"]},
+            'beam.thickness.values[1] = "-1 mm": it must be greater than 0 m',
+        ),
+        (
+            "beam.thickness",
+            {"stations": [0, 0.5], "values": ["1 mm"] * 2},
+            "beam: thickness: stations run from 0 to 0.5",
+        ),
+        (
+            "beam.thickness",
+            {"stations": [0, 1], "values": ["1 mm"] * 3},
+            "beam: thickness: 2 stations and 3 values",
+        ),
+        (
+            "beam.thickness",
+            {"stations": [0, "1 kg"], "values": ["1 mm"] * 2},
+            'beam.thickness.stations[1] = "1 kg": a un',
+        ),
+        ("beam.thickness", "20 mm", "beam: thickness = 0.02 m exceeds width = 0.01 m: the beam bends"),
+        ("beam.thickness", "60 mm", "beam: thickness = 0.06 m exceeds length = 0.05 m"),
+        ("beam.thicknes", "0.2 mm", "beam.thicknes: unknown key; did you mean thickness?"),
+        ("beam.colour", "red", "beam.colour: unknown key; known are length, tip, breakpoints, width"),
+        (
+            "beam.bending_stiffness",
+            "1 N m2",
+            "beam: width, thickness, youngs_modulus, density and bending_stiffness do",
+        ),
+        ("beam.breakpoints", 0.4, "beam.breakpoints = 0.4: give a list"),
+        ("beam.breakpoints", [1.4], "beam: breakpoints = (1.4,): give fractions x/L between 0 and 1"),
+        ("beam.breakpoints", [True], "beam.breakpoints[0] = true: give a finite number"),
+        ("beam.breakpoints", [10**400], "beam.breakpoints[0] = 1000"),
+        ("beam.tip", "1 g", 'beam.tip = "1 g": give a table'),
+        ("beam.tip", {}, "beam.tip.mass: missing; give the mass [kg], at least 0"),
+        ("beam.tip", {"mass": "-1 g"}, 'beam.tip.mass = "-1 g": it must be at least 0 kg'),
+        ("beam.tip", {"mass": "1 g", "inertia": "nan kg m2"}, 'beam.tip.inertia = "nan kg m2": not a number'),
+        ("beam.tip", {"mass": "1 g", "axial_inertia": "1 g mm2"}, "beam.tip: tip inertias 0, 0, 1e-09 kg m2"),
+        (
+            "beam.tip",
+            {"mass": "1 g", "offset": "-60 mm"},
+            "beam: tip.offset = -0.06 m puts the body behind the root",
+        ),
+        ("beam", None, "beam: missing; give a table [beam]"),
+        ("beam", "50 mm", 'beam = "50 mm": give a table'),
+        ("mount", None, "mount: missing; give a table [mount]"),
+        (
+            "mount.radius",
+            "-215 mm",
+            'mount.radius = "-215 mm": it must be at least 0 m; for a beam that points outward',
+        ),
+        (
+            "mount.setting_angle",
+            88.36,
+            'mount.setting_angle = 88.36: give a unit, e.g. "88.36 rad" or "88.36 deg"',
+        ),
+        (
+            "mount.setting_angle",
+            "88.36 rad",
+            'mount.setting_angle = "88.36 rad": it must be at least -6.28319, at most',
+        ),
+        ("mount.radius_", "1 m", "mount.radius_: unknown key; did you mean radius?"),
+        (
+            "motion",
+            {"kind": "steady"},
+            "motion.speed: missing; give the angular speed of the carrier [rad/s]",
+        ),
+        ("motion", {"kind": "odd", "speed": "1 rpm"}, "motion.kind = \"odd\": give 'steady'"),
+        (
+            "motion",
+            {"speed": "5 Hz"},
+            'motion.speed = "5 Hz": ambiguous for an angular speed; give "300 rpm"',
+        ),
+        ("model.damping_ratio", 1, "model.damping_ratio = 1: it must be at least 0, below 1; 1 % is 0.01"),
+        ("model.damping_ratio", "1 %", 'model.damping_ratio = "1 %": give a finite number, without a unit'),
+        ("model.damping_ratio", math.nan, "model.damping_ratio = nan: give a finite number"),
+        ("model.gravity", 9.81, 'model.gravity = 9.81: give a unit, e.g. "9.81 m/s2"'),
+        ("model.stretch", 1, "model.stretch = 1: give true or false"),
+        ("modle", {}, "modle: unknown key; did you mean model?"),
+        (" ", 1, " : unknown key; known are beam, mount, motion, model"),
+    ],
+)
+def test_mistake_names_key_value_and_remedy(path, value, message):
+    assert only_mistake(changed(path, value)).startswith(message)
+
+
+def test_stretch_needs_axial_stiffness():
+    assert only_mistake(changed("model.stretch", True, BY_STIFFNESS)).startswith(
+        "model: stretch = True needs axial"
+    )
+
+
+def test_all_mistakes_at_once():
+    data = changed("beam.thickness", 0.2, changed("mount.radius", None, changed("beam.tip", {"mass": "1 m"})))
+    assert [mistake.partition(" ")[0] for mistake in mistakes(data)] == [
+        "beam.tip.mass",
+        "beam.thickness",
+        "mount.radius:",
+    ]
+
+
+def test_mistakes_of_the_core_come_with_the_others():
+    swapped = changed("beam.thickness", "20 mm", changed("mount.radius", "-1 m"))
+    assert [mistake.partition(" ")[0] for mistake in mistakes(swapped)] == ["beam:", "mount.radius"]
+
+
+def test_message_has_one_line_a_mistake():
+    error = ConfigError("a.toml", ["one", "two"])
+    assert str(error) == "a.toml: 2 mistakes\n  one\n  two"
+    assert str(ConfigError("a.toml", ["one"])) == "a.toml: one"
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+def test_expressions_are_not_evaluated():
+    assert "not a number with a unit" in only_mistake(changed("beam.width", "__import__('os').getcwd()"))
+
+
+# Files ----------------------------------------------------------------------------------------------
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(ConfigError, match=r"^\S*none\.toml: there is no such file; check"):
+        load_scene(tmp_path / "none.toml")
+
+
+def test_folder(tmp_path):
+    with pytest.raises(ConfigError, match="it cannot be read"):
+        load_scene(tmp_path)
+
+
+def test_not_text(tmp_path):
+    (tmp_path / "a.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ConfigError, match="not text in UTF-8"):
+        load_scene(tmp_path / "a.toml")
+
+
+def test_not_toml(tmp_path):
+    (tmp_path / "a.toml").write_text("[beam]\nlength = 50 mm\n")
+    with pytest.raises(ConfigError, match=r'a\.toml: not valid TOML: .*at line 2, .*length = "50 mm"'):
+        load_scene(tmp_path / "a.toml")
+
+
+@pytest.mark.parametrize(
+    "text", ["a = " + "[" * 5000, f"[beam.density.{'.'.join('a' * 3000)}]", "a = " + "1" * 5000]
+)
+def test_absurd_toml(text):
+    with pytest.raises(ConfigError):
+        parse_scene(text)
+
+
+# Anything else --------------------------------------------------------------------------------------
+
+UNITS = st.sampled_from(
+    ["mm", "m", "kg", "GPa", "kg/m3", "kg/m", "N m2", "N", "deg", "rpm", "g mm2", "m/s2", "", "x"]
+)
+NUMBERS = st.floats(1e-3, 1e3) | st.floats() | st.integers()
+QUANTITIES = st.builds("{} {}".format, NUMBERS, UNITS)
+SCALARS = st.none() | st.booleans() | NUMBERS | st.text(max_size=5) | QUANTITIES | st.dates()
+KEYS = st.sampled_from(
+    sorted(
+        {part for found in describe(SceneInput) for part in found.path.split(".")}
+        | {"polynomial", "stations", "values"}
+    )
+) | st.text(max_size=5)
+JUNK = st.recursive(
+    SCALARS,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner, max_size=4),
+    max_leaves=12,
+)
+PATHS = st.sampled_from(
+    [found.path for found in describe(SceneInput)] + ["beam", "mount", "motion", "model", "beam.tip"]
+)
+
+
+def is_scene_or_refused(data):
+    try:
+        assert isinstance(scene_from_dict(data), Scene)
+    except ConfigError as refusal:
+        assert refusal.mistakes
+        assert all(": " in mistake and len(mistake) < 400 for mistake in refusal.mistakes)
+
+
+@given(st.dictionaries(KEYS, JUNK, max_size=5))
+def test_any_dictionary_is_a_scene_or_refused(data):
+    is_scene_or_refused(data)
+
+
+@given(st.sampled_from([HARVESTER, BY_STIFFNESS]), PATHS, JUNK)
+def test_any_value_anywhere_is_a_scene_or_refused(scene, path, value):
+    is_scene_or_refused(changed(path, value, scene))
+
+
+@given(st.text(alphabet="[]{}=.\"'#\n abe1_"))
+def test_any_text_is_a_scene_or_refused(text):
+    with pytest.raises(ConfigError):
+        parse_scene(text)
+
+
+# The description ------------------------------------------------------------------------------------
+
+
+class Plate(Section):
+    """A table as another program may have."""
+
+    side: Annotated[float, Quantity("m", symbol="a", meaning="side", above=0, most=2)]
+    friction: Annotated[float, Quantity(symbol="mu", meaning="coefficient of friction", least=0, below=1)] = (
+        0.3
+    )
+
+
+def test_description_of_an_input():
+    side, friction = describe(Plate, prefix="plate.")
+    assert (side.path, side.name, side.section, side.required) == ("plate.side", "side", Plate, True)
+    assert (side.quantity.symbol, side.quantity.unit) == ("a", "m")
+    assert side.help == "side [m], greater than 0, at most 2"
+    assert friction.help == "coefficient of friction, at least 0, below 1"
+    assert (friction.required, friction.default) == (False, 0.3)
+
+
+def test_model_holds_si():
+    plate = Plate.model_validate({"side": "20 cm", "friction": 0})
+    assert (plate.side, plate.friction) == (0.2, 0.0)
+    assert isinstance(plate.friction, float)
+
+
+@pytest.mark.parametrize(("side", "good"), [("0 m", False), ("1 um", True), ("2 m", True), ("2.1 m", False)])
+def test_bounds(side, good):
+    described = describe(Plate)[0].quantity
+    if good:
+        assert described.parse(side) > 0
+    else:
+        with pytest.raises(ValueError, match="it must be greater than 0, at most 2 m"):
+            described.parse(side)
+
+
+def test_every_input_of_a_scene_is_described():
+    described = describe(SceneInput)
+    assert all(found.quantity.meaning for found in described)
+    assert {found.path for found in described} >= {
+        "beam.length",
+        "beam.tip.mass",
+        "mount.radius",
+        "model.stretch",
+    }
+
+
+def test_choices_are_described():
+    (kind,) = [found for found in describe(SceneInput) if found.path == "motion.kind"]
+    assert kind.choices == ("steady",)
