@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.checks import not_negative, positive, real
-from beamdyn.profile import Profile, Property, as_profile
+from beamdyn.common.checks import kind, not_negative, positive, real
+from beamdyn.profile import Profile, Property, as_profile, check_positive, distinct
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,12 @@ class Beam:
 
     def __post_init__(self) -> None:
         positive("length", self.length, "m")
+        for name in ("mass_per_length", "bending_stiffness", "axial_stiffness", "outer_fibre"):
+            if getattr(self, name) is not None:
+                kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
+                check_positive(name, getattr(self, name))
+        if self.tip is not None:
+            kind("tip", self.tip, TipMass)
         if self.tip is not None and self.length + self.tip.offset < 0:
             raise ValueError(
                 f"tip.offset = {self.tip.offset:g} m puts the body behind the root of a beam of "
@@ -138,7 +144,8 @@ class Beam:
         b = as_profile("width", width, breakpoints)
         h = as_profile("thickness", thickness, breakpoints)
         _check_section(length, b, h)
-        area = b * h
+        with np.errstate(over="ignore", invalid="ignore"):  # refused below
+            area = b * h
         return cls(
             length=float(length),
             mass_per_length=area.scaled(rho),
@@ -204,11 +211,12 @@ class Beam:
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions x/L where a property may jump or have a kink, with the ends 0 and 1."""
         given = (self.mass_per_length, self.bending_stiffness, self.axial_stiffness)
-        return tuple(np.unique([b for p in given if p is not None for b in p.breakpoints]).tolist())
+        return distinct(np.array([b for p in given if p is not None for b in p.breakpoints]))
 
 
 def _check_section(length: float, width: Profile, thickness: Profile) -> None:
-    xi = np.linspace(0, 1, 257)
+    edges = np.union1d(width.breakpoints, thickness.breakpoints)
+    xi = np.union1d(np.linspace(0, 1, 257), [*(edges[:-1] + 1e-12), *(edges[1:] - 1e-12)])
     b, h = width(xi), thickness(xi)
     if h.max() > length:
         raise ValueError(

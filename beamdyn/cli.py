@@ -28,6 +28,7 @@ DONE, NO_ANSWER, BAD_INPUT = 0, 1, 2
 
 _MOST_SPEEDS = 100_000
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
+_NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 _SUFFIXES = {"plot": (".png", ".svg", ".pdf"), "shapes": (".vtu", ".xdmf")}
 
 _Scene = Annotated[Path, Parameter(name="SCENE.toml")]
@@ -223,11 +224,13 @@ def limits(
     outputs = Outputs(json=json, force=force)
     outputs.check()
     asked = parse_speed("--top-speed", top_speed)
+    if asked <= 0:
+        raise ValueError(f'--top-speed = "{top_speed}": it must be greater than 0')
     found = setting_angle_limits(load_scene(scene), asked, method)
-    console().print(limits_table(found))
     _write(found, outputs)
     if isnan(found.first) or isnan(found.second):
         raise NoAnswer(found.warnings[0])
+    console().print(limits_table(found))
     _warn(found.warnings)
 
 
@@ -280,8 +283,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except CycloptsError as error:
         return _complain("", f"{error} See beamdyn --help.", BAD_INPUT)
     except (ValueError, OSError) as error:
-        return _complain("", error, BAD_INPUT)
+        return _refused(error)
     return DONE
+
+
+def _refused(error: Exception) -> int:
+    """Tell bad input from an eigenproblem that numpy, by a kind of ValueError, gives up."""
+    from numpy.linalg import LinAlgError
+
+    if isinstance(error, LinAlgError):
+        return _complain(
+            "no answer: ", f"{error}; check the size of the speed and of each property", NO_ANSWER
+        )
+    return _complain("", error, BAD_INPUT)
 
 
 def _complain(prefix: str, error: object, code: int) -> int:
@@ -329,9 +343,10 @@ def parse_speeds(text: str) -> np.ndarray:
             f'--speeds = "{text}": it is empty; give e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s"'
         )
     found = _UNIT.search(text.strip())
-    unit = found.group() if found else ""
-    numbers = text.strip().removesuffix(unit)
-    return _range(text, numbers, unit) if ":" in numbers else _list(numbers, unit)
+    if found is None:
+        raise ValueError(f'--speeds = "{text}": give a unit at its end, e.g. "{text.strip()} rad/s"')
+    unit, numbers = found.group(), text.strip()[: found.start()]
+    return _range(text, numbers, unit) if ":" in numbers else _list(text, numbers, unit)
 
 
 def _range(text: str, numbers: str, unit: str) -> np.ndarray:
@@ -340,7 +355,7 @@ def _range(text: str, numbers: str, unit: str) -> np.ndarray:
     parts = [part.strip() for part in numbers.split(":")]
     if len(parts) != 3:
         raise ValueError(f'--speeds = "{text}": give start:stop:count, e.g. "0:150:301 rad/s"')
-    start, stop = (parse_speed("--speeds", f"{part} {unit}") for part in parts[:2])
+    start, stop = (_member(text, part, unit) for part in parts[:2])
     if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= _MOST_SPEEDS:
         raise ValueError(
             f'--speeds = "{text}": the count {parts[2]!r} must be a whole number from 1 to {_MOST_SPEEDS}'
@@ -350,14 +365,24 @@ def _range(text: str, numbers: str, unit: str) -> np.ndarray:
     return np.linspace(start, stop, int(parts[2]))
 
 
-def _list(numbers: str, unit: str) -> np.ndarray:
+def _list(text: str, numbers: str, unit: str) -> np.ndarray:
     import numpy as np
 
-    values = [parse_speed("--speeds", f"{part.strip()} {unit}") for part in numbers.split(",")]
+    values = [_member(text, part.strip(), unit) for part in numbers.split(",")]
     for low, high in pairwise(values):
         if high <= low:
             raise ValueError(f"--speeds: {low:g} is followed by {high:g} rad/s; sort them and drop repeats")
     return np.array(values)
+
+
+def _member(text: str, number: str, unit: str) -> float:
+    """One of several speeds [rad/s]."""
+    if not _NUMBER.fullmatch(number):
+        raise ValueError(
+            f"--speeds = \"{text}\": '{number}' is not a number; give numbers and one unit at their end, "
+            'e.g. "0, 50, 100 rad/s"'
+        )
+    return parse_speed("--speeds", f"{number} {unit}")
 
 
 def _asked_speed(scene: Scene, speed: str | None) -> float:

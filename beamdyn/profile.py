@@ -15,9 +15,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
-from beamdyn.common.checks import real_array
+from beamdyn.common.checks import real, real_array
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # a smooth engineering taper is resolved by 32
+_SLIVER = 1e-12  # a shorter segment, relative to the beam, is a rounding of x/L
 _FIT_ERROR = 1e-13  # relative to the largest value: rounding of the user's own function
 
 
@@ -82,11 +83,11 @@ class Profile:
 
     def split(self, breakpoints: Sequence[float]) -> Profile:
         """The same property on a finer set of segments."""
-        edges = np.union1d(self.breakpoints, breakpoints)
-        if len(edges) == len(self.breakpoints):
+        edges = distinct(np.union1d(self.breakpoints, breakpoints))
+        if edges == self.breakpoints:
             return self
         t, w = legendre.leggauss(self.degree + 1)
-        return Profile(tuple(edges.tolist()), tuple(_project(self, a, b, t, w) for a, b in pairwise(edges)))
+        return Profile(edges, tuple(_project(self, a, b, t, w) for a, b in pairwise(edges)))
 
     def __mul__(self, other: Profile) -> Profile:
         """Pointwise product."""
@@ -149,7 +150,7 @@ def as_profile(name: str, given: Property, breakpoints: Sequence[float] = ()) ->
     else:
         profile = Profile((0.0, 1.0), ((_number(name, given),),))
     profile = profile.split(edges)
-    _check_positive(name, profile)
+    check_positive(name, profile)
     return profile
 
 
@@ -157,24 +158,25 @@ def _edges(breakpoints: Sequence[float]) -> tuple[float, ...]:
     inner = real_array("breakpoints", breakpoints)
     if inner.size and not (inner.min() > 0 and inner.max() < 1):
         raise ValueError(f"breakpoints = {breakpoints}: give fractions x/L between 0 and 1, ends excluded")
-    return (0.0, *np.unique(inner).tolist(), 1.0)
+    return distinct(np.concatenate([[0.0], inner, [1.0]]))
+
+
+def distinct(edges: np.ndarray) -> tuple[float, ...]:
+    """Sorted ends of segments, those that differ by rounding merged into one."""
+    edges = np.unique(edges)
+    return tuple(edges[np.diff(edges, prepend=-1.0) > _SLIVER].tolist())
 
 
 def _number(name: str, given: object) -> float:
-    try:
-        return float(given)  # pyright: ignore[reportArgumentType]  (refused below with the name)
-    except (TypeError, ValueError):
-        raise ValueError(
-            f"{name} = {given!r}: give a number, a Polynomial in x/L, a Table or a function of x/L"
-        ) from None
+    return real(name, given, remedy="or a Polynomial in x/L, a Table or a function of x/L")
 
 
 def _from_polynomial(name: str, given: Polynomial) -> Profile:
+    if np.iscomplexobj(given.coef) or not np.isfinite(given.coef).all():
+        raise ValueError(f"{name}: the polynomial {given} has coefficients that are complex or not finite")
     t, w = legendre.leggauss(given.degree() + 1)
-    row = _project(given, 0.0, 1.0, t, w)
-    if not np.isfinite(row).all():
-        raise ValueError(f"{name}: the polynomial {given} has coefficients that are not finite")
-    return Profile((0.0, 1.0), (row,))
+    with np.errstate(over="ignore", invalid="ignore"):  # huge values are refused with all others
+        return Profile((0.0, 1.0), (_project(given, 0.0, 1.0, t, w),))
 
 
 def _from_table(name: str, table: Table) -> Profile:
@@ -184,6 +186,11 @@ def _from_table(name: str, table: Table) -> Profile:
     if x[0] != 0 or x[-1] != 1 or np.any(np.diff(x) < 0):
         raise ValueError(
             f"{name}: stations run from {x[0]:g} to {x[-1]:g}; they must ascend from 0 to 1 (fractions x/L)"
+        )
+    if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
+        raise ValueError(
+            f"{name}: a station given twice is a jump and stands between others; "
+            "none may be given three times, nor twice at an end"
         )
     steps = [(x[i], x[i + 1], y[i], y[i + 1]) for i in range(len(x) - 1) if x[i + 1] > x[i]]
     rows = tuple(((p + q) / 2, (q - p) / 2) for _, _, p, q in steps)
@@ -197,7 +204,7 @@ def _from_function(name: str, function: Callable, edges: Sequence[float]) -> Pro
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
     """Legendre series of a user's function on [a, b], of the lowest tried degree exact to rounding."""
-    check = np.linspace(a, b, 259)[1:-1]
+    check = _probes(a, b)
     wanted = _sample(name, function, check)
     local = ((check - a) - (b - check)) / (b - a)
     misfit = np.full(check.shape, np.inf)
@@ -214,10 +221,17 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
     )
 
 
+def _probes(a: float, b: float) -> np.ndarray:
+    """Points that see a jump wherever it is, also beside the ends: spacing shrinks towards them."""
+    s = np.linspace(0, np.pi, 515)[1:-1]
+    return a + (b - a) * (1 - np.cos(s)) / 2
+
+
 def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
     try:
-        values = np.asarray(function(x), dtype=float)
-    except (TypeError, ValueError) as error:
+        values = np.asarray(function(x))
+        values = values if np.iscomplexobj(values) else values.astype(float)
+    except Exception as error:  # whatever a user's function may raise
         raise ValueError(
             f"{name}: the function failed on an array of x/L ({error}); it must take and return arrays"
         ) from error
@@ -226,7 +240,7 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
             f"{name}: the function returned shape {values.shape} for x/L of shape {x.shape}; "
             "it must be vectorised: take and return arrays of one shape"
         )
-    bad = ~np.isfinite(values)
+    bad = ~np.isfinite(values) | np.iscomplex(values)
     if bad.any():
         raise ValueError(
             f"{name}: the function is {values[bad][0]} at x/L = {x[bad][0]:.3f}; it must be finite"
@@ -234,7 +248,8 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
     return values
 
 
-def _check_positive(name: str, profile: Profile) -> None:
+def check_positive(name: str, profile: Profile) -> None:
+    """Refuse a property that is not positive and finite somewhere, with a ValueError that names it."""
     edges = np.array(profile.breakpoints)
     inner = np.linspace(edges[:-1], edges[1:], 129)[1:-1].ravel()
     left, right = profile.sides()

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from rich import box
-from rich.console import Console
+from rich.console import Console, Group
 from rich.table import Table
+from rich.text import Text
 
 if TYPE_CHECKING:
     from beamdyn.spectrum import Locus, Modes
@@ -63,7 +64,7 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
 
 def table(
     title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)
-) -> Table:
+) -> Group:
     """A table of text.
 
     Parameters
@@ -79,9 +80,10 @@ def table(
 
     Returns
     -------
-    rich.table.Table
+    rich.console.Group
+        The title and the table.
     """
-    made = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    made = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0))
     for i, heading in enumerate(columns):
         made.add_column(heading, justify="left" if i in left else "right", no_wrap=i not in left)
     for row in rows:
@@ -89,7 +91,7 @@ def table(
             made.add_row(*row)
         else:
             made.add_section()
-    return made
+    return Group(Text(title, style="bold"), made)
 
 
 @dataclass(frozen=True)
@@ -108,8 +110,6 @@ class Comparison:
         Our value.
     error : float
         Its estimated absolute error.
-    unit : str
-        Unit of both.
     decimals : int
         Decimals printed by the source.
     reason : str
@@ -121,7 +121,6 @@ class Comparison:
     published: float | tuple[float, float]
     ours: float
     error: float
-    unit: str
     decimals: int
     reason: str = ""
 
@@ -161,7 +160,6 @@ class Comparison:
             self.source,
             self._published(),
             supported(self.ours, self.error, 12),
-            self.unit,
             self._deviation(),
             self.verdict,
         ]
@@ -177,7 +175,7 @@ class Comparison:
         return sign + supported(self.deviation, self.error, 2)
 
 
-def comparison_table(title: str, rows: Iterable[Comparison]) -> Table:
+def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
     """The table of comparisons, with a line where the first two words of `what` change."""
     cells: list[list[str]] = []
     for row in rows:
@@ -186,9 +184,9 @@ def comparison_table(title: str, rows: Iterable[Comparison]) -> Table:
         cells.append(row.cells())
     return table(
         title,
-        ("what", "published by", "published", "ours", "unit", "deviation", "verdict"),
+        ("what", "published by", "published", "ours", "deviation", "verdict"),
         cells,
-        (0, 1, 4, 6),
+        (0, 1, 5),
     )
 
 
@@ -201,7 +199,7 @@ def _topic(what: str) -> list[str]:
 _SHOWN = 16  # rows of a locus, apart from those where a mode turns unstable
 
 
-def modes_table(found: Modes) -> Table:
+def modes_table(found: Modes) -> Group:
     """The table of natural modes."""
     rows = []
     size = np.abs(found.eigenvalue) * found.error  # absolute error of the eigenvalues
@@ -215,7 +213,7 @@ def modes_table(found: Modes) -> Table:
     )
 
 
-def locus_table(found: Locus) -> Table:
+def locus_table(found: Locus) -> Group:
     """The table of a locus: some of its speeds, each frequency or, where there is none, the growth rate."""
     rows = []
     size = np.abs(found.eigenvalue) * found.error
@@ -244,10 +242,13 @@ def _cell(found: Locus, size: np.ndarray, s: int, mode: int) -> str:
     return f"{found.status[s, mode]}, {found.growth_rate[s, mode]:+.3g} 1/s"
 
 
-def limits_table(found: SettingAngleLimits) -> Table:
+def limits_table(found: SettingAngleLimits) -> Group:
     """The table of setting-angle limits."""
     degrees = [supported(float(np.degrees(limit)), float(np.degrees(found.error))) for limit in found]
-    meaning = "below it the first frequency falls with speed", "above it it rises"
+    meaning = (
+        "below it the first frequency falls with speed; above it, it rises from rest",
+        "below it the first frequency falls before the top speed; above it, it rises",
+    )
     title = f"Setting-angle limits up to {found.top_speed:.10g} rad/s, by {found.provenance.method}"
     rows = zip(("first", "second"), degrees, meaning, strict=True)
     return table(title, ("limit", "angle [deg]", ""), rows, (0, 2))

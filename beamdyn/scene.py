@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from beamdyn.beam import Beam
-from beamdyn.common.checks import angle, not_negative, real
+from beamdyn.common.checks import angle, kind, not_negative, real
 from beamdyn.motion import Motion
 
 
@@ -75,6 +75,11 @@ class Scene:
     stretch: bool = False
 
     def __post_init__(self) -> None:
+        kind("beam", self.beam, Beam)
+        kind("mount", self.mount, Mount, "mount = Mount(radius=0.2) sets a radius of 0.2 m")
+        kind("stretch", self.stretch, bool)
+        if self.motion is not None and not hasattr(self.motion, "at"):
+            raise ValueError(f"motion = {self.motion!r}: give a motion, such as SteadyRotation(speed)")
         real("gravity", self.gravity, "m/s2")
         ratio = not_negative("damping_ratio", self.damping_ratio)
         if ratio >= 1:

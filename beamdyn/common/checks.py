@@ -12,7 +12,7 @@ def real(name: str, value: object, unit: str = "", remedy: str = "") -> float:
     """A finite real number as a float, or a ValueError that names it."""
     try:
         number = float(value)  # pyright: ignore[reportArgumentType]  (anything else is refused below)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
     if isinstance(value, str | bool) or not math.isfinite(number):
         raise ValueError(f"{name} = {value!r}: give a finite number{_in(unit)}{_and(remedy)}")
@@ -46,6 +46,12 @@ def angle(name: str, value: object) -> float:
     return number
 
 
+def kind(name: str, value: object, wanted: type, remedy: str = "") -> None:
+    """A ValueError if a value is not of the wanted class."""
+    if not isinstance(value, wanted):
+        raise ValueError(f"{name} = {value!r}: give a {wanted.__name__}{_and(remedy)}")
+
+
 def count(name: str, value: object, least: int = 1) -> int:
     """A whole number of at least `least`."""
     number = real(name, value)
@@ -58,7 +64,7 @@ def real_array(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
     """A one-dimensional array of finite floats."""
     try:
         array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} = {values!r}: give a sequence of numbers") from None
     if array.ndim != 1:
         raise ValueError(f"{name} has shape {array.shape}: give a one-dimensional sequence")

@@ -1,0 +1,105 @@
+"""`beamdyn reproduce` prints the published numbers with verdicts that are computed, and draws the figures."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from beamdyn import reproduce
+from beamdyn.cli import DONE, NO_ANSWER, main
+from beamdyn.report import Comparison, comparison_table, console
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return [*reproduce.first_frequencies(), *reproduce.limits_of_setting_angle(), *reproduce.buckling_speed()]
+
+
+def test_reproduce_prints_and_draws(capsys, tmp_path):
+    assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
+    out, err = capsys.readouterr()
+    assert err == ""
+    for number in ("65.231", "65.230", "65.23045643", "61.96301890", "50.90709537", "50.90705785"):
+        assert number in out
+    for number in ("88.35 to 88.36", "88.359846", "89.6266", "88.372", "88.5343", "159.818332659"):
+        assert number in out
+    for words in (
+        "Modeling and Vibration",
+        "agrees",
+        "differs: unexplained",
+        "linear",
+        "verdicts are as expected",
+    ):
+        assert words in out
+    for name in ("fig_4.png", "fig_8.png", "fig_9.png"):
+        assert (tmp_path / "new" / name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_unexpected_verdict_is_reported(capsys, tmp_path, monkeypatch):
+    first = reproduce.first_frequencies
+    monkeypatch.setattr(
+        reproduce, "first_frequencies", lambda: (replace(r, ours=r.ours + 0.01) for r in first())
+    )
+    monkeypatch.setattr(reproduce, "draw", lambda folder: [])
+    assert main(["reproduce", "--output", str(tmp_path)]) == NO_ANSWER
+    out, err = capsys.readouterr()
+    assert "differs: unexpected" in out
+    assert "not as expected" in err
+
+
+def test_table_2_is_within_a_thousandth_of_ansys(rows):
+    ansys = [r for r in rows if "ANSYS" in r.source]
+    assert len(ansys) == 9
+    assert all(abs(r.deviation) < 1e-3 for r in ansys)
+
+
+def test_only_known_differences(rows):
+    differing = {(r.what, r.source) for r in rows if not r.agrees}
+    models = ("Ritz", "FE", "Ritz + stretch")
+    known = {(f"0 rad/s, {model}", "paper") for model in models}
+    assert differing == known | {("second limit, to 150 rad/s", "paper")}
+
+
+def test_every_cell_has_its_heading(rows, capsys):
+    console().print(comparison_table("title", rows))
+    heading = capsys.readouterr().out.splitlines()[2]
+    assert len(re.findall(r"\S+(?: \S+)*", heading)) == len(rows[0].cells())
+
+
+VALUE = Comparison("f", "x", 65.23, 65.2304, 1e-6, 2)
+INTERVAL = replace(VALUE, published=(65.2, 65.3))
+
+
+def test_a_value_agrees_within_its_rounding_and_our_error():
+    assert VALUE.verdict == "agrees"
+    assert replace(VALUE, ours=65.2350005).agrees
+    assert not replace(VALUE, ours=65.2350005, error=0.0).agrees
+    assert replace(VALUE, ours=65.24).verdict == "differs: unexpected"
+
+
+def test_a_known_difference_must_be_there():
+    assert replace(VALUE, ours=65.24, reason="erratum").as_expected
+    assert not replace(VALUE, reason="erratum").as_expected
+
+
+def test_an_interval_must_hold_the_value():
+    assert INTERVAL.deviation == 0 and INTERVAL.agrees
+    assert replace(INTERVAL, ours=65.31).deviation == pytest.approx(0.01)
+    assert not replace(INTERVAL, ours=65.31).agrees
+
+
+@pytest.mark.slow
+def test_tables_of_other_sources():
+    summaries = list(reproduce.summaries())
+    assert sum(s.values for s in summaries if s.method == "Ritz") == 62
+    for s in summaries:
+        assert s.as_expected, s
+        assert s.deviation < {"Ritz": 1e-9, "FE": 1e-6}[s.method]
+
+
+def test_a_wrong_value_in_the_tables_is_seen():
+    case = reproduce.load("rotating_beams")["case"][0]
+    good = reproduce._solved(case, "ritz")
+    assert reproduce._summary("x", "Ritz", [good]).as_expected
+    printed, ours, error = good
+    assert not reproduce._summary("x", "Ritz", [(printed, ours * (1 + 1e-9), error)]).as_expected

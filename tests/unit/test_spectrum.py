@@ -1,0 +1,128 @@
+"""Natural modes and loci: what they report, how modes are followed, and bad input."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import beamdyn as bd
+from tests.scenes import HARVESTER
+
+COUPLED = bd.Scene(
+    bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=20.0**2),
+    bd.Mount(0.5, np.pi, np.pi / 2 - 0.02),
+    stretch=True,
+)
+
+
+def test_unstable_mode_has_a_growth_rate_and_no_frequency() -> None:
+    modes = bd.natural_modes(HARVESTER, 170.0)
+    assert math.isnan(modes.frequency[0]) and modes.growth_rate[0] > 0
+    assert modes.status.tolist() == ["divergence", "stable", "stable"]
+    assert "unstable" in modes.warnings[0] and math.isnan(modes.static_deflection)
+
+
+def test_exactly_at_the_critical_speed() -> None:
+    """The first mode is stable or not within rounding of zero, and its relative error says so."""
+    modes = bd.natural_modes(HARVESTER, bd.critical_speed(HARVESTER))
+    assert np.abs(modes.eigenvalue[0]) < 1e-4 and modes.error[0] > 1e-4
+    assert (modes.error[1:] < 1e-9).all()
+
+
+def test_growth_is_continuous_through_the_critical_speed() -> None:
+    """lambda^2 is smooth in the squared speed, so its second differences are small on both sides."""
+    speeds = np.sqrt(np.linspace(0.9, 1.1, 21)) * bd.critical_speed(HARVESTER)
+    squared = (bd.frequency_locus(HARVESTER, speeds, 1).eigenvalue[:, 0] ** 2).real
+    assert np.abs(np.diff(squared, 2)).max() < 1e-3 * np.abs(np.diff(squared)).max()
+
+
+def test_locus_equals_modes_one_by_one() -> None:
+    speeds = np.array([-40.0, 0.0, 55.0, 165.0])
+    locus = bd.frequency_locus(HARVESTER, speeds)
+    for s, speed in enumerate(speeds):
+        one = bd.natural_modes(HARVESTER, speed)
+        np.testing.assert_allclose(locus.eigenvalue[s], one.eigenvalue, rtol=1e-10)
+
+
+def test_modes_are_followed_through_a_crossing() -> None:
+    """Stretch and bending cross and veer: followed branches are smooth, sorted ones have kinks."""
+    speeds = np.linspace(0, 12, 121)
+    locus = bd.frequency_locus(COUPLED, speeds, 4)
+    kink = np.abs(np.diff(locus.frequency, 2, axis=0)).max(axis=0)
+    ordered = np.abs(np.diff(np.sort(locus.frequency, axis=1), 2, axis=0)).max(axis=0)
+    assert (np.diff(locus.frequency, axis=1) < 0).any()  # branches have exchanged their places
+    assert kink.max() < ordered.max() / 3
+    assert locus.confidence.min() > 0
+
+
+def test_confidence_is_least_where_modes_veer() -> None:
+    speeds = np.linspace(0, 12, 121)
+    locus = bd.frequency_locus(COUPLED, speeds, 4)
+    nearest = np.abs(np.diff(np.sort(locus.frequency, axis=1), axis=1))[:, 1].argmin()
+    assert abs(int(locus.confidence[:, 1].argmin()) - nearest) <= 1
+    assert locus.confidence[:, 1].min() < 0.8 and locus.confidence[:, 0].min() > 0.99
+
+
+def test_flutter_and_divergence_are_told_apart() -> None:
+    modes = bd.natural_modes(replace(HARVESTER, damping_ratio=0.5), 159.5)
+    assert modes.status[0] == "overdamped" and math.isnan(modes.frequency[0]) and modes.growth_rate[0] < 0
+
+
+def test_axial_strain_and_its_warning() -> None:
+    """A spinning rod: strain rho omega^2 L^2 / (2 E) at the root without hub."""
+    beam = bd.Beam.rectangular(1.0, 0.1, 0.01, 70e9, 2700.0)
+    modes = bd.natural_modes(bd.Scene(beam, bd.Mount(0.0, np.pi)), 800.0)
+    assert modes.axial_strain == pytest.approx(2700 * 800**2 / (2 * 70e9), rel=1e-12)
+    assert any("strain" in text for text in modes.warnings)
+
+
+def test_shapes_are_mass_normalised() -> None:
+    modes = bd.natural_modes(HARVESTER, 50.0)
+    x, w = np.polynomial.legendre.leggauss(40)
+    phi = modes.shape(0.025 * (x + 1))
+    mass = 7850 * 0.01 * 0.0002 * (phi * w * 0.025) @ phi.T
+    np.testing.assert_allclose(mass, np.eye(3), atol=1e-10)
+    np.testing.assert_allclose(modes.shape([0.05])[:, 0], modes.tip, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: bd.natural_modes(HARVESTER, math.nan), ["speed", "nan"]),
+        (lambda: bd.natural_modes(HARVESTER, 1.0, modes=0), ["modes", "0"]),
+        (lambda: bd.natural_modes(HARVESTER, 1.0, modes=2.5), ["modes", "2.5"]),  # pyright: ignore[reportArgumentType]
+        (lambda: bd.natural_modes(HARVESTER, 1.0, modes=20, method=bd.Ritz(10)), ["modes", "20", "Ritz"]),
+        (lambda: bd.natural_modes(HARVESTER, 1.0, modes=500), ["modes", "500", "fewer"]),
+        (lambda: bd.natural_modes(HARVESTER, 1.0, method="bem"), ["method", "bem", "ritz"]),
+        (lambda: bd.frequency_locus(HARVESTER, []), ["speeds", "empty"]),
+        (lambda: bd.frequency_locus(HARVESTER, [1.0, 1.0]), ["speeds", "unique"]),
+        (lambda: bd.frequency_locus(HARVESTER, [2.0, 1.0]), ["speeds", "ascend"]),
+        (lambda: bd.frequency_locus(HARVESTER, np.eye(2)), ["speeds", "(2, 2)"]),
+        (lambda: bd.frequency_locus(HARVESTER, [0.0, math.inf]), ["speeds", "inf"]),
+        (lambda: bd.setting_angle_limits(HARVESTER, -3.0), ["top_speed", "-3"]),
+        (lambda: bd.setting_angle_limits(HARVESTER, math.inf), ["top_speed", "finite"]),
+        (lambda: bd.Ritz(201), ["functions", "201", "200"]),
+        (lambda: bd.Ritz(10, "fourier"), ["basis", "fourier"]),  # pyright: ignore[reportArgumentType]
+        (lambda: bd.Fem(1), ["elements", "1"]),
+        (lambda: bd.Fem(10, "random"), ["mesh", "random"]),  # pyright: ignore[reportArgumentType]
+    ],
+)
+def test_bad_input(call, words) -> None:
+    with pytest.raises(ValueError) as caught:
+        call()
+    assert all(word in str(caught.value) for word in words)
+
+
+@given(st.lists(st.floats(), max_size=5))
+def test_any_speeds_give_an_answer_or_a_sentence(speeds: list[float]) -> None:
+    usable = len(speeds) > 0 and all(map(math.isfinite, speeds)) and speeds == sorted(set(speeds))
+    if usable and max(map(abs, speeds)) < 1e3:
+        assert bd.frequency_locus(HARVESTER, speeds).frequency.shape == (len(speeds), 3)
+    elif not usable:
+        with pytest.raises(ValueError, match="speeds"):
+            bd.frequency_locus(HARVESTER, speeds)
