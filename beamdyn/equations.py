@@ -10,7 +10,7 @@ Derivation and conventions: docs/conventions.md.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 from typing import Literal
 
@@ -214,6 +214,26 @@ class Equations:
             total[..., self.fields[load.rows]] += load.coefficient(root)[..., None] * load.vector
         return total
 
+    def reduced(self, vectors: dict[str, np.ndarray]) -> Equations:
+        """The equations in fewer coordinates: for each field, q = vectors[field] @ q_reduced.
+
+        Parameters
+        ----------
+        vectors : dict of str to ndarray, shape (n, m)
+            Shapes kept of each field: its modes at rest, for instance.
+
+        Returns
+        -------
+        Equations
+        """
+        places, start = {}, 0
+        for name in self.fields:
+            places[name] = slice(start, start + vectors[name].shape[1])
+            start = places[name].stop
+        terms = (replace(t, matrix=vectors[t.rows].T @ t.matrix @ vectors[t.columns]) for t in self.terms)
+        loads = (replace(f, vector=vectors[f.rows].T @ f.vector) for f in self.loads)
+        return replace(self, fields=places, terms=tuple(terms), loads=tuple(loads))
+
     def steady(self) -> SteadyPencil:
         """The equations as a pencil in the speed, about a fixed centre and without gravity."""
         rest, turning = (root_motion(self.mount, MotionSample.steady(speed)) for speed in (0.0, 1.0))
@@ -230,7 +250,7 @@ class Equations:
     def _per_squared_speed(self, turning: RootMotion) -> np.ndarray:
         """Stiffness per squared speed, summed apart from the far larger stiffness at rest."""
         moving = tuple(t for t in self.terms if t.quantity != "unity")
-        return Equations(self.fields, moving, (), self.mount, 0.0, self.operators).matrix(0, turning)
+        return replace(self, terms=moving).matrix(0, turning)
 
 
 def equations(scene: Scene, operators: Operators) -> Equations:

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.eigen import Eigen, Solver
-from beamdyn.equations import Equations, equations
-from beamdyn.operators import Discretization, assemble
+from beamdyn.equations import Equations, SteadyPencil, equations
+from beamdyn.operators import Discretization, Space, assemble
 from beamdyn.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.scene import Scene
 
@@ -43,9 +43,50 @@ class Model:
         """The eigenproblem at steady speed."""
         return Solver(self.equations.steady())
 
+    def modal(self, modes: int) -> ModalEquations:
+        """The equations in the coordinates of the lowest modes at rest, of each field as many."""
+        op = self.equations.operators
+        pairs = {"bending": (op.bending.KB, op.bending.M)}
+        if op.stretch is not None:
+            pairs["stretch"] = (op.stretch.KS, op.stretch.M)
+        vectors = {name: rest_modes(K, M, modes) for name, (K, M) in pairs.items()}
+        vectors["bending"] *= np.sign(op.bending.space.end(0) @ vectors["bending"])
+        return ModalEquations(self.equations.reduced(vectors), vectors["bending"], op.bending.space)
+
     def coarser(self) -> Model:
         """The model that this one is compared with."""
         return Model(self.scene, self.discretization.coarser())
+
+
+@dataclass(frozen=True)
+class ModalEquations:
+    """Equations in modal coordinates of the beam at rest, with unit mass; the deflection comes first.
+
+    Parameters
+    ----------
+    equations : Equations
+        The reduced equations.
+    vectors : ndarray, shape (n, m)
+        Mass-normalised bending modes in the functions of `space`, tip positive.
+    space : Space
+        The functions.
+    """
+
+    equations: Equations
+    vectors: np.ndarray
+    space: Space
+
+    def shape(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
+        """Derivatives of the modes with respect to x/L at fractions xi of the length: shape (m, len(xi))."""
+        return self.vectors.T @ self.space.evaluate(np.asarray(xi, dtype=float), order)
+
+
+def rest_modes(K: np.ndarray, M: np.ndarray, modes: int) -> np.ndarray:
+    """Mass-normalised lowest modes of (K, M): shape (n, modes)."""
+    n = len(K)
+    zero = np.zeros((n, n))
+    solver = Solver(SteadyPencil(M, zero, zero, K, zero, np.zeros(n)))
+    return solver.solve(np.zeros(1), min(modes, n)).vector[0]
 
 
 @dataclass(frozen=True)
@@ -77,6 +118,7 @@ def estimated(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> E
     order = model.discretization.order
     if order is not None:  # Richardson: the two meshes know the leading term of the error
         s = s + distance / (2**order - 1)
+        distance = distance / 3  # what is left even if the meshes converge by the second power only
         fine = Eigen(np.concatenate([s, fine.eigenvalue[:, modes:]], axis=1), fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
         error = np.abs(distance) / np.abs(s) + fine.rounding[:, :modes] + model.discretization.rounding
@@ -143,6 +185,6 @@ def _roomy(discretization: Discretization, modes: int) -> Discretization:
     if not discretization.fits(modes):
         raise ValueError(
             f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "
-            "has too few functions; ask for fewer modes or give it more functions"
+            "has too few functions; ask for fewer modes"
         )
     return discretization

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from beamdyn.stability import SettingAngleLimits
 
 _DIGITS = 10  # most that a table shows
-_PIPE_WIDTH = 112  # of tables that go to a file or another program
+_PIPE_WIDTH = 120  # of tables that go to a file or another program
 
 
 def console() -> Console:

@@ -86,7 +86,7 @@ def first_frequencies() -> Iterator[Comparison]:
     models = (
         ("Ritz", scene, "ritz"),
         ("FE", scene, "fem"),
-        ("Ritz + stretch", replace(scene, stretch=True), "ritz"),
+        ("with stretch", replace(scene, stretch=True), "ritz"),
     )
     for row, exact in zip(paper["first_frequency"], paper["reference"]["first_frequency"], strict=True):
         speed = row["speed"]["value"]
@@ -156,7 +156,7 @@ def _second_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
         what, ours = f"second limit, to {top:g} rad/s", float(np.degrees(found.second))
         error = float(np.degrees(found.error))
         if value is None:
-            yield Comparison(what, _PAPER, printed, ours, error, 2, "see (2)")
+            yield Comparison(what, _PAPER, printed, ours, error, 2, "top speed (2)")
         else:
             yield Comparison(what, _OWN, value, ours, error, _decimals(value))
 

@@ -21,6 +21,7 @@ from beamdyn.tracking import track
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_FASTEST = 1e12  # rad/s: its fourth power is still far from overflow
 _LARGE_STRAIN = 0.01
 LARGE_DEFLECTION = 0.1  # of the length: the limit of linear theory
 _CANDIDATES = 2  # modes above the wanted ones that tracking may exchange with them
@@ -139,7 +140,7 @@ def natural_modes(
         If an argument is out of its range.
     """
     start = perf_counter()
-    speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
+    speeds, modes = _bounded(np.array([real("speed", speed, "rad/s")])), count("modes", modes)
     found = estimated(choose(scene, method, speeds, modes), speeds, modes)
     s, vectors = found.eigen.eigenvalue[0], _tip_positive(found.model, found.eigen.vector[0])
     bending = found.model.equations.operators.bending
@@ -164,6 +165,14 @@ def natural_modes(
         vectors=vectors,
         model=found.model,
     )
+
+
+def _bounded(speeds: np.ndarray) -> np.ndarray:
+    if np.abs(speeds).max() > _FASTEST:
+        raise ValueError(
+            f"speed = {speeds[np.abs(speeds).argmax()]:g} rad/s: give at most {_FASTEST:g} rad/s either way"
+        )
+    return speeds
 
 
 def _tip_positive(model: Model, vectors: np.ndarray) -> np.ndarray:
@@ -330,7 +339,7 @@ def frequency_locus(
         If an argument is out of its range.
     """
     start = perf_counter()
-    speeds, modes = ascending("speeds", speeds), count("modes", modes)
+    speeds, modes = _bounded(ascending("speeds", speeds)), count("modes", modes)
     found = estimated(choose(scene, method, speeds, modes), speeds, modes, extra=_CANDIDATES)
     order, confidence = track(found.eigen.vector, found.model.solver.pencil.M)
     s = np.take_along_axis(found.eigen.eigenvalue, order, axis=1)[:, :modes]

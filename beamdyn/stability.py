@@ -20,6 +20,8 @@ from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION, static_load
 
+_ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
+
 # Critical speed -----------------------------------------------------------------------------------
 
 
@@ -175,7 +177,7 @@ def setting_angle_limits(
     return SettingAngleLimits(
         first=first,
         second=second,
-        error=float(np.nanmax([abs(first - rough[0]), abs(second - rough[1]), 0.0])) + 1e-14,
+        error=_limits_error(first, second, rough, top_speed),
         top_speed=float(top_speed),
         static_deflection=bent,
         warnings=tuple(_limit_warnings(first, second, bent)),
@@ -194,6 +196,13 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
     if np.isinf(top_speed):
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
     return first, _second_limit(pencil, A, B, first, top_speed)
+
+
+def _limits_error(first: float, second: float, rough: tuple[float, float], top_speed: float) -> float:
+    """Distance from the coarser model [rad]; at infinite speed the answer is that of the very basis."""
+    if np.isinf(top_speed):
+        return _ROUNDING
+    return float(np.nanmax([abs(first - rough[0]), abs(second - rough[1]), 0.0])) + _ROUNDING
 
 
 def _arccos(a: float, b: float) -> float:
@@ -230,7 +239,5 @@ def _limit_warnings(first: float, second: float, bent: float) -> Iterator[str]:
     if np.isnan(second):
         yield "no second limit: at the top speed the frequency changes the same way at every setting angle"
     if not bent <= LARGE_DEFLECTION:
-        yield (
-            "at such angles the rotation bends the beam past linear theory "
-            f"(static tip deflection {bent:.3g} of the length at the top speed)"
-        )
+        seen = "" if np.isnan(bent) else f" (static tip deflection {bent:.3g} of the length at the top speed)"
+        yield "at such angles the rotation bends the beam past linear theory" + seen
