@@ -21,7 +21,7 @@ from beamdyn.tracking import track
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_FASTEST = 1e12  # rad/s: its fourth power is still far from overflow
+_FASTEST = 1e50  # rad/s: its fourth power is still far from overflow
 _LARGE_STRAIN = 0.01
 LARGE_DEFLECTION = 0.1  # of the length: the limit of linear theory
 _CANDIDATES = 2  # modes above the wanted ones that tracking may exchange with them
