@@ -17,10 +17,16 @@ __all__ = [
     "Modes",
     "Mount",
     "Ritz",
+    "RoadWave",
+    "RollingWheel",
+    "RotationFunction",
+    "SampledRotation",
     "Scene",
+    "SpinUp",
     "SteadyRotation",
     "Table",
     "TipMass",
+    "UserMotion",
     "critical_point",
     "critical_speed",
     "frequency_locus",
@@ -36,10 +42,16 @@ _HOME = {
     "Modes": "spectrum",
     "Mount": "scene",
     "Ritz": "ritz",
+    "RoadWave": "motion",
+    "RollingWheel": "motion",
+    "RotationFunction": "motion",
+    "SampledRotation": "motion",
     "Scene": "scene",
+    "SpinUp": "motion",
     "SteadyRotation": "motion",
     "Table": "profile",
     "TipMass": "beam",
+    "UserMotion": "motion",
     "critical_point": "stability",
     "critical_speed": "stability",
     "frequency_locus": "spectrum",
@@ -52,7 +64,15 @@ if TYPE_CHECKING:
     from beamdyn.beam import Beam, TipMass
     from beamdyn.config import load_scene
     from beamdyn.fem import Fem
-    from beamdyn.motion import SteadyRotation
+    from beamdyn.motion import (
+        RoadWave,
+        RollingWheel,
+        RotationFunction,
+        SampledRotation,
+        SpinUp,
+        SteadyRotation,
+        UserMotion,
+    )
     from beamdyn.profile import Table
     from beamdyn.ritz import Ritz
     from beamdyn.scene import Mount, Scene

@@ -27,7 +27,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 from beamdyn.beam import Beam, TipMass
 from beamdyn.common.inputs import Quantity, Section, describe
 from beamdyn.common.units import quantity, show
-from beamdyn.motion import SteadyRotation
+from beamdyn.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.profile import Table
 from beamdyn.scene import Mount, Scene
 
@@ -389,7 +389,96 @@ class SteadyInput(CoreSection):
         return SteadyRotation(self.speed)
 
 
-MotionInput = SteadyInput  # a union discriminated by `kind`, like BeamInput, when there are more
+class SpinUpInput(CoreSection):
+    """[motion] of kind "spin_up": from rest to a constant speed about a fixed centre."""
+
+    kind: Annotated[Literal["spin_up"], Field(description="kind of motion")]
+    speed: Annotated[float, Quantity("rad/s", symbol="omega_s", meaning="angular speed of the carrier")]
+    duration: Annotated[float, Quantity("s", symbol="T", meaning="time that the spin-up takes", above=0)]
+    law: Annotated[Literal["smooth", "linear"], Field(description="law of the spin-up")] = SpinUp.law
+
+    @cached_property
+    def core(self) -> SpinUp:
+        """The motion."""
+        return SpinUp(self.speed, self.duration, self.law)
+
+
+class SampledInput(CoreSection):
+    """[motion] of kind "sampled": a table of speeds, about a fixed centre."""
+
+    kind: Annotated[Literal["sampled"], Field(description="kind of motion")]
+    times: list[Annotated[float, Quantity("s", symbol="t", meaning="times of the table, from 0")]]
+    speeds: list[Annotated[float, Quantity("rad/s", symbol="omega", meaning="speeds at these times")]]
+    interpolation: Annotated[
+        Literal["cubic", "pchip"], Field(description="cubic spline, or cubics that do not overshoot")
+    ] = SampledRotation.interpolation
+
+    @cached_property
+    def core(self) -> SampledRotation:
+        """The motion."""
+        return SampledRotation(self.times, self.speeds, self.interpolation)
+
+
+class RoadInput(CoreSection):
+    """[motion.road]: a wavy road, by its height or by the velocity that it gives the wheel."""
+
+    wavelength: Annotated[float, Quantity("m", symbol="lambda", meaning="wavelength of the road", above=0)]
+    velocity_amplitude: (
+        Annotated[
+            float,
+            Quantity("m/s", symbol="C", meaning="amplitude of the wheel's vertical velocity; or height"),
+        ]
+        | None
+    ) = RoadWave.velocity_amplitude
+    height: (
+        Annotated[
+            float,
+            Quantity("m", symbol="A", meaning="amplitude of the road's height; or velocity_amplitude"),
+        ]
+        | None
+    ) = RoadWave.height
+
+    @cached_property
+    def core(self) -> RoadWave:
+        """The road."""
+        return RoadWave(**dict(self))
+
+
+def _kind_of_motion(given: Any) -> str:
+    return f"<{given.get('kind', 'steady')}>" if isinstance(given, dict) else "<steady>"
+
+
+RotationInput = Annotated[
+    Annotated[SteadyInput, Tag("<steady>")]
+    | Annotated[SpinUpInput, Tag("<spin_up>")]
+    | Annotated[SampledInput, Tag("<sampled>")],
+    Discriminator(_kind_of_motion, "kind", "give 'steady', 'spin_up' or 'sampled'"),
+]
+
+
+class RollingInput(CoreSection):
+    """[motion] of kind "rolling": a wheel that rolls, on a flat or a wavy road."""
+
+    kind: Annotated[Literal["rolling"], Field(description="kind of motion")]
+    rolling_radius: Annotated[
+        float, Quantity("m", symbol="R", meaning="distance travelled per angle turned", above=0)
+    ]
+    rotation: RotationInput
+    road: RoadInput | None = None
+
+    @cached_property
+    def core(self) -> RollingWheel:
+        """The motion."""
+        return RollingWheel(self.rolling_radius, self.rotation.core, self.road and self.road.core)
+
+
+MotionInput = Annotated[
+    Annotated[SteadyInput, Tag("<steady>")]
+    | Annotated[SpinUpInput, Tag("<spin_up>")]
+    | Annotated[SampledInput, Tag("<sampled>")]
+    | Annotated[RollingInput, Tag("<rolling>")],
+    Discriminator(_kind_of_motion, "kind", "give 'steady', 'spin_up', 'sampled' or 'rolling'"),
+]
 
 
 class ModelInput(Section):
@@ -443,6 +532,8 @@ def _sentence(error: ErrorDetails) -> str:
         case "value_error":
             reason = str(error.get("ctx", {}).get("error"))
             return f"{path} = {reason}" if reason.startswith(value) else f"{path or 'model'}: {reason}"
+        case "kind":
+            return f"{path}.kind = {show(error['input']['kind'])}: {error['msg']}"
         case "literal_error":
             return f"{path} = {value}: give {error.get('ctx', {}).get('expected')}"
     return f"{path} = {value}: {_WORDS.get(error['type'], error['msg'])}"
@@ -471,5 +562,13 @@ def _nearest(path: str) -> str:
         if i.path.startswith(prefix)
     ]
     known = list(dict.fromkeys(known)) or ["polynomial", "stations", "values"]
+    if key in known and (kinds := _kinds_with(parent, key)):
+        return f"it goes with kind = {' or '.join(kinds)}"
     near = difflib.get_close_matches(key, known, n=1)
     return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+
+
+def _kinds_with(table: str, key: str) -> list[str]:
+    """The kinds of a table that has alternatives, in quotes, of those that know a key."""
+    kinds = (i for i in describe(SceneInput) if i.path == f"{table}.kind")
+    return [show(i.choices[0]) for i in kinds if key in i.section.model_fields]

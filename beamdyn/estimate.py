@@ -76,6 +76,11 @@ class ModalEquations:
     vectors: np.ndarray
     space: Space
 
+    @cached_property
+    def tip(self) -> np.ndarray:
+        """Tip deflection of the modes [kg^-1/2], shape (m,)."""
+        return self.vectors.T @ self.space.end(0)
+
     def shape(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Derivatives of the modes with respect to x/L at fractions xi of the length: shape (m, len(xi))."""
         return self.vectors.T @ self.space.evaluate(np.asarray(xi, dtype=float), order)
@@ -125,7 +130,9 @@ def estimated(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> E
     return Estimated(model, coarse, fine, np.where(np.isnan(error), np.inf, error))
 
 
-def choose(scene: Scene, method: str | Discretization, speeds: np.ndarray, modes: int) -> Model:
+def choose(
+    scene: Scene, method: str | Discretization, speeds: np.ndarray, modes: int, target: float = TARGET
+) -> Model:
     """The smallest model whose estimated error is below the target at the slowest and fastest speed.
 
     Parameters
@@ -138,6 +145,8 @@ def choose(scene: Scene, method: str | Discretization, speeds: np.ndarray, modes
         Speeds at which it will be used [rad/s].
     modes : int
         Modes that are wanted.
+    target : float
+        Relative error of their eigenvalues that is aimed at; finite elements stop at 1e-7.
 
     Returns
     -------
@@ -151,7 +160,7 @@ def choose(scene: Scene, method: str | Discretization, speeds: np.ndarray, modes
     if not isinstance(method, str):
         return Model(scene, _roomy(method, modes))
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
-    target = TARGET if method == "ritz" else _FEM_TARGET
+    target = target if method == "ritz" else max(target, _FEM_TARGET)
     model = None
     for discretization in _ladder(method, scene, modes):
         model = Model(scene, discretization)

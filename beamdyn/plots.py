@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -130,6 +130,79 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
     ax = _dressed(ax, "position along the beam [m]", "deflection / its largest value")
     ax.axhline(0, color="0.4", linewidth=0.8)
     _lines(ax, x, scaled, labels)
+    return _with_legend(ax)
+
+
+def plot_campbell(
+    speeds: np.ndarray,
+    frequency: np.ndarray,
+    lines: Mapping[str, float],
+    crossings: Mapping[str, Sequence[tuple[float, float]]],
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw natural frequencies, excitation lines and their crossings over speed: Campbell's diagram.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    frequency : ndarray, shape (S, m)
+        Natural frequencies [Hz]; nan leaves a gap.
+    lines : mapping of str to float
+        Excitation lines: their frequencies as multiples of the speed.
+    crossings : mapping of str to sequence of (float, float)
+        Speed [rad/s] and natural frequency [Hz] of crossings of each kind.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _over_speed(speeds, frequency, "frequency [Hz]", ax, None, None)
+    top = 1.15 * np.nanmax(frequency, initial=0.0)
+    for i, (name, multiple) in enumerate(lines.items(), np.shape(frequency)[1]):
+        ax.plot(speeds, multiple * speeds / (2 * np.pi), label=name, linewidth=1.2, **_look(i))
+    for marker, (kind, points) in zip("os^v", crossings.items(), strict=False):
+        if points:
+            ax.plot(
+                *zip(*points, strict=True),
+                marker,
+                color="black",
+                markerfacecolor="white",
+                label=kind,
+                zorder=3,
+            )
+    ax.set_ylim(0, top or None)
+    return _with_legend(ax)
+
+
+def plot_response(
+    speeds: np.ndarray, amplitude: np.ndarray, bound: np.ndarray | None = None, ax: Axes | None = None
+) -> Axes:
+    """Draw a resonance curve with a logarithmic scale of deflection.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    amplitude : ndarray, shape (S,)
+        Largest tip deflection [m]; nan leaves a gap.
+    bound : ndarray, shape (S,), optional
+        Sum of the amplitudes of all lines [m].
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _dressed(ax, _SPEED, "largest tip deflection [m]")
+    rows = {"largest over both phases": amplitude, "sum of the lines": amplitude if bound is None else bound}
+    shown = list(rows)[: 1 if bound is None else 2]
+    _lines(ax, speeds, (np.where(rows[name] > 0, rows[name], np.nan) for name in shown), shown)
+    if (np.asarray(amplitude) > 0).any():
+        ax.set_yscale("log")
     return _with_legend(ax)
 
 

@@ -15,7 +15,7 @@ from beamdyn.beam import Beam, TipMass
 from beamdyn.common.inputs import Quantity, Section, describe
 from beamdyn.common.units import quantity
 from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, scene_from_dict
-from beamdyn.motion import SteadyRotation
+from beamdyn.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.profile import Table
 from beamdyn.scene import Mount, Scene
 
@@ -35,6 +35,10 @@ BY_STIFFNESS = {
     "beam": {"length": "50 mm", "mass_per_length": "15.7 g/m", "bending_stiffness": "1.3e-3 N m2"},
     "mount": {"radius": "215 mm"},
 }
+
+SPIN_UP = {"kind": "spin_up", "speed": "55 rad/s", "duration": "10 s"}
+SAMPLED = {"kind": "sampled", "times": ["0 s", "1 s"], "speeds": ["0 rpm", "525 rpm"]}
+ROLLING = {"kind": "rolling", "rolling_radius": "300 mm", "rotation": SPIN_UP}
 
 
 def changed(path, value, scene=HARVESTER):
@@ -127,6 +131,37 @@ def test_every_input_of_the_tip_arrives():
 @pytest.mark.parametrize("motion", [{"speed": "525 rpm"}, {"speed": "525 rpm", "kind": "steady"}])
 def test_steady_motion(motion):
     assert scene_from_dict(changed("motion", motion)).motion == SteadyRotation(quantity("525 rpm", "rad/s"))
+
+
+def motion_of(**keys):
+    return scene_from_dict(changed("motion", keys)).motion
+
+
+def test_published_rolling_scene():
+    strip = load_scene(EXAMPLES / "tyre_harvester.toml")
+    motion = RollingWheel(0.3, SpinUp(55.0, 10.0, "smooth"), RoadWave(0.3, velocity_amplitude=0.01))
+    assert load_scene(EXAMPLES / "rolling_harvester.toml") == Scene(strip.beam, strip.mount, motion)
+
+
+def test_spin_up():
+    given = {"kind": "spin_up", "speed": "55 rad/s", "duration": "1 min"}
+    assert motion_of(**given) == SpinUp(55.0, 60.0)
+    assert motion_of(**given, law="linear") == SpinUp(55.0, 60.0, "linear")
+
+
+def test_table_of_speeds():
+    given = {"kind": "sampled", "times": ["0 s", "500 ms"], "speeds": ["0 rad/s", "55 rad/s"]}
+    assert motion_of(**given) == SampledRotation((0, 0.5), (0, 55))
+    assert motion_of(**given, interpolation="pchip").interpolation == "pchip"
+
+
+def test_rolling():
+    rotation = {"kind": "sampled", "times": ["0 s", "1 s"], "speeds": ["0 rad/s", "5 rad/s"]}
+    road = {"wavelength": "1 m", "height": "2 mm"}
+    given = {"kind": "rolling", "rolling_radius": "30 cm"}
+    assert motion_of(**given, rotation={"speed": "5 rad/s"}) == RollingWheel(0.3, 5.0)
+    wheel = RollingWheel(0.3, SampledRotation((0, 1), (0, 5)), RoadWave(1.0, height=0.002))
+    assert motion_of(**given, rotation=rotation, road=road) == wheel
 
 
 # Mistakes -------------------------------------------------------------------------------------------
@@ -225,7 +260,60 @@ def test_steady_motion(motion):
             {"kind": "steady"},
             "motion.speed: missing; give the angular speed of the carrier [rad/s]",
         ),
-        ("motion", {"kind": "odd", "speed": "1 rpm"}, "motion.kind = \"odd\": give 'steady'"),
+        (
+            "motion",
+            {"kind": "odd", "speed": "1 rpm"},
+            "motion.kind = \"odd\": give 'steady', 'spin_up', 'sampled' or 'rolling'",
+        ),
+        ("motion", {"kind": [1]}, "motion.kind = [1]: give 'steady'"),
+        ("motion", 55, "motion = 55: give a table"),
+        ("motion", {"kind": "spin_up", "speed": "1 rpm"}, "motion.duration: missing; give the time that"),
+        ("motion", SPIN_UP | {"duration": 10}, 'motion.duration = 10: give a unit, e.g. "10 s"'),
+        ("motion", SPIN_UP | {"duration": "-1 s"}, 'motion.duration = "-1 s": it must be greater than 0 s'),
+        ("motion", SPIN_UP | {"law": "odd"}, "motion.law = \"odd\": give 'smooth' or 'linear'"),
+        (
+            "motion",
+            SPIN_UP | {"kind": "steady"},
+            'motion.duration: unknown key; it goes with kind = "spin_up"',
+        ),
+        ("motion", {"road": {}, "speed": "1 rpm"}, 'motion.road: unknown key; it goes with kind = "rolling"'),
+        ("motion", SAMPLED | {"times": ["0 s", "1 m"]}, 'motion.times[1] = "1 m": a unit of length where'),
+        ("motion", SAMPLED | {"times": "0 s"}, 'motion.times = "0 s": give a list'),
+        ("motion", SAMPLED | {"times": ["1 s", "0 s"]}, "motion: times: 1 is followed by 0 s; sort"),
+        ("motion", SAMPLED | {"speeds": ["1 rpm"]}, "motion: times, speeds: 2 times and 1 speeds"),
+        (
+            "motion",
+            ROLLING | {"speed": "1 rpm"},
+            'motion.speed: unknown key; it goes with kind = "steady" or',
+        ),
+        ("motion", ROLLING | {"rolling_radius": "0 m"}, 'motion.rolling_radius = "0 m": it must be greater'),
+        (
+            "motion",
+            {"kind": "rolling", "rolling_radius": "1 m"},
+            "motion.rotation: missing; give a table [motion.rotation]",
+        ),
+        ("motion", ROLLING | {"rotation": ROLLING}, "motion.rotation.kind = \"rolling\": give 'steady', 's"),
+        (
+            "motion",
+            ROLLING | {"road": {}},
+            "motion.road.wavelength: missing; give the wavelength of the road",
+        ),
+        ("motion", ROLLING | {"road": {"wavelength": "-1 m"}}, 'motion.road.wavelength = "-1 m": it must be'),
+        (
+            "motion",
+            ROLLING | {"road": {"wavelength": "1 m"}},
+            "motion.road: neither velocity_amplitude nor height given: give exactly one",
+        ),
+        (
+            "motion",
+            ROLLING | {"road": {"wavelength": "1 m", "height": "1 mm", "velocity_amplitude": "1 m/s"}},
+            "motion.road: velocity_amplitude = 1.0 and height = 0.001 given: give exactly one",
+        ),
+        (
+            "motion",
+            ROLLING | {"road": {"wavelength": "1 m", "height": "1 m/s"}},
+            'motion.road.height = "1 m/s": a unit of velocity where length is wanted',
+        ),
         (
             "motion",
             {"speed": "5 Hz"},
@@ -400,10 +488,12 @@ def test_every_input_of_a_scene_is_described():
         "beam.length",
         "beam.tip.mass",
         "mount.radius",
+        "motion.rotation.duration",
+        "motion.road.height",
         "model.stretch",
     }
 
 
 def test_choices_are_described():
-    (kind,) = [found for found in describe(SceneInput) if found.path == "motion.kind"]
-    assert kind.choices == ("steady",)
+    kinds = [found.choices for found in describe(SceneInput) if found.path == "motion.kind"]
+    assert kinds == [("steady",), ("spin_up",), ("sampled",), ("rolling",)]

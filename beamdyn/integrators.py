@@ -1,0 +1,399 @@
+"""Integrators for linear second-order systems q'' + C(t) q' + K(t) q = f(t).
+
+Gauss collocation: of order 2 s with s stages, symmetric, without numerical damping (quadratic
+invariants are kept), stable at any step.  Since the system is linear, the steps of a block are
+assembled and solved as one batch of affine maps, and only the product of the maps with the state
+is sequential.  Written once as a propagator over blocks; `GaussCollocation` offers it to
+`scipy.integrate.solve_ivp`.
+
+References
+----------
+Hairer, Lubich, Wanner, Geometric Numerical Integration, 2006, sections II.1.3 and IV.2.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.integrate import DenseOutput, OdeSolver
+
+BLOCK = 64  # steps solved as one batch: their matrices fit the processor's cache
+
+
+class LinearSystem(Protocol):
+    """q'' + C(t) q' + K(t) q = f(t) with n coordinates."""
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        ...
+
+    def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
+        """C (None if zero), K and f at times t of any shape: shapes (..., n, n) and (..., n)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Tableau:
+    """Gauss collocation on [0, 1], for accelerations a_j at the nodes.
+
+    Parameters
+    ----------
+    c : ndarray, shape (s,)
+        Nodes.
+    b, A : ndarray, shape (s,) and (s, s)
+        Weights of the velocity at the end and at the nodes.
+    once : ndarray, shape (s + 1, s)
+        Legendre coefficients on [0, 1] of the integrals of the node polynomials, for dense output.
+    """
+
+    c: np.ndarray
+    b: np.ndarray
+    A: np.ndarray
+    once: np.ndarray
+
+    @property
+    def A2(self) -> np.ndarray:
+        """Weights of the displacement at the nodes.
+
+        The square of A, which integrates the velocity's values at the nodes, and not the twice
+        integrated acceleration: only so is the method the A-stable one of the first-order system.
+        """
+        return self.A @ self.A
+
+    @property
+    def b2(self) -> np.ndarray:
+        """Weights of the displacement at the end, likewise."""
+        return self.b @ self.A
+
+
+@cache
+def tableau(stages: int) -> Tableau:
+    """The tableau of so many stages, by Legendre series: no ill-conditioned Vandermonde matrix."""
+    x, w = legendre.leggauss(stages)
+    k = np.arange(stages)
+    nodal = ((2 * k + 1) / 2)[:, None] * (legendre.legvander(x, stages - 1) * w[:, None]).T
+    once = legendre.legint(nodal, lbnd=-1, scl=0.5)
+    b, A = (legendre.legvander(p, stages) @ once for p in (np.ones(1), x))
+    return Tableau(c=(x + 1) / 2, b=b[0], A=A, once=once)
+
+
+@dataclass(frozen=True)
+class Maps:
+    """Affine maps of a block of N steps, on the augmented state (1, q, v) of length 2 n + 1.
+
+    Parameters
+    ----------
+    step : ndarray, shape (N, 2 n, 2 n + 1)
+        From the state to (q, v) at the end of the step.
+    stages : ndarray, shape (N, s, n, 2 n + 1)
+        From the state to the accelerations at the nodes.
+    """
+
+    step: np.ndarray
+    stages: np.ndarray
+
+
+def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> Maps:
+    """Solve the collocation equations of all steps that begin at `starts` [s] with length h [s].
+
+    The accelerations a_i at the nodes satisfy
+    a_i + C_i (v + h sum A_ij a_j) + K_i (q + c_i h v + h^2 sum A2_ij a_j) = f_i.
+    """
+    C, K, f = system.coefficients(starts[:, None] + h * table.c)
+    C, K, f, repeat = _without_repeats(C, K, f)
+    N, s, n = f.shape
+    a = np.linalg.solve(_left(C, K, h, table), _right(C, K, f, h, table))
+    a = a.reshape(N, s, n, 2 * n + 1)
+    weights = np.stack([h**2 * table.b2, h * table.b])  # of displacement and velocity at the end
+    step = (weights @ a.reshape(N, s, n * (2 * n + 1))).reshape(N, 2 * n, 2 * n + 1)
+    step[:, np.arange(2 * n), np.arange(1, 2 * n + 1)] += 1
+    step[:, np.arange(n), np.arange(n + 1, 2 * n + 1)] += h
+    return Maps(np.repeat(step, repeat, axis=0), np.repeat(a, repeat, axis=0)) if repeat > 1 else Maps(step, a)
+
+
+def _left(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """Matrix of the accelerations at all nodes: shape (N, s n, s n)."""
+    N, s, n, _ = K.shape
+    left = np.empty((N, s, n, s, n))
+    np.multiply(h**2 * table.A2[None, :, None, :, None], K[:, :, :, None, :], out=left)
+    if C is not None:
+        left += h * table.A[None, :, None, :, None] * C[:, :, :, None, :]
+    left = left.reshape(N, s * n, s * n)
+    left[:, np.arange(s * n), np.arange(s * n)] += 1
+    return left
+
+
+def _right(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """Right-hand sides for the augmented state (1, q, v): shape (N, s n, 2 n + 1)."""
+    N, s, n = f.shape
+    right = np.empty((N, s, n, 2 * n + 1))
+    right[..., 0] = f
+    np.negative(K, out=right[..., 1 : n + 1])
+    np.multiply(-h * table.c[:, None, None], K, out=right[..., n + 1 :])
+    if C is not None:
+        right[..., n + 1 :] -= C
+    return right.reshape(N, s * n, 2 * n + 1)
+
+
+def _without_repeats(
+    C: np.ndarray | None, K: np.ndarray, f: np.ndarray
+) -> tuple[np.ndarray | None, np.ndarray, np.ndarray, int]:
+    """One step in place of a block of equal ones, and how many it stands for."""
+    same = len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f))
+    if not same:
+        return C, K, f, 1
+    return None if C is None else C[:1], K[:1], f[:1], len(f)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of a trajectory in equal steps.
+
+    Parameters
+    ----------
+    start, h : float
+        Its beginning and step [s].
+    state : ndarray, shape (N + 1, 2 n + 1)
+        Augmented states (1, q, v) at the ends of the steps.
+    acceleration : ndarray, shape (N, s, n)
+        Accelerations at the nodes of each step.
+    """
+
+    start: float
+    h: float
+    state: np.ndarray
+    acceleration: np.ndarray
+
+    @property
+    def end(self) -> float:
+        """Its end [s]."""
+        return self.start + self.h * len(self.acceleration)
+
+    def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Times, displacements and velocities at `count` equal parts of each step, its end left out."""
+        theta = np.arange(count) / count
+        q, v = interior(self.h, self.state[:-1], self.acceleration, theta)
+        t = self.start + self.h * (np.arange(len(q))[:, None] + theta)
+        return t.ravel(), q.reshape(t.size, -1), v.reshape(t.size, -1)
+
+    def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement and velocity at times t [s] by the collocation polynomials: shape (len(t), n)."""
+        N, s, n = self.acceleration.shape
+        x = (np.asarray(t, dtype=float) - self.start) / self.h
+        k = np.clip(x.astype(int), 0, N - 1)
+        table, theta = tableau(s), x - k
+        weights = legendre.legvander(2 * theta - 1, s) @ table.once
+        a, state = self.acceleration[k], self.state[k]
+        q, v = state[:, 1 : n + 1], state[:, n + 1 :]
+        moved = np.einsum("tj,tjn->tn", weights @ table.A, a)
+        gained = np.einsum("tj,tjn->tn", weights, a)
+        return q + (theta * self.h)[:, None] * v + self.h**2 * moved, v + self.h * gained
+
+
+def interior(
+    h: float, state: np.ndarray, acceleration: np.ndarray, theta: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement and velocity at the same fractions of every step, by the collocation polynomials.
+
+    Parameters
+    ----------
+    h : float
+        Step [s].
+    state : ndarray, shape (N, 2 n + 1)
+        Augmented states at the beginnings of the steps.
+    acceleration : ndarray, shape (N, s, n)
+        Accelerations at their nodes.
+    theta : ndarray, shape (k,)
+        Fractions of a step.
+
+    Returns
+    -------
+    q, v : ndarray, shape (N, k, n)
+    """
+    _, s, n = acceleration.shape
+    table = tableau(s)
+    weights = legendre.legvander(2 * theta - 1, s) @ table.once
+    q, v = state[:, None, 1 : n + 1], state[:, None, n + 1 :]
+    moved = h**2 * ((weights @ table.A) @ acceleration)
+    return q + h * theta[:, None] * v + moved, v + h * (weights @ acceleration)
+
+
+def propagate(
+    system: LinearSystem, t0: float, t1: float, steps: int, q0: np.ndarray, v0: np.ndarray, stages: int = 8
+) -> Piece:
+    """Advance a state over equal steps.
+
+    Parameters
+    ----------
+    system : LinearSystem
+        The equations; smooth between t0 and t1.
+    t0, t1 : float
+        Beginning and end [s].
+    steps : int
+        Number of steps.
+    q0, v0 : ndarray, shape (n,)
+        Displacement and velocity at t0.
+    stages : int
+        Stages s of each step; the order is 2 s.
+
+    Returns
+    -------
+    Piece
+    """
+    h, n = (t1 - t0) / steps, system.size
+    state = np.empty((steps + 1, 2 * n + 1))
+    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    acceleration = np.empty((steps, stages, n))
+    powers = None
+    for first, last in _blocks(steps):
+        maps = step_maps(system, t0 + h * np.arange(first, last), h, tableau(stages))
+        powers = _advance(maps, state[first : last + 1], powers)
+        block = slice(first, last)
+        acceleration[block] = np.einsum("ksnj,kj->ksn", maps.stages, state[block], optimize=True)
+    return Piece(t0, h, state, acceleration)
+
+
+def _blocks(steps: int) -> Iterator[tuple[int, int]]:
+    for first in range(0, steps, BLOCK):
+        yield first, min(first + BLOCK, steps)
+
+
+def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
+    """Fill state[1:] from state[0]; for a block of equal maps by powers, which are handed on."""
+    if len(maps.step) > 1 and (maps.step == maps.step[0]).all():
+        if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
+            powers = _powers(maps.step[0], len(maps.step))
+        state[1:, 1:] = powers[: len(maps.step)] @ state[0]
+        return powers
+    for k, step in enumerate(maps.step):
+        np.dot(step, state[k], out=state[k + 1, 1:])
+    return None
+
+
+def _powers(step: np.ndarray, count: int) -> np.ndarray:
+    """Powers of an affine map, in extended precision: rounding then enters once a block, not each step."""
+    n = len(step)
+    full = np.eye(n + 1, dtype=np.longdouble)
+    full[1:] = step
+    power, rows = full, []
+    for _ in range(count):
+        rows.append(power[1:])
+        power = full @ power
+    return np.array(rows, dtype=float)
+
+
+class GaussCollocation(OdeSolver):
+    """Gauss collocation for `solve_ivp`: dense output, events, `t_eval` and error control as usual.
+
+    ``solve_ivp(system.rhs, (t0, t1), y0, method=GaussCollocation, system=system)`` integrates
+    y = (q, q') of a `LinearSystem`, which arrives by the option `system`: it must answer C(t),
+    K(t) and f(t) at arrays of times.  The right-hand side is used by `solve_ivp` alone.
+
+    Parameters
+    ----------
+    system : LinearSystem
+        The equations.
+    stages : int
+        Stages s; the order is 2 s.
+    rtol, atol : float
+        Bounds of the local error, which is found by a method of two more stages at the ends of
+        each block of steps.
+    first_step, max_step : float
+        Step of the first block, and largest step [s].
+    block : int
+        Steps solved as one batch, of equal length.
+    """
+
+    def __init__(
+        self,
+        fun: Any,
+        t0: float,
+        y0: np.ndarray,
+        t_bound: float,
+        vectorized: bool = False,
+        *,
+        system: LinearSystem,
+        stages: int = 8,
+        rtol: float = 1e-6,
+        atol: float = 1e-9,
+        first_step: float | None = None,
+        max_step: float = np.inf,
+        block: int = 16,
+    ) -> None:
+        super().__init__(fun, t0, y0, t_bound, vectorized)
+        if t_bound < t0:
+            raise ValueError(f"t_span = ({t0:g}, {t_bound:g}): GaussCollocation integrates forward only")
+        self.system, self.stages, self.block = system, stages, block
+        self.rtol, self.atol, self.max_step = rtol, atol, max_step
+        self.h = min(max_step, first_step or self._first_step(t0, t_bound))
+        self.queue: list[tuple[float, np.ndarray, np.ndarray]] = []
+
+    def _first_step(self, t0: float, t_bound: float) -> float:
+        """A step of about one radian of the fastest motion."""
+        _, K, _ = self.system.coefficients(np.array([t0]))
+        fastest = np.sqrt(np.abs(np.linalg.eigvals(K[0])).max())
+        return min(1 / fastest if fastest else np.inf, (t_bound - t0) / 2)
+
+    def _step_impl(self) -> tuple[bool, str | None]:
+        if not self.queue:
+            self._solve_block()
+        self.start, self.begin, self.accelerations = self.t, self.augmented(), None
+        end, step, stages = self.queue.pop(0)
+        self.accelerations = stages @ self.begin
+        self.y = step @ self.begin
+        self.taken, self.t = end - self.t, end
+        return True, None
+
+    def augmented(self) -> np.ndarray:
+        """The state (1, q, v)."""
+        return np.concatenate([[1.0], self.y])
+
+    def _solve_block(self) -> None:
+        """Choose the step of the next block by its local error and solve it; growth is bounded by 4."""
+        order = 2 * self.stages + 1
+        while True:
+            left = self.t_bound - self.t
+            count = min(self.block, max(1, int(np.ceil(left / self.h * (1 - 1e-12)))))
+            h = min(self.h, left / count) if count < self.block else self.h
+            starts = self.t + h * np.arange(count)
+            maps = step_maps(self.system, starts, h, tableau(self.stages))
+            error = self._error(maps, starts, h)
+            self.h = min(self.max_step, h * min(4.0, max(0.1, 0.9 * (error + 1e-30) ** (-1 / order))))
+            if error <= 1:
+                break
+        ends = [*starts[1:], self.t_bound if h * count >= left * (1 - 1e-12) else starts[-1] + h]
+        self.queue = list(zip(ends, maps.step, maps.stages, strict=True))
+
+    def _error(self, maps: Maps, starts: np.ndarray, h: float) -> float:
+        """Local error at both ends of the block over its bound: 1 is the most allowed."""
+        y = self.augmented()
+        first = y
+        for step in maps.step[:-1]:
+            y = np.concatenate([[1.0], step @ y])
+        finer = step_maps(self.system, starts[[0, -1]], h, tableau(self.stages + 2)).step
+        found = np.array([maps.step[0] @ first, maps.step[-1] @ y])
+        wanted = np.array([finer[0] @ first, finer[-1] @ y])
+        scale = self.atol + self.rtol * np.maximum(np.abs(found), np.abs(wanted))
+        return float(np.sqrt(np.mean(((found - wanted) / scale) ** 2, axis=1)).max())
+
+    def _dense_output_impl(self) -> DenseOutput:
+        state = np.stack([self.begin, self.augmented()])
+        return _Dense(Piece(self.start, self.taken, state, self.accelerations[None]))
+
+
+class _Dense(DenseOutput):
+    """A step's collocation polynomials in the form that `solve_ivp` asks for."""
+
+    def __init__(self, piece: Piece) -> None:
+        super().__init__(piece.start, piece.end)
+        self.piece = piece
+
+    def _call_impl(self, t: np.ndarray) -> np.ndarray:
+        y = np.concatenate(self.piece.at(np.atleast_1d(t)), axis=1).T
+        return y[:, 0] if np.ndim(t) == 0 else y
