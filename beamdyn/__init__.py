@@ -12,7 +12,10 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Beam",
+    "Crossing",
+    "Crossings",
     "Fem",
+    "GaussCollocation",
     "Locus",
     "Modes",
     "Mount",
@@ -23,21 +26,32 @@ __all__ = [
     "SampledRotation",
     "Scene",
     "SpinUp",
+    "SteadyResponse",
     "SteadyRotation",
+    "Sweep",
+    "SweepInterrupted",
     "Table",
     "TipMass",
+    "Transient",
     "UserMotion",
     "critical_point",
     "critical_speed",
     "frequency_locus",
     "load_scene",
     "natural_modes",
+    "resonance_speeds",
     "setting_angle_limits",
+    "simulate",
+    "steady_response",
+    "sweep",
 ]
 
 _HOME = {
     "Beam": "beam",
+    "Crossing": "resonance",
+    "Crossings": "resonance",
     "Fem": "fem",
+    "GaussCollocation": "integrators",
     "Locus": "spectrum",
     "Modes": "spectrum",
     "Mount": "scene",
@@ -48,22 +62,31 @@ _HOME = {
     "SampledRotation": "motion",
     "Scene": "scene",
     "SpinUp": "motion",
+    "SteadyResponse": "steady",
     "SteadyRotation": "motion",
+    "Sweep": "sweeps",
+    "SweepInterrupted": "sweeps",
     "Table": "profile",
     "TipMass": "beam",
+    "Transient": "transient",
     "UserMotion": "motion",
     "critical_point": "stability",
     "critical_speed": "stability",
     "frequency_locus": "spectrum",
     "load_scene": "config",
     "natural_modes": "spectrum",
+    "resonance_speeds": "resonance",
     "setting_angle_limits": "stability",
+    "simulate": "transient",
+    "steady_response": "steady",
+    "sweep": "sweeps",
 }
 
 if TYPE_CHECKING:
     from beamdyn.beam import Beam, TipMass
     from beamdyn.config import load_scene
     from beamdyn.fem import Fem
+    from beamdyn.integrators import GaussCollocation
     from beamdyn.motion import (
         RoadWave,
         RollingWheel,
@@ -74,10 +97,14 @@ if TYPE_CHECKING:
         UserMotion,
     )
     from beamdyn.profile import Table
+    from beamdyn.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.ritz import Ritz
     from beamdyn.scene import Mount, Scene
     from beamdyn.spectrum import Locus, Modes, frequency_locus, natural_modes
     from beamdyn.stability import critical_point, critical_speed, setting_angle_limits
+    from beamdyn.steady import SteadyResponse, steady_response
+    from beamdyn.sweeps import Sweep, SweepInterrupted, sweep
+    from beamdyn.transient import Transient, simulate
 
 
 def __getattr__(name: str) -> Any:

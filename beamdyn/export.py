@@ -1,4 +1,4 @@
-"""Mode shapes as mesh files, for ParaView and the like; the only module that knows meshio."""
+"""Mode shapes and motions as mesh files, for ParaView and the like (the only module that knows meshio), and animations."""
 
 from __future__ import annotations
 
@@ -12,8 +12,13 @@ from beamdyn.common.checks import ascending
 
 if TYPE_CHECKING:
     import meshio
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.text import Text
 
-_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
+SHAPE_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
+SERIES_SUFFIXES = (".xdmf",)  # with the numbers as text, for which it does not
+ANIMATION_SUFFIXES = (".gif",)
 _LARGEST = 0.1  # drawn deflection over the length
 
 
@@ -56,7 +61,7 @@ def write_shapes(
     FileNotFoundError
         If there is no such directory.
     """
-    path = output_path(path, _SUFFIXES, force)
+    path = output_path(path, SHAPE_SUFFIXES, force)
     kind = path.suffix[1:].lower()
     strip = _strip(x := ascending("x", x), width)
     fields = _scaled(_checked(x, shapes, labels), _LARGEST * (x[-1] - x[0]))
@@ -64,6 +69,105 @@ def write_shapes(
         name = label.replace(" ", "_") if kind == "vtk" else label
         strip.point_data[name] = _displacement(deflection, len(strip.points))
     strip.write(path, file_format=kind)
+
+
+def write_series(
+    path: str | Path,
+    x: np.ndarray | Sequence[float],
+    t: np.ndarray | Sequence[float],
+    deflection: np.ndarray,
+    width: float | np.ndarray | Sequence[float] | None = None,
+    force: bool = False,
+) -> None:
+    """Write the deflected beam over time as one mesh with a displacement field at each time.
+
+    The file is in the beam's own axes, as that of `write_shapes`, but deflections keep their size.
+    In ParaView (reader "Xdmf3" or "XDMF") use "Warp By Vector" and play.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write, .xdmf.
+    x : array_like, shape (n,)
+        Positions along the beam [m], ascending, at least two.
+    t : array_like, shape (k,)
+        Times [s], ascending.
+    deflection : ndarray, shape (k, n)
+        Deflections at the times and positions [m].
+    width : float or array_like, shape (n,), optional
+        Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
+    force : bool
+        Overwrite a file that exists.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is unknown or the arrays do not fit together.
+    FileExistsError
+        If the file exists and `force` is not set.
+    FileNotFoundError
+        If there is no such directory.
+    """
+    from meshio.xdmf import TimeSeriesWriter
+
+    path = output_path(path, SERIES_SUFFIXES, force)
+    x, t, deflection = _history(x, t, deflection)
+    strip = _strip(x, width)
+    with TimeSeriesWriter(path, data_format="XML") as writer:
+        writer.write_points_cells(strip.points, strip.cells)
+        for time, row in zip(t.tolist(), deflection, strict=True):
+            writer.write_data(time, {"displacement": _displacement(row, len(strip.points))})
+
+
+def animate(
+    x: np.ndarray | Sequence[float],
+    t: np.ndarray | Sequence[float],
+    deflection: np.ndarray,
+    path: str | Path,
+    force: bool = False,
+    rate: float = 20.0,
+) -> None:
+    """Write an animation of the beam, one picture a time.
+
+    Parameters
+    ----------
+    x : array_like, shape (n,)
+        Positions along the beam [m], ascending.
+    t : array_like, shape (k,)
+        Times [s], ascending; several in each period of what is to be seen.
+    deflection : ndarray, shape (k, n)
+        Deflections at the times and positions [m].
+    path : str or Path
+        File to write, .gif.
+    force : bool
+        Overwrite a file that exists.
+    rate : float
+        Pictures a second.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is unknown or the arrays do not fit together.
+    FileExistsError
+        If the file exists and `force` is not set.
+    FileNotFoundError
+        If there is no such directory.
+    """
+    from matplotlib.animation import PillowWriter
+    from matplotlib.figure import Figure
+
+    path = output_path(path, ANIMATION_SUFFIXES, force)
+    x, t, deflection = _history(x, t, deflection)
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    line, clock = _stage(figure.subplots(), x, np.abs(deflection).max())
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out once, not for each picture
+    writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
+    with writer.saving(figure, str(path), dpi=100):
+        for time, row in zip(t, deflection, strict=True):
+            line.set_ydata(1e3 * row)
+            clock.set_text(f"t = {time:.4f} s")
+            writer.grab_frame()
 
 
 def output_path(path: str | Path, suffixes: Sequence[str], force: bool = False) -> Path:
@@ -114,6 +218,30 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) ->
     j = i + len(x)
     points = np.concatenate([_points(x, -half), _points(x, half)])
     return meshio.Mesh(points, [("quad", np.stack([i, i + 1, j + 1, j], axis=1))])
+
+
+def _history(
+    x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float], deflection: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    x, t, deflection = ascending("x", x), ascending("t", t), np.asarray(deflection, dtype=float)
+    if deflection.shape != (len(t), len(x)):
+        raise ValueError(
+            f"deflection has shape {deflection.shape}: {len(t)} times and {len(x)} positions expected"
+        )
+    if not np.isfinite(deflection).all():
+        raise ValueError("deflection: every value must be finite")
+    return x, t, deflection
+
+
+def _stage(ax: Axes, x: np.ndarray, largest: float) -> tuple[Line2D, Text]:
+    """The line of the beam and the text of the time, on axes that hold all of the motion."""
+    reach = 1.1e3 * largest or 1.0
+    ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
+    ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
+    ax.grid(color="0.85", linewidth=0.7)
+    ax.axhline(0, color="0.4", linewidth=0.8)
+    (line,) = ax.plot(1e3 * x, 0 * x, color="#0072B2", linewidth=2.5)
+    return line, ax.set_title("t = 0 s")
 
 
 def _half_width(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> np.ndarray:

@@ -22,6 +22,7 @@ Pair = tuple[int, int]  # a harmonic (j, k)
 
 _EPS = np.finfo(float).eps
 _NEUTRAL = 1e-9  # real part, relative to the largest eigenvalue, below which it is rounding
+_SHARE = 0.1  # of a vector, that is 0.5 in a tongue of two modes and near 1 outside
 _PEAKS = 6  # largest maxima of the samples on the torus, from which the largest is refined
 _REFINEMENTS = 4  # Newton steps; the error of a sample is squared by each
 
@@ -263,11 +264,11 @@ def growth(system: TorusSystem, interactions: int) -> np.ndarray:
     meet = _discs_meet(sigma, V, omega)
     for i in np.flatnonzero(meet):
         hill = _hill(sigma[i], [(f[i : i + 1], v[i]) for f, v in V], omega[i], harmonics)
-        rate[steady[i]] = _grown(np.linalg.eigvals(hill), largest[steady[i]])
+        rate[steady[i]] = _hill_growth(hill, A.shape[-1], largest[steady[i]])
     return rate
 
 
-def _grown(s: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def _grown(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
     """Largest real part, 0 where it is rounding."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _NEUTRAL * scale, 0.0, largest)
@@ -308,6 +309,20 @@ def _discs_meet(sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]], omega
     opposite = (np.imag(sigma) >= 0)[:, :, None] & (np.imag(sigma) <= 0)[:, None, :]
     rightmost = (np.real(sigma) + radius).max(axis=1) > 0
     return (near & opposite[..., None]).any(axis=(1, 2, 3)) & rightmost
+
+
+def _hill_growth(hill: np.ndarray, n: int, scale: float) -> np.ndarray:
+    """Largest real part, of vectors with a good share in the first harmonic, which has all its neighbours.
+
+    Every exponent s comes again as s + i Omega_h about each harmonic; at the rim, where neighbours are cut
+    off, these copies are off.  In a tongue the vector is shared by two harmonics in equal parts.
+    """
+    rate = _grown(np.linalg.eigvals(hill), scale)
+    if rate <= 0:
+        return rate
+    s, z = np.linalg.eig(hill)
+    share = (np.abs(z[:n]) ** 2).sum(axis=0) / (np.abs(z) ** 2).sum(axis=0)
+    return _grown(s[share > _SHARE], scale)
 
 
 def _hill(
@@ -368,7 +383,7 @@ def _peaks(sampled: np.ndarray) -> np.ndarray:
     top = np.ones(sampled.shape, dtype=bool)
     for shift in ((a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)):
         top &= sampled >= np.roll(sampled, shift, axis=(1, 2))
-    flat = np.where(top, sampled, -1.0).reshape(len(sampled), -1)
+    flat = np.where(top, sampled, -1.0).reshape(len(sampled), np.prod(sampled.shape[1:]))
     chosen = np.argpartition(-flat, min(_PEAKS, flat.shape[1] - 1), axis=1)[:, :_PEAKS]
     return np.stack(np.unravel_index(chosen, sampled.shape[1:]), axis=-1)
 

@@ -93,10 +93,13 @@ class Maps:
         From the state to (q, v) at the end of the step.
     stages : ndarray, shape (N, s, n, 2 n + 1)
         From the state to the accelerations at the nodes.
+    every : ndarray of longdouble, shape (2 n, 2 n + 1), optional
+        If all steps are equal, their map in extended precision.
     """
 
     step: np.ndarray
     stages: np.ndarray
+    every: np.ndarray | None = None
 
 
 def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> Maps:
@@ -106,15 +109,37 @@ def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau
     a_i + C_i (v + h sum A_ij a_j) + K_i (q + c_i h v + h^2 sum A2_ij a_j) = f_i.
     """
     C, K, f = system.coefficients(starts[:, None] + h * table.c)
-    C, K, f, repeat = _without_repeats(C, K, f)
-    N, s, n = f.shape
+    if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
+        return _equal_maps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
     a = np.linalg.solve(_left(C, K, h, table), _right(C, K, f, h, table))
-    a = a.reshape(N, s, n, 2 * n + 1)
+    return Maps(_step(a, h, table), a.reshape(*f.shape, -1))
+
+
+def _equal_maps(
+    C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau, count: int
+) -> Maps:
+    """Maps of equal steps, solved once and refined: their error would grow with every power."""
+    left, right = _left(C, K, h, table), _right(C, K, f, h, table)
+    a = np.linalg.solve(left, right).astype(np.longdouble)
+    for _ in range(2):
+        a += np.linalg.solve(left, (right - left.astype(np.longdouble) @ a).astype(float))
+    step, stages = _step(a, h, table)[0], a.astype(float).reshape(*f.shape, -1)
+    return Maps(
+        np.broadcast_to(step.astype(float), (count, *step.shape)),
+        np.broadcast_to(stages, (count, *stages.shape[1:])),
+        every=step,
+    )
+
+
+def _step(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """Maps to (q, v) at the ends of the steps, shape (N, 2 n, 2 n + 1), from the accelerations."""
+    N, rows, columns = a.shape
+    n = rows // len(table.c)
     weights = np.stack([h**2 * table.b2, h * table.b])  # of displacement and velocity at the end
-    step = (weights @ a.reshape(N, s, n * (2 * n + 1))).reshape(N, 2 * n, 2 * n + 1)
+    step = (weights @ a.reshape(N, len(table.c), n * columns)).reshape(N, 2 * n, columns)
     step[:, np.arange(2 * n), np.arange(1, 2 * n + 1)] += 1
     step[:, np.arange(n), np.arange(n + 1, 2 * n + 1)] += h
-    return Maps(np.repeat(step, repeat, axis=0), np.repeat(a, repeat, axis=0)) if repeat > 1 else Maps(step, a)
+    return step
 
 
 def _left(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
@@ -266,9 +291,9 @@ def _blocks(steps: int) -> Iterator[tuple[int, int]]:
 
 def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
     """Fill state[1:] from state[0]; for a block of equal maps by powers, which are handed on."""
-    if len(maps.step) > 1 and (maps.step == maps.step[0]).all():
+    if maps.every is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
-            powers = _powers(maps.step[0], len(maps.step))
+            powers = _powers(maps.every, len(maps.step))
         state[1:, 1:] = powers[: len(maps.step)] @ state[0]
         return powers
     for k, step in enumerate(maps.step):
@@ -277,7 +302,7 @@ def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.nda
 
 
 def _powers(step: np.ndarray, count: int) -> np.ndarray:
-    """Powers of an affine map, in extended precision: rounding then enters once a block, not each step."""
+    """Powers of an affine map of extended precision: rounding then enters once a block, not each step."""
     n = len(step)
     full = np.eye(n + 1, dtype=np.longdouble)
     full[1:] = step

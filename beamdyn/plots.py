@@ -15,6 +15,7 @@ from beamdyn.export import output_path
 # Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 _DASHES = ("-", "--", "-.", ":")
+_DENSE = 2000  # samples from which a line over time is drawn thin
 _MANY = 6  # entries from which the legend stands beside the data
 _SUFFIXES = (".png", ".svg", ".pdf")
 _SPEED = "angular speed [rad/s]"
@@ -160,7 +161,8 @@ def plot_campbell(
     Axes
     """
     ax = _over_speed(speeds, frequency, "frequency [Hz]", ax, None, None)
-    top = 1.15 * np.nanmax(frequency, initial=0.0)
+    fastest = max(lines.values(), default=np.inf) * np.abs(speeds).max() / (2 * np.pi)
+    top = 1.15 * min(np.nanmax(frequency), max(fastest, np.nanmax(frequency[:, 0])))  # where lines can cross
     for i, (name, multiple) in enumerate(lines.items(), np.shape(frequency)[1]):
         ax.plot(speeds, multiple * speeds / (2 * np.pi), label=name, linewidth=1.2, **_look(i))
     for marker, (kind, points) in zip("os^v", crossings.items(), strict=False):
@@ -173,7 +175,7 @@ def plot_campbell(
                 label=kind,
                 zorder=3,
             )
-    ax.set_ylim(0, top or None)
+    ax.set_ylim(0, top)
     return _with_legend(ax)
 
 
@@ -204,6 +206,50 @@ def plot_response(
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
     return _with_legend(ax)
+
+
+def plot_transient(t: np.ndarray, tip: np.ndarray, ax: Axes | None = None) -> Axes:
+    """Draw the tip deflection over time.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Times [s].
+    tip : ndarray, shape (n,)
+        Tip deflection [m].
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _dressed(ax, "time [s]", "tip deflection [mm]")
+    ax.plot(t, 1e3 * np.asarray(tip), color=COLOURS[0], linewidth=0.8 if len(t) > _DENSE else 1.8)
+    ax.margins(x=0)
+    return ax
+
+
+def plot_sweep(speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None) -> Axes:
+    """Draw the peaks of transients over speed.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    peaks : ndarray, shape (S,)
+        Largest tip deflections [m]; nan leaves a gap.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _dressed(ax, _SPEED, "peak of the tip deflection [mm]")
+    _lines(ax, speeds, [1e3 * np.asarray(peaks)], ["peak"])
+    ax.set_ylim(bottom=0)
+    return ax
 
 
 def mark_points(

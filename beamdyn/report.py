@@ -15,8 +15,12 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
+    from beamdyn.resonance import Crossings
     from beamdyn.spectrum import Locus, Modes
     from beamdyn.stability import SettingAngleLimits
+    from beamdyn.steady import SteadyResponse
+    from beamdyn.sweep import Sweep
+    from beamdyn.transient import Transient
 
 _DIGITS = 10  # most that a table shows
 _PIPE_WIDTH = 120  # of tables that go to a file or another program
@@ -222,9 +226,7 @@ def locus_table(found: Locus) -> Group:
         sure = f"{found.confidence[s].min():.2f}"
         rows.append((f"{found.speeds[s]:.8g}", *cells, f"{found.error[s].max():.0e}", sure))
     heads = [f"mode {mode} [Hz]" for mode in range(1, found.frequency.shape[1] + 1)]
-    count = len(found.speeds)
-    part = f" ({len(shown)} of {count} speeds; --csv or --json has all)" if len(shown) < count else ""
-    title = f"Natural frequencies, by {found.provenance.method}{part}"
+    title = f"Natural frequencies, by {found.provenance.method}{_part(shown, found.speeds)}"
     return table(title, ("speed [rad/s]", *heads, "largest error", "tracking"), rows, ())
 
 
@@ -252,3 +254,112 @@ def limits_table(found: SettingAngleLimits) -> Group:
     title = f"Setting-angle limits up to {found.top_speed:.10g} rad/s, by {found.provenance.method}"
     rows = zip(("first", "second"), degrees, meaning, strict=True)
     return table(title, ("limit", "angle [deg]", ""), rows, (0, 2))
+
+
+# Motion in time and resonance -------------------------------------------------------------------------
+
+_MODEL_DIGITS = 6  # most of a deflection: the modes that are left out allow no more
+
+
+def transient_table(run: Transient, window: tuple[float, float] | None = None) -> Group:
+    """The table of a transient: its largest deflections, its error, its warnings."""
+    start, end = run.path.start, run.path.end
+    stretches = {"whole run": (start, end)}
+    if window is not None:
+        stretches[f"{window[0]:g} to {window[1]:g} s"] = window
+    rows = [(name, *_peak_cells(run, *stretch)) for name, stretch in stretches.items()]
+    shown = table(
+        f"Largest tip deflection in {end:g} s, by {run.provenance.method}",
+        ("", "tip deflection [mm]", "over the length", "at [s]"),
+        rows,
+    )
+    return Group(shown, Text(_time_error(run)), *(Text(f"warning: {w}") for w in run.warnings))
+
+
+def time_of_peak(run: Transient, start: float, end: float) -> tuple[float, float]:
+    """Time of the largest tip deflection between two times, by the samples, and their distance [s]."""
+    inside = np.flatnonzero((run.t >= start) & (run.t <= end))
+    if len(inside) < 2:
+        return (start + end) / 2, (end - start) / 2
+    place = inside[np.abs(run.tip[inside]).argmax()]
+    return float(run.t[place]), float(np.diff(run.t[inside]).max())
+
+
+def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str]:
+    size, length = run.peak(start, end), run.scene.beam.length
+    error = 0.0 if math.isnan(run.time_error) else run.time_error
+    numbers = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
+    return *numbers, supported(*time_of_peak(run, start, end))
+
+
+def _time_error(run: Transient) -> str:
+    if math.isnan(run.time_error):
+        return "The error in time is not estimated: this integrator bounds that of each step only."
+    return (
+        f"Estimated error by the steps in time: {1e3 * run.time_error:.1g} mm; "
+        "that of modes left out is seen by asking for more."
+    )
+
+
+def crossings_table(found: Crossings) -> Group:
+    """The table of resonance speeds."""
+    rows = [
+        (
+            supported(c.speed, c.error * c.speed),
+            f"{c.line.name}: {c.line.multiple:.6g} times the speed",
+            str(c.mode) if c.second_mode is None else f"{c.mode} and {c.second_mode}",
+            supported(c.frequency, c.error * c.frequency),
+            c.kind,
+        )
+        for c in found
+    ]
+    title = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}, by {found.provenance.method}"
+    return table(title, ("speed [rad/s]", "line", "mode", "frequency [Hz]", "kind"), rows, (1, 4))
+
+
+def steady_table(found: SteadyResponse) -> Group:
+    """The table of a steady response: some of its speeds, its peaks among them."""
+    shown = _shown_response(found.speeds, found.amplitude, found.status)
+    rows = []
+    for s in shown:
+        error = 1e3 * found.error[s] * found.bound[s]
+        sizes = (supported(1e3 * v[s], error, _MODEL_DIGITS) for v in (found.amplitude, found.bound))
+        peak = ", peak" if s in _peaks(found.amplitude) else ""
+        rows.append((f"{found.speeds[s]:.8g}", *sizes, f"{found.status[s]}{peak}"))
+    title = f"Steady response, by harmonic balance with {found.provenance.method}"
+    heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
+    return table(title + _part(shown, found.speeds), heads, rows, (3,))
+
+
+def sweep_table(found: Sweep) -> Group:
+    """The table of a sweep: some of its speeds, its peaks among them."""
+    shown = _shown_response(found.speeds, found.peaks, found.status)
+    rows = []
+    for s in shown:
+        peak = ", peak" if s in _peaks(found.peaks) else ""
+        size = supported(1e3 * found.peaks[s], 1e3 * found.time_error[s], _MODEL_DIGITS)
+        rows.append((f"{found.speeds[s]:.8g}", size, f"{found.status[s]}{peak}"))
+    title = f"Largest tip deflection in {found.window[0]:g} to {found.window[1]:g} s, by {found.provenance.method}"
+    heads = ("speed [rad/s]", "largest tip deflection [mm]", "status")
+    return table(title + _part(shown, found.speeds), heads, rows, (2,))
+
+
+def _shown_response(speeds: np.ndarray, amplitude: np.ndarray, status: np.ndarray) -> np.ndarray:
+    """Indices of speeds for people: evenly spread, the peaks, and where the status changes."""
+    spread = np.linspace(0, len(speeds) - 1, min(len(speeds), _SHOWN)).round().astype(int)
+    change = np.flatnonzero(status[1:] != status[:-1])[:_SHOWN]
+    return np.unique(np.concatenate([spread, _peaks(amplitude)[:_SHOWN], change, change + 1]))
+
+
+def _peaks(amplitude: np.ndarray) -> np.ndarray:
+    """Indices of the local maxima that stand out: at least twice the median."""
+    known = np.nan_to_num(amplitude)
+    inner = known[1:-1]
+    summit = (inner > known[:-2]) & (inner >= known[2:]) & (inner > 2 * np.median(known))
+    return 1 + np.flatnonzero(summit)
+
+
+def _part(shown: np.ndarray, all_: np.ndarray) -> str:
+    if len(shown) == len(all_):
+        return ""
+    return f" ({len(shown)} of {len(all_)} speeds; --csv or --json has all)"

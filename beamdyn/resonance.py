@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations_with_replacement
 from time import perf_counter
@@ -184,7 +184,7 @@ def _lines(
     )  # pyright: ignore[reportReturnType]
 
 
-def _distinct(lines: list[Line]) -> list[Line]:
+def _distinct(lines: Iterable[Line]) -> list[Line]:
     """One line of each frequency, without the static one, ascending."""
     kept: dict[float, Line] = {}
     for line in lines:
@@ -248,7 +248,7 @@ class _Loci:
         )
 
 
-def _brackets(miss, x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
+def _brackets(miss: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
     """Intervals in which a function changes its sign, also where it only dips between two nodes."""
     for k in range(len(x) - 1):
         if y[k] * y[k + 1] < 0 or (y[k + 1] == 0 and y[k] != 0):

@@ -185,6 +185,8 @@ def _tip_harmonics(
     system: TorusSystem, tip: np.ndarray, steps: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
     """Harmonics (H), their tip deflections (S, H) and errors (S); each speed has as many as it needs."""
+    if not system.forced:
+        return [], np.zeros((len(system.rates), 0), dtype=complex), np.full(len(system.rates), _EXACT)
     most = _MOST if steps is None else steps
     levels = reach(system.forced, system.coupling, most + 1)
     closed, levels = len(levels) <= most + 1, levels[: most + 1]

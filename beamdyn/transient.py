@@ -27,12 +27,15 @@ from beamdyn.spectrum import LARGE_DEFLECTION
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_STAGES = 8
+STAGES = 8
 _RADIANS = 3.75  # turned by the fastest motion in a step, for an error of 1e-5: measured
 _PARTS = 4  # of a stretch of changing speed, each with its own step
 _SAMPLES = 8  # of the response in each step, where the caller gives no times
+_STOCK = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 _BETWEEN = np.array([0.25, 0.5, 0.75])  # fractions of a step at which the interpolation is measured
+_LOST = 0.05  # error of phase in a step [rad] from which a mode is not followed
 _CHECKS = 16  # steps at which the local error is measured
+_CANDIDATES = 12  # maxima that are refined: sampled ones differ by less than 1e-3 from the true
 _GRAVITY = 9.81
 
 
@@ -146,9 +149,7 @@ class Transient(Result):
         """Modal coordinates and velocities at any times t [s] of the run: shapes (len(t), m)."""
         t = np.atleast_1d(np.asarray(t, dtype=float))
         if t.size and not (t.min() >= self.path.start and t.max() <= self.path.end * (1 + 1e-12)):
-            raise ValueError(
-                f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s"
-            )
+            raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")
         return self.path.at(t)
 
     def shape(self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float]) -> np.ndarray:
@@ -181,7 +182,7 @@ class Transient(Result):
     def peak(self, start: float, end: float) -> float:
         """Largest tip deflection, either way, from `start` to `end` [s], also between samples [m]."""
         _check_window(start, end, self.path)
-        return _peak(self.modal, self.path, start, end)
+        return largest_deflection(self.modal.tip, self.path, start, end)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
@@ -242,21 +243,33 @@ def _check_window(start: float, end: float, path: Any) -> None:
         )
 
 
-def _peak(modal: ModalEquations, path: Any, start: float, end: float) -> float:
-    """Sample, then close in on every sample that is nearly the largest by its own refined samples."""
+def largest_deflection(tip: np.ndarray, path: Any, start: float, end: float) -> float:
+    """Largest tip deflection of a path, either way, from start to end [m].
+
+    Sample, then close in on the highest maxima.
+    """
     times, q, _ = path.samples
     inside = (times >= start) & (times <= end)
+    size = np.abs(_tip(tip, q[inside]))
     ends = np.array([start, end])
-    t = np.concatenate([times[inside], ends])
-    size = np.abs(_tip(modal, np.concatenate([q[inside], path.at(ends)[0]])))
+    t = np.concatenate([times[inside][_highest(size)], ends])
     reach = np.diff(times).max()
-    t = t[size >= 0.9 * size.max()]
     for _ in range(4):  # each round samples 17 times as finely
         near = np.clip(t[:, None] + np.linspace(-reach, reach, 35), start, end)
-        size = np.abs(_tip(modal, path.at(near.ravel())[0])).reshape(near.shape)
-        best = np.argsort(size.max(axis=1))[-20:]
-        t, reach = near[best, size[best].argmax(axis=1)], reach / 17
+        size = np.abs(_tip(tip, path.at(near.ravel())[0])).reshape(near.shape)
+        t, reach = near[np.arange(len(t)), size.argmax(axis=1)], reach / 17
     return float(size.max())
+
+
+def _highest(size: np.ndarray) -> np.ndarray:
+    """Samples beside the highest maxima, by the vertices of parabolas through three samples."""
+    if len(size) < 3:
+        return np.arange(len(size))
+    left, middle, right = size[:-2], size[1:-1], size[2:]
+    bend = np.maximum(2 * middle - left - right, 1e-300)
+    summit = (middle >= left) & (middle >= right)
+    height = np.where(summit, middle + (right - left) ** 2 / (8 * bend), middle)
+    return 1 + np.argsort(height)[-_CANDIDATES:]
 
 
 # Simulation ---------------------------------------------------------------------------------------
@@ -318,16 +331,17 @@ def simulate(
     if method == "auto":
         path, error, name = _own(modal, system, y0, t_end, tolerance)
     else:
-        path, error, name = _stock(system, y0, t_end, method, options), np.nan, str(method)
+        path, error = _stock(system, y0, t_end, method, options), np.nan
+        name = method if isinstance(method, str) else method.__name__
     t, q, v = path.samples
-    largest = _peak(modal, path, path.start, path.end)
+    largest = largest_deflection(modal.tip, path, path.start, path.end)
     if t_eval is not None:
         t = _times(t_eval, t_end)
         q, v = path.at(t)
     size = "all" if modes is None else str(modes)
     return Transient(
         t=t,
-        tip=_tip(modal, q),
+        tip=_tip(modal.tip, q),
         coordinates=q,
         velocities=v,
         time_error=float(error),
@@ -343,9 +357,9 @@ def simulate(
     )
 
 
-def _tip(modal: ModalEquations, q: np.ndarray) -> np.ndarray:
-    """Tip deflection of coordinates q of shape (n, m)."""
-    return q[:, : len(modal.tip)] @ modal.tip
+def _tip(tip: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Tip deflection of coordinates q of shape (n, m), of which bending comes first."""
+    return q[:, : len(tip)] @ tip
 
 
 def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
@@ -379,7 +393,9 @@ def _initial(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
         raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
     y0 = np.asarray(initial, dtype=float)
     if y0.shape != (2 * n,) or not np.isfinite(y0).all():
-        raise ValueError(f"initial: give {2 * n} finite numbers, coordinates then velocities; shape {y0.shape}")
+        raise ValueError(
+            f"initial: give {2 * n} finite numbers, coordinates then velocities; shape {y0.shape}"
+        )
     return y0
 
 
@@ -398,74 +414,172 @@ def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
 # Our integrator -----------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class Resolution:
+    """How long the steps are: the fastest motion that must be resolved turns by so much in each.
+
+    Parameters
+    ----------
+    radians : float
+        Angle turned in a step [rad].
+    modes : int
+        Number of the lowest modes that are resolved; the free vibration of higher ones, which the
+        motion hardly excites, may lose its phase.
+    """
+
+    radians: float
+    modes: int = 1
+
+    @classmethod
+    def of(cls, tolerance: float) -> Resolution:
+        """The one that leaves about this error, relative to the largest deflection: measured."""
+        return cls(_RADIANS * (tolerance / 1e-5) ** (1 / (2 * STAGES)))
+
+    def steps(self, system: ModalSystem, start: float, end: float) -> int:
+        """Steps of a stretch of the motion."""
+        t = np.linspace(start, end, 9)
+        speed = np.abs(system.motion.at(t).speed).max()
+        lines = [line.multiple * speed for line in system.motion.lines]
+        _, K, _ = system.coefficients(t)
+        own = np.sqrt(np.sort(np.abs(np.linalg.eigvals(K)), axis=1)[:, self.modes - 1].max())
+        fastest = max(own, speed * (system.equations.gravity != 0), *lines, 0.0)
+        return max(1, int(np.ceil((end - start) * fastest / self.radians)))
+
+    def finer(self, error: TimeError, bound: float) -> Resolution:
+        """The one to try next if the error exceeds its bound [m]."""
+        from_here_up = np.cumsum((error.modes * error.lost)[::-1])[::-1]
+        needed = int((from_here_up > bound / 4).sum())  # the modes above add up to little
+        if needed > self.modes:
+            return Resolution(self.radians, needed)
+        shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / (2 * STAGES)))
+        return Resolution(self.radians * shrink, self.modes)
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether shorter steps gain nothing but rounding."""
+        return self.radians < _RADIANS / 50
+
+
 def _own(
     modal: ModalEquations, system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float
 ) -> tuple[Trajectory, float, str]:
-    """Integrate with steps from the tolerance; once more, finer, if the measured error asks for it."""
-    edges = _edges(system.motion, t_end)
-    radians = _RADIANS * (tolerance / 1e-5) ** (1 / (2 * _STAGES))
+    """Integrate with steps from the tolerance; again, finer, if the measured error asks for it."""
+    edges, resolution = smooth_stretches(system.motion, t_end), Resolution.of(tolerance)
     while True:
-        steps = [_steps(system, a, b, radians, y0) for a, b in pairwise(edges)]
+        steps = [resolution.steps(system, a, b) for a, b in pairwise(edges)]
         path = _propagate(system, edges, steps, y0)
-        error = _time_error(modal, system, path)
-        largest = max(float(np.abs(_tip(modal, p.state[:, 1:])).max()) for p in path.pieces)
-        if error <= tolerance * largest or radians < _RADIANS / 50:
-            return path, error, f"Gauss collocation of order {2 * _STAGES}, {sum(steps)} steps"
-        radians *= max(0.3, 0.9 * (tolerance * largest / error) ** (1 / (2 * _STAGES)))
+        error = time_error(modal.tip, system, [_checks(p) for p in path.pieces])
+        bound = tolerance * max(float(np.abs(_tip(modal.tip, p.state[:, 1:])).max()) for p in path.pieces)
+        if error.total <= bound or resolution.exhausted:
+            return path, error.total, f"Gauss collocation of order {2 * STAGES}, {sum(steps)} steps"
+        resolution = resolution.finer(error, bound)
 
 
-def _edges(motion: Motion, t_end: float) -> np.ndarray:
-    """Ends of the stretches: breakpoints of the motion, and parts of those where the speed changes."""
+def smooth_stretches(motion: Motion, t_end: float) -> np.ndarray:
+    """Ends of stretches: breakpoints of the motion, and parts of those in which the speed changes."""
     inner = [b for b in motion.breakpoints if 0 < b < t_end]
-    edges = [0.0, *inner, t_end]
     parts = []
-    for a, b in pairwise(edges):
+    for a, b in pairwise([0.0, *inner, t_end]):
         changing = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0
         parts.append(np.linspace(a, b, (_PARTS if changing else 1) + 1)[:-1])
     return np.concatenate([*parts, [t_end]])
 
 
-def _steps(system: ModalSystem, start: float, end: float, radians: float, y0: np.ndarray) -> int:
-    """Steps of a stretch in which the fastest motion turns by so many radians."""
-    t = np.linspace(start, end, 9)
-    speed = np.abs(system.motion.at(t).speed).max()
-    lines = [line.multiple * speed for line in system.motion.lines]
-    _, K, _ = system.coefficients(t)
-    own = np.sqrt(np.abs(np.linalg.eigvals(K)).min(axis=1).max())
-    fastest = max(own, speed * (system.equations.gravity != 0), *lines, 0.0)
-    return max(1, int(np.ceil((end - start) * fastest / radians)))
-
-
 def _propagate(system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray) -> Trajectory:
     pieces, n = [], system.size
     for (a, b), many in zip(pairwise(edges), steps, strict=True):
-        pieces.append(propagate(system, a, b, many, y0[:n], y0[n:], _STAGES))
+        pieces.append(propagate(system, a, b, many, y0[:n], y0[n:], STAGES))
         y0 = pieces[-1].state[-1, 1:]
     return Trajectory(tuple(pieces))
 
 
-def _time_error(modal: ModalEquations, system: ModalSystem, path: Trajectory) -> float:
-    """Estimated error of the tip deflection [m], from two more stages at some steps of each piece.
+@dataclass(frozen=True)
+class Checks:
+    """Steps of a piece at which the local error is measured.
+
+    Parameters
+    ----------
+    starts : ndarray, shape (k,)
+        Their beginnings [s].
+    h : float
+        Their length [s].
+    steps : int
+        How many steps of the piece they stand for.
+    state : ndarray, shape (k, 2 n + 1)
+        Augmented states at their beginnings.
+    """
+
+    starts: np.ndarray
+    h: float
+    steps: int
+    state: np.ndarray
+
+
+def checked_steps(steps: int) -> np.ndarray:
+    """Which steps of a piece are checked."""
+    return np.unique(np.linspace(0, steps - 1, min(steps, _CHECKS)).astype(int))
+
+
+def _checks(piece: Piece) -> Checks:
+    steps = len(piece.acceleration)
+    chosen = checked_steps(steps)
+    return Checks(piece.start + piece.h * chosen, piece.h, steps, piece.state[chosen])
+
+
+@dataclass(frozen=True)
+class TimeError:
+    """Estimated error of a tip deflection by the steps in time.
+
+    Parameters
+    ----------
+    modes : ndarray, shape (m,)
+        Contributions of the modes [m].
+    between : float
+        Error of interpolation between the ends of steps [m].
+    lost : ndarray of bool, shape (m,)
+        Whether the steps are too long to follow a mode's free vibration.
+    """
+
+    modes: np.ndarray
+    between: float
+    lost: np.ndarray
+
+    @property
+    def total(self) -> float:
+        """All of it, with a margin [m]."""
+        return 1.5 * (float(self.modes.sum()) + self.between)
+
+
+def time_error(tip: np.ndarray, system: ModalSystem, checks: Sequence[Checks]) -> TimeError:
+    """Error of the tip deflection, from two more stages at some steps of each piece.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with an error delta of phase a step;
     what a mode that the steps do not resolve has by then is all of its free vibration, and no more.
+
+    Parameters
+    ----------
+    tip : ndarray, shape (m,)
+        Tip deflection of the bending modes.
+    system : ModalSystem
+        The equations.
+    checks : sequence of Checks
+        Checked steps of each piece.
+
+    Returns
+    -------
+    TimeError
     """
-    tip = modal.tip
-    total, between = np.zeros(len(tip)), 0.0
-    for piece in path.pieces:
-        steps = len(piece.acceleration)
-        chosen = np.unique(np.linspace(0, steps - 1, min(steps, _CHECKS)).astype(int))
-        state, starts = piece.state[chosen], piece.start + piece.h * chosen
-        own, finer = (step_maps(system, starts, piece.h, tableau(_STAGES + more)) for more in (0, 2))
-        local, delta = _local_errors(system, finer.step - own.step, state, len(tip))
-        total += np.minimum(steps, 2 / np.maximum(delta, 1e-30)) * local
-        q = [
-            interior(piece.h, state, (maps.stages @ state[:, None, :, None])[..., 0], _BETWEEN)[0]
-            for maps in (own, finer)
-        ]
-        between = max(between, float(np.abs((q[0] - q[1])[..., : len(tip)] @ tip).max()))
-    return 1.5 * (float(total @ np.abs(tip)) + between)
+    total, between, lost = np.zeros(len(tip)), 0.0, np.zeros(len(tip), dtype=bool)
+    for check in checks:
+        own, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
+        local, delta = _local_errors(system, finer.step - own.step, check.state, len(tip))
+        total += np.minimum(check.steps, 2 / np.maximum(delta, 1e-30)) * local
+        lost |= delta > _LOST
+        accelerations = [(maps.stages @ check.state[:, None, :, None])[..., 0] for maps in (own, finer)]
+        inside = [interior(check.h, check.state, a, _BETWEEN)[0] for a in accelerations]
+        between = max(between, float(np.abs((inside[0] - inside[1])[..., : len(tip)] @ tip).max()))
+    return TimeError(total * np.abs(tip), between, lost)
 
 
 def _local_errors(
@@ -508,9 +622,9 @@ class _StockTrajectory:
         return q.T, v.T
 
 
-def _stock(
-    system: ModalSystem, y0: np.ndarray, t_end: float, method: Any, options: dict[str, Any]
-) -> Any:
+def _stock(system: ModalSystem, y0: np.ndarray, t_end: float, method: Any, options: dict[str, Any]) -> Any:
+    if isinstance(method, str) and method not in _STOCK:
+        raise ValueError(f"method = {method!r}: give 'auto', {', '.join(map(repr, _STOCK))} or an OdeSolver")
     if isinstance(method, type) and issubclass(method, GaussCollocation):
         options = {"system": system, **options}
     elif method in ("Radau", "BDF", "LSODA"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,20 @@ from beamdyn.published import load
 HARVESTER = bd.Scene(
     bd.Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0),
     bd.Mount(radius=0.215),
+)
+
+ROLLING = replace(
+    HARVESTER,
+    motion=bd.RollingWheel(
+        rolling_radius=0.3,
+        speed=bd.SpinUp(55.0, duration=10.0),
+        road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01),
+    ),
+)
+BLADE_SPIN_UP = bd.Scene(
+    bd.Beam.from_stiffness(10.0, 1.2, 1.4e4, axial_stiffness=2.8e7),
+    bd.Mount(0.0, math.pi),
+    bd.SpinUp(6.0, duration=15.0),
 )
 
 

@@ -1,0 +1,7 @@
+"""The command ``beamdyn``.  What is heavy is imported by the commands that need it."""
+
+from beamdyn.cli import motion, published, spectrum  # noqa: F401  (they add their commands to the app)
+from beamdyn.cli.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER, app, main
+from beamdyn.cli.values import parse_speeds
+
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "app", "main", "parse_speeds"]

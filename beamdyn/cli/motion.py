@@ -1,0 +1,338 @@
+"""Commands about motion in time and resonance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from beamdyn.cli.outputs import Outputs, write
+from beamdyn.cli.program import Interrupted, NoAnswer, app, warn
+from beamdyn.cli.values import Method, SceneFile, Text, parse_positive, parse_speeds, parse_window
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from beamdyn.resonance import Crossings
+    from beamdyn.steady import SteadyResponse
+    from beamdyn.sweep import Sweep
+    from beamdyn.transient import Transient
+
+Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+
+_ATOL = 1e-4  # absolute tolerance of the stock integrators over their relative one
+_PERIODS, _FRAMES = 5, 100  # of a close-up
+
+
+@app.command
+def simulate(
+    scene: SceneFile,
+    /,
+    *,
+    t_end: Text,
+    modes: int = 5,
+    tolerance: float = 1e-5,
+    method: Integrator = "auto",
+    discretization: Method = "ritz",
+    window: Text | None = None,
+    series: Path | None = None,
+    animation: Path | None = None,
+    outputs: Outputs = Outputs(),
+) -> None:
+    """Motion of the beam in time, from rest.
+
+    Parameters
+    ----------
+    scene
+        The scene, with a motion.
+    t_end
+        End of the run with its unit, e.g. "30 s".
+    modes
+        How many modes.
+    tolerance
+        Error in time that is aimed at, relative to the largest deflection.
+    method
+        The integrator: our own, or one of scipy's, which takes minutes where ours takes a second.
+    discretization
+        Assumed modes or finite elements: each checks the other.
+    window
+        Report the largest deflection of this stretch, too: start:end, e.g. "20:30 s".
+    series
+        Write five periods around the largest deflection (in the window) for ParaView: .xdmf.
+    animation
+        Write an animation of the same: .gif.
+    outputs
+        Files to write.
+    """
+    from beamdyn import load_scene
+    from beamdyn.report import console, transient_table
+    from beamdyn.transient import simulate
+
+    outputs.check(series=series, animation=animation)
+    end = parse_positive("--t-end", t_end, "s")
+    stretch = None if window is None else parse_window(window, end)
+    stock = {} if method == "auto" else {"rtol": tolerance, "atol": _ATOL * tolerance}
+    run = simulate(load_scene(scene), end, modes, tolerance, method, discretization, **stock)
+    console().print(transient_table(run, stretch))
+    write(run, outputs, _transient_csv(run), run.plot)
+    _write_close_up(run, stretch or (0.0, end), series, animation, outputs.force)
+
+
+@app.command
+def resonances(
+    scene: SceneFile,
+    /,
+    *,
+    top_speed: Text,
+    modes: int = 3,
+    order: int = 1,
+    method: Method = "ritz",
+    outputs: Outputs = Outputs(),
+) -> None:
+    """Speeds at which what the scene excites meets a natural frequency.
+
+    Parameters
+    ----------
+    scene
+        The scene; its motion and gravity give the frequencies that are excited.
+    top_speed
+        Speed up to which is searched, with its unit, e.g. "150 rad/s".
+    modes
+        How many modes.
+    order
+        1: what the load excites; more: also the combinations made by the stiffness that turns.
+    method
+        Assumed modes or finite elements: each checks the other.
+    outputs
+        Files to write.
+    """
+    from beamdyn import load_scene, resonance_speeds
+    from beamdyn.report import console, crossings_table
+
+    outputs.check()
+    top = parse_positive("--top-speed", top_speed, "rad/s")
+    found = resonance_speeds(load_scene(scene), top, modes, order, method)
+    console().print(crossings_table(found))
+    write(found, outputs, _crossings_csv(found), found.plot)
+    warn(found.warnings)
+
+
+@app.command
+def steady(
+    scene: SceneFile,
+    /,
+    *,
+    speeds: Text,
+    modes: int = 3,
+    tolerance: float = 1e-5,
+    method: Method = "ritz",
+    outputs: Outputs = Outputs(),
+) -> None:
+    """Steady response over speed: what is left when the start has died away.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    speeds
+        With their unit: start:stop:count, e.g. "1:150:1000 rad/s", or a list, e.g. "50, 55 rad/s".
+    modes
+        How many modes.
+    tolerance
+        Largest error by neglected harmonics, relative to the sum of the lines.
+    method
+        Assumed modes or finite elements: each checks the other.
+    outputs
+        Files to write.
+    """
+    from beamdyn import load_scene, steady_response
+    from beamdyn.report import console, steady_table
+
+    outputs.check()
+    asked = parse_speeds(speeds)
+    found = steady_response(load_scene(scene), asked, modes, tolerance=tolerance, method=method)
+    console().print(steady_table(found))
+    write(found, outputs, _steady_csv(found), found.plot)
+    warn(found.warnings)
+    if not found.stable.any():
+        raise NoAnswer(f"at none of {len(asked)} speeds is there a steady response: {found.status[0]}")
+
+
+@app.command
+def sweep(
+    scene: SceneFile,
+    /,
+    *,
+    speeds: Text,
+    window: Text,
+    modes: int = 5,
+    tolerance: float = 1e-5,
+    workers: int = 1,
+    scheduler: Annotated[
+        str | None, Parameter(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
+    ] = None,
+    store: Path | None = None,
+    outputs: Outputs = Outputs(),
+) -> None:
+    """Largest deflection in a stretch of time, one transient a speed.
+
+    Parameters
+    ----------
+    scene
+        The scene; the speed at which its motion ends is varied.
+    speeds
+        With their unit: start:stop:count, e.g. "0:150:151 rad/s", or a list, e.g. "50, 55 rad/s".
+    window
+        Stretch of time in which the largest deflection is sought, e.g. "20:30 s"; the runs end with it.
+    modes
+        How many modes.
+    tolerance
+        Error in time that is aimed at, relative to the largest deflection.
+    workers
+        Processes that share the work.
+    store
+        Folder that keeps what is done, so that the same command goes on after an interruption.
+    outputs
+        Files to write.
+    """
+    from beamdyn import load_scene
+    from beamdyn.report import console, sweep_table
+    from beamdyn.sweep import sweep
+
+    outputs.check()
+    asked, stretch, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
+    with _executor(scheduler) as executor, _progress(len(asked), store) as progress:
+        found = sweep(
+            loaded,
+            asked,
+            stretch,
+            modes,
+            tolerance,
+            workers=workers,
+            executor=executor,
+            store=store,
+            progress=progress,
+        )
+    console().print(sweep_table(found))
+    write(found, outputs, _sweep_csv(found), found.plot)
+    warn(found.warnings)
+
+
+# Close-up -----------------------------------------------------------------------------------------
+
+
+def _write_close_up(
+    run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
+) -> None:
+    from beamdyn.export import animate, write_series
+
+    if series is None and animation is None:
+        return
+    x, t, deflection = _close_up(run, window)
+    if series is not None:
+        write_series(series, x, t, deflection, force=force)
+    if animation is not None:
+        animate(x, t, deflection, animation, force=force)
+
+
+def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions, times and deflections: a few periods around the largest deflection in a window."""
+    import numpy as np
+
+    from beamdyn import natural_modes
+    from beamdyn.report import time_of_peak
+
+    middle, _ = time_of_peak(run, *window)
+    speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0
+    half = _PERIODS / 2 / float(natural_modes(run.scene, speed, 1).frequency[0])
+    t = np.linspace(max(middle - half, 0.0), min(middle + half, run.path.end), _FRAMES)
+    x = np.linspace(0, run.scene.beam.length, 41)
+    return x, t, run.shape(x, t)
+
+
+# Sweeps -------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _executor(scheduler: str | None) -> Iterator[Executor | None]:
+    """The executor of a Dask cluster, if there is a scheduler."""
+    if scheduler is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ValueError("--scheduler needs Dask: pip install 'beamdyn[dask]'") from None
+    try:
+        client = Client(scheduler, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise ValueError(f"--scheduler = {scheduler}: no scheduler answers there ({error})") from None
+    with client:
+        yield client.get_executor()
+
+
+@contextmanager
+def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
+    """A bar with the remaining time; Ctrl-C says what is done."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn("sweep"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    done = 0
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("sweep", total=cases)
+
+        def progress(now: int, total: int) -> None:
+            nonlocal done
+            done = now
+            bar.update(task, completed=now, total=total)
+
+        try:
+            yield progress
+        except KeyboardInterrupt:
+            raise Interrupted(_how_to_resume(done, cases, store)) from None
+
+
+def _how_to_resume(done: int, cases: int, store: Path | None) -> str:
+    if store is None:
+        return f"{done} of {cases} speeds were done and are lost; with --store DIR the command would go on from there"
+    return f"{done} of {cases} speeds are stored in {store}; the same command goes on from there"
+
+
+# Tables for other programs ------------------------------------------------------------------------
+
+
+def _transient_csv(run: Transient) -> Iterator[Sequence[object]]:
+    yield "time_s", "tip_deflection_m"
+    yield from zip(run.t.tolist(), run.tip.tolist(), strict=True)
+
+
+def _crossings_csv(found: Crossings) -> Iterator[Sequence[object]]:
+    yield (
+        "speed_rad_per_s",
+        "relative_error",
+        "frequency_Hz",
+        "line",
+        "multiple",
+        "mode",
+        "second_mode",
+        "kind",
+    )
+    for c in found:
+        second = "" if c.second_mode is None else c.second_mode
+        yield c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
+
+
+def _steady_csv(found: SteadyResponse) -> Iterator[Sequence[object]]:
+    yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", "growth_rate_per_s", "status"
+    columns = found.speeds, found.amplitude, found.bound, found.error, found.growth_rate, found.status
+    yield from zip(*(column.tolist() for column in columns), strict=True)
+
+
+def _sweep_csv(found: Sweep) -> Iterator[Sequence[object]]:
+    yield "speed_rad_per_s", "largest_deflection_m", "time_error_m"
+    yield from zip(found.speeds.tolist(), found.peaks.tolist(), found.time_error.tolist(), strict=True)

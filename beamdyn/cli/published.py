@@ -1,0 +1,36 @@
+"""The command that reproduces published results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from beamdyn.cli.outputs import Flag
+from beamdyn.cli.program import NoAnswer, app
+
+
+@app.command
+def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
+    """Published numbers beside ours, with deviations and verdicts; draws the paper's figures.
+
+    Parameters
+    ----------
+    output
+        Folder for the pictures; it is made if needed, and its pictures are replaced.
+    tables
+        Compare with the tables of rotating beams of other sources too; takes some ten seconds.
+    """
+    from beamdyn.report import console
+    from beamdyn.reproduce import report
+
+    if output.exists() and not output.is_dir():
+        raise ValueError(f"--output = {output}: it is a file; give a folder")
+    screen = console()
+    checked = report(screen, output, tables)
+    unexpected = sum(not row.as_expected for row in checked)
+    if unexpected:
+        raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")
+    screen.print(
+        f"\nAll {len(checked)} verdicts are as expected: agreement, but for the differences explained above."
+    )
+    if not tables:
+        screen.print("beamdyn reproduce --tables compares with the tables of other sources, too.")

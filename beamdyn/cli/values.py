@@ -1,0 +1,135 @@
+"""Values of options: numbers with units, ranges and lists of speeds."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from beamdyn.scene import Scene
+
+SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
+Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
+Method = Literal["ritz", "fem"]
+
+_MOST_SPEEDS = 100_000
+_UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
+_NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
+
+
+def parse_quantity(option: str, text: str, unit: str) -> float:
+    """A number with its unit, in SI, or a ValueError that names the option."""
+    from beamdyn.common.units import quantity
+
+    try:
+        return quantity(text, unit)
+    except ValueError as error:
+        raise ValueError(f"{option} = {error}") from None
+
+
+def parse_positive(option: str, text: str, unit: str) -> float:
+    """A number above zero with its unit, in SI."""
+    value = parse_quantity(option, text, unit)
+    if value <= 0:
+        raise ValueError(f'{option} = "{text}": it must be greater than 0')
+    return value
+
+
+def parse_speed(option: str, text: str) -> float:
+    """A speed with its unit [rad/s], or a ValueError that names the option."""
+    return parse_quantity(option, text, "rad/s")
+
+
+def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
+    """Start and end [s] of ``--window``, such as "20:30 s", within a run that ends at `t_end`."""
+    unit = _UNIT.search(text.strip())
+    ends = text.strip()[: unit.start()].split(":") if unit else []
+    if unit is None or len(ends) != 2:
+        raise ValueError(f'--window = "{text}": give start:end and a unit, e.g. "20:30 s"')
+    start, end = (parse_quantity("--window", f"{part.strip()} {unit.group()}", "s") for part in ends)
+    if not 0 <= start < end:
+        raise ValueError(f'--window = "{text}": it must start at 0 or later and end after its start')
+    if t_end is not None and end > t_end:
+        raise ValueError(
+            f'--window = "{text}": it ends after the run, at {t_end:g} s; give a longer --t-end or an earlier end'
+        )
+    return start, end
+
+
+def parse_speeds(text: str) -> np.ndarray:
+    """Speeds [rad/s] of ``--speeds``: start:stop:count or a list, with a unit at the end.
+
+    Parameters
+    ----------
+    text : str
+        E.g. "0:150:301 rad/s" or "0, 50, 100 rad/s".
+
+    Returns
+    -------
+    ndarray, shape (S,)
+
+    Raises
+    ------
+    ValueError
+        If there are none, they do not ascend, or lack a unit of angular speed.
+    """
+    if not text.strip(" ,:"):
+        raise ValueError(
+            f'--speeds = "{text}": it is empty; give e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s"'
+        )
+    found = _UNIT.search(text.strip())
+    if found is None:
+        raise ValueError(f'--speeds = "{text}": give a unit at its end, e.g. "{text.strip()} rad/s"')
+    unit, numbers = found.group(), text.strip()[: found.start()]
+    return _range(text, numbers, unit) if ":" in numbers else _list(text, numbers, unit)
+
+
+def _range(text: str, numbers: str, unit: str) -> np.ndarray:
+    import numpy as np
+
+    parts = [part.strip() for part in numbers.split(":")]
+    if len(parts) != 3:
+        raise ValueError(f'--speeds = "{text}": give start:stop:count, e.g. "0:150:301 rad/s"')
+    start, stop = (_member(text, part, unit) for part in parts[:2])
+    if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= _MOST_SPEEDS:
+        raise ValueError(
+            f'--speeds = "{text}": the count {parts[2]!r} must be a whole number from 1 to {_MOST_SPEEDS}'
+        )
+    if start > stop or (start == stop) != (int(parts[2]) == 1):
+        raise ValueError(f'--speeds = "{text}": start must be below stop (with a count of 1: equal to it)')
+    return np.linspace(start, stop, int(parts[2]))
+
+
+def _list(text: str, numbers: str, unit: str) -> np.ndarray:
+    import numpy as np
+
+    values = [_member(text, part.strip(), unit) for part in numbers.split(",")]
+    for low, high in pairwise(values):
+        if high <= low:
+            raise ValueError(f"--speeds: {low:g} is followed by {high:g} rad/s; sort them and drop repeats")
+    return np.array(values)
+
+
+def _member(text: str, number: str, unit: str) -> float:
+    """One of several speeds [rad/s]."""
+    if not _NUMBER.fullmatch(number):
+        raise ValueError(
+            f"--speeds = \"{text}\": '{number}' is not a number; give numbers and one unit at their end, "
+            'e.g. "0, 50, 100 rad/s"'
+        )
+    return parse_speed("--speeds", f"{number} {unit}")
+
+
+def asked_speed(scene: Scene, speed: str | None) -> float:
+    """The speed asked for [rad/s], else that at which the scene's motion ends, else 0."""
+    if speed is not None:
+        return parse_speed("--speed", speed)
+    final = 0.0 if scene.motion is None else scene.motion.final_speed
+    return final if isfinite(final) else 0.0

@@ -1,0 +1,470 @@
+"""Many transients: a peak for each speed, in parallel, resumable, and the same to the bit however run."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, as_completed
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import scipy
+
+from beamdyn import __version__
+from beamdyn.batch import histories
+from beamdyn.common.checks import ascending, count, positive, real
+from beamdyn.common.store import Store, fingerprint
+from beamdyn.common.workers import Workers, one_blas_thread
+from beamdyn.estimate import Model, choose
+from beamdyn.motion import Motion, check_picklable
+from beamdyn.operators import Discretization
+from beamdyn.results import Provenance, Result
+from beamdyn.scene import Scene
+from beamdyn.spectrum import LARGE_DEFLECTION
+from beamdyn.transient import ModalSystem, Trajectory, largest_deflection, simulate
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_KIND = "beamdyn sweep"
+_VERSIONS = (__version__, np.__version__, scipy.__version__)  # whose bits are stored
+_GRAVITY = 9.81  # past this acceleration [m/s2] a wheel leaves the road
+_DONE = "done"
+
+Progress = Callable[[int, int], object]
+
+
+class SweepInterrupted(RuntimeError):
+    """The executor broke before all cases were done.
+
+    Parameters
+    ----------
+    done, total : int
+        Cases that were done, and all cases.
+    stored : bool
+        Whether those that were done are in a store.
+    """
+
+    def __init__(self, done: int, total: int, stored: bool) -> None:
+        super().__init__(done, total, stored)
+        self.done, self.total, self.stored = done, total, stored
+
+    def __str__(self) -> str:
+        if self.stored:
+            hint = "stored; the same call with a working executor resumes"
+        else:
+            hint = "done, but not kept: give a store= and the same call resumes"
+        return f"the executor broke with {self.done} of {self.total} cases {hint}"
+
+
+@dataclass(frozen=True)
+class Sweep(Result):
+    """Peaks of transients over speed.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Final speeds of the motion [rad/s].
+    peaks : ndarray, shape (S,)
+        Largest tip deflection, either way, in the window [m]; nan where there is none.
+    largest : ndarray, shape (S,)
+        Largest tip deflection of the run [m]: of the samples, eight or more in each step.
+    time_error : ndarray, shape (S,)
+        Estimated error of the tip deflection by the steps in time [m].
+    status : tuple of str, length S
+        "done", or "failed" and why.
+    window : tuple of float
+        Beginning and end of the window [s].
+    t_end : float
+        End of each run [s].
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+    """
+
+    speeds: np.ndarray
+    peaks: np.ndarray
+    largest: np.ndarray
+    time_error: np.ndarray
+    status: tuple[str, ...]
+    window: tuple[float, float]
+    t_end: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""
+        from beamdyn.plots import plot_sweep
+
+        return plot_sweep(self.speeds, self.peaks, ax)
+
+
+def sweep(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float],
+    window: tuple[float, float] = (20.0, 30.0),
+    t_end: float | None = None,
+    modes: int = 5,
+    tolerance: float = 1e-5,
+    workers: int = 1,
+    executor: Executor | None = None,
+    store: str | Path | None = None,
+    progress: Progress | None = None,
+    discretization: str | Discretization = "ritz",
+    chunk: int = 20,
+) -> Sweep:
+    """Peak of the tip deflection in a window of time, from rest, for each final speed of the motion.
+
+    The cases are split into chunks of neighbouring speeds, whose transients advance together.  The
+    split follows from the request alone: workers, executors, order and resumption change no bit.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is taken to each speed by `with_speed`.
+    speeds : sequence of float
+        Speeds [rad/s], ascending, below the critical one.
+    window : tuple of float
+        Beginning and end of the window [s].
+    t_end : float, optional
+        End of each run [s]; the window's end if not given.
+    modes : int
+        Number of modes of each field.
+    tolerance : float
+        Error in time that is aimed at, relative to the largest deflection of a case.
+    workers : int
+        Processes of our own; 1 computes in this one.
+    executor : concurrent.futures.Executor, optional
+        Computes in place of our workers, such as that of ``dask.distributed.Client.get_executor()``.
+    store : str or Path, optional
+        Directory that keeps each finished chunk; a sweep that finds chunks there computes only the others.
+    progress : callable, optional
+        Called with the number of cases that are done and of all: at the start, and after each chunk.
+    discretization : {"ritz", "fem"} or Discretization
+        Where the modes come from.
+    chunk : int
+        Cases in a chunk: a part of the request, on which the last digits depend.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    ValueError
+        Before any long work: if an argument is out of its range, a speed passes the critical one, the
+        store is foreign or cannot be written, or the motion cannot be stored or sent to workers.
+    SweepInterrupted
+        If the executor breaks; what is finished is in the store.
+    """
+    began = perf_counter()
+    cases = tuple(ascending("speeds", speeds).tolist())
+    request = _request(scene, window, t_end, modes, tolerance, discretization)
+    workers, chunk = count("workers", workers), count("chunk", chunk)
+    if executor is not None and workers > 1:
+        raise ValueError(f"workers = {workers} and an executor are given: give one of them")
+    model = _checked(request, cases)
+    if store is not None or executor is not None or workers > 1:
+        _check_sendable(request, importable=workers > 1)
+    run = _Run(request, _chunks(cases, chunk), None if store is None else Store(store, _KIND), progress)
+    run.collect(executor, workers)
+    method = f"Gauss collocation in batches of {chunk}, {request.modes} modes of {model.discretization}"
+    provenance = Provenance(__version__, method, "", perf_counter() - began)
+    return _result(request, np.array(cases), run.cases(), provenance)
+
+
+def _chunks(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
+    return [speeds[k : k + size] for k in range(0, len(speeds), size)]
+
+
+# Requests -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of each case: see `sweep`."""
+
+    scene: Scene
+    window: tuple[float, float]
+    t_end: float
+    modes: int
+    tolerance: float
+    discretization: str | Discretization
+
+    def motions(self, speeds: Sequence[float]) -> list[Motion]:
+        """The motion at each speed."""
+        assert self.scene.motion is not None
+        return [self.scene.motion.with_speed(v) for v in speeds]
+
+    def model(self) -> Model:
+        """The discretized scene."""
+        return choose(self.scene, self.discretization, np.zeros(1), self.modes, target=1e-3 * self.tolerance)
+
+
+def _request(
+    scene: Scene,
+    window: tuple[float, float],
+    t_end: float | None,
+    modes: int,
+    tolerance: float,
+    discretization: str | Discretization,
+) -> Request:
+    if scene.motion is None:
+        raise ValueError("scene.motion is None: a sweep needs a motion, such as SpinUp(50.0, duration=10.0)")
+    if not isinstance(window, tuple | list) or len(window) != 2:
+        raise ValueError(f"window = {window!r}: give its beginning and its end [s], such as (20.0, 30.0)")
+    start, end = real("window[0]", window[0], "s"), real("window[1]", window[1], "s")
+    last = end if t_end is None else positive("t_end", t_end, "s")
+    if not 0 <= start < end <= last:
+        raise ValueError(
+            f"window = {start:g} ... {end:g} s: it must begin before it ends, "
+            f"and lie in the run, 0 ... {last:g} s"
+        )
+    modes, tolerance = count("modes", modes), positive("tolerance", tolerance)
+    return Request(scene, (start, end), last, modes, tolerance, discretization)
+
+
+def _checked(request: Request, speeds: tuple[float, ...]) -> Model:
+    """The model, if no case passes the critical speed and every motion lasts to the end."""
+    model, t = request.model(), np.linspace(0, request.t_end, 2001)
+    critical = model.solver.critical_speed
+    fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
+    if (fastest >= critical).any():
+        past = np.array(speeds)[fastest >= critical]
+        raise ValueError(
+            f"speeds: {len(past)} of {len(speeds)} ({_range(past)}) pass the critical speed "
+            f"{critical:.6g} rad/s, where the beam buckles and linear theory has no answer; leave them out"
+        )
+    return model
+
+
+def _check_sendable(request: Request, importable: bool) -> None:
+    """Refuse what cannot be stored or sent to workers; to our own only what they can import."""
+    assert request.scene.motion is not None
+    check_picklable(request.scene.motion)
+    try:
+        sent = pickle.dumps(request)
+    except Exception as error:  # which one depends on the object
+        raise ValueError(f"the scene can be neither stored nor sent to workers: {error}") from None
+    if importable and b"__main__" in sent:
+        raise ValueError(
+            "motion: it uses functions or classes defined in the script itself (__main__), which workers "
+            "cannot import; define them in a module of their own, or give workers=1"
+        )
+
+
+# Cases --------------------------------------------------------------------------------------------
+
+
+class Case(NamedTuple):
+    """The answer of one case: see `Sweep`."""
+
+    peak: float
+    largest: float
+    time_error: float
+    status: str
+
+
+def solve(request: Request, speeds: tuple[float, ...]) -> list[Case]:
+    """Cases of one chunk: together, and alone where that is not as accurate as is asked."""
+    with one_blas_thread(), np.errstate(all="ignore"):
+        together = _together(request, request.motions(speeds))
+        return [
+            case if case.time_error <= request.tolerance * case.largest else _alone(request, motion)
+            for case, motion in zip(together, request.motions(speeds), strict=True)
+        ]
+
+
+def _together(request: Request, motions: Sequence[Motion]) -> list[Case]:
+    modal = request.model().modal(request.modes)
+    systems = [ModalSystem(modal.equations, motion) for motion in motions]
+    found = histories(systems, modal.tip, request.t_end, request.tolerance)
+    pairs = zip(found.tips, found.time_error, strict=True)
+    return [
+        _case(request, path, error) if np.isfinite(error) else _failed("not converged")
+        for path, error in pairs
+    ]
+
+
+def _alone(request: Request, motion: Motion) -> Case:
+    """One case by `simulate`, which refines its steps until the tolerance is met."""
+    scene = replace(request.scene, motion=motion)
+    try:
+        run = simulate(
+            scene, request.t_end, request.modes, request.tolerance, discretization=request.discretization
+        )
+        peak = run.peak(*request.window)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        return _failed(str(error))
+    return Case(peak, run.largest, run.time_error, _DONE) if np.isfinite(peak) else _failed("not finite")
+
+
+def _case(request: Request, path: Trajectory, error: float) -> Case:
+    """The case of a trajectory whose only coordinate is the tip deflection."""
+    peak = largest_deflection(np.ones(1), path, *request.window)
+    return Case(peak, max(peak, float(np.abs(path.samples[1]).max())), float(error), _DONE)
+
+
+def _failed(reason: str) -> Case:
+    return Case(np.nan, np.nan, np.nan, f"failed: {reason}")
+
+
+# Running ------------------------------------------------------------------------------------------
+
+
+class _Run:
+    """The chunks of a sweep and what is known of them.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    chunks : list of tuple of float
+        Speeds of each chunk [rad/s].
+    store : Store, optional
+        Where finished chunks are kept.
+    progress : callable, optional
+        Called with the number of cases done and of all.
+    """
+
+    def __init__(
+        self,
+        request: Request,
+        chunks: list[tuple[float, ...]],
+        store: Store | None,
+        progress: Progress | None,
+    ) -> None:
+        self.request, self.chunks, self.store, self.progress = request, chunks, store, progress
+        self.known: dict[int, list[Case]] = {}
+        self.futures: dict[Future[Any], int] = {}
+        if store is not None:
+            self.keys = [fingerprint(_VERSIONS, request, speeds) for speeds in chunks]
+            stored = ((k, store.read(key)) for k, key in enumerate(self.keys))
+            self.known = {k: [Case(*c) for c in record["cases"]] for k, record in stored if record}
+
+    @property
+    def missing(self) -> list[int]:
+        """Chunks still to compute, those of high speeds first: they take longest."""
+        return [k for k in reversed(range(len(self.chunks))) if k not in self.known]
+
+    def cases(self) -> list[Case]:
+        """All cases by ascending speed."""
+        return [case for k in range(len(self.chunks)) for case in self.known[k]]
+
+    def collect(self, executor: Executor | None, workers: int) -> None:
+        """Compute what is missing."""
+        self._report()
+        missing = self.missing
+        workers = min(workers, len(missing))
+        if executor is not None:
+            self._submit(executor, missing)
+        elif workers > 1:
+            with Workers(workers) as pool:
+                self._submit(pool, missing)
+        else:
+            for k in missing:
+                self._keep(k, solve(self.request, self.chunks[k]))
+                self._report()
+
+    def _submit(self, executor: Executor, missing: list[int]) -> None:
+        """Compute chunks by an executor; at an error keep what is finished and cancel the rest."""
+        try:
+            for k in missing:
+                future = self._ask(executor.submit, _attempt, self.request, self.chunks[k])
+                self.futures[future] = k
+            for future in as_completed(list(self.futures)):
+                found = self._ask(future.result)
+                self._keep(self.futures.pop(future), found)
+                self._report()
+        finally:
+            self._settle()
+
+    def _ask(self, action: Callable[..., Any], *args: Any) -> Any:
+        """What the executor answers: tasks return their errors, so that one that is raised is its own."""
+        try:
+            return action(*args)
+        except Exception as error:
+            self._settle()
+            raise SweepInterrupted(*self._count(), stored=self.store is not None) from error
+
+    def _settle(self) -> None:
+        """Cancel what has not begun; keep what has finished meanwhile."""
+        for future in self.futures:
+            future.cancel()
+        while self.futures:
+            future, k = self.futures.popitem()
+            if (
+                future.done()
+                and not future.cancelled()
+                and isinstance(future.exception() or future.result(), list)
+            ):
+                self._keep(k, future.result())
+
+    def _keep(self, k: int, found: list[Case] | Exception) -> None:
+        if isinstance(found, Exception):
+            raise found
+        if self.store is not None:
+            self.store.write(self.keys[k], {"speeds": self.chunks[k], "fields": Case._fields, "cases": found})
+        self.known[k] = found
+
+    def _count(self) -> tuple[int, int]:
+        """Cases that are done, and all."""
+        return sum(len(self.chunks[k]) for k in self.known), sum(map(len, self.chunks))
+
+    def _report(self) -> None:
+        if self.progress is not None:
+            self.progress(*self._count())
+
+
+def _attempt(request: Request, speeds: tuple[float, ...]) -> list[Case] | Exception:
+    """Solve a chunk; return its error, for what an executor raises is its own."""
+    try:
+        return solve(request, speeds)
+    except Exception as error:
+        return error
+
+
+# Results ------------------------------------------------------------------------------------------
+
+
+def _result(request: Request, speeds: np.ndarray, cases: Sequence[Case], provenance: Provenance) -> Sweep:
+    peaks, largest, time_error, status = zip(*cases, strict=True)
+    found = Sweep(
+        speeds=speeds,
+        peaks=np.array(peaks),
+        largest=np.array(largest),
+        time_error=np.array(time_error),
+        status=status,
+        window=request.window,
+        t_end=request.t_end,
+        warnings=(),
+        provenance=provenance,
+        scene=request.scene,
+    )
+    return replace(found, warnings=tuple(_warnings(found, request.tolerance)))
+
+
+def _warnings(found: Sweep, tolerance: float) -> Iterator[str]:
+    speeds, motion, length = found.speeds, found.scene.motion, found.scene.beam.length
+    if (at := speeds[np.array([s != _DONE for s in found.status])]).size:
+        yield f"{len(at)} of {len(speeds)} cases failed, at {_range(at)}: see status"
+    if (at := speeds[found.largest > LARGE_DEFLECTION * length]).size:
+        yield f"the tip deflects by more than 0.1 of the length at {_range(at)}: outside linear theory"
+    road = np.array([0.0 if motion is None else motion.road_acceleration(v) for v in speeds])
+    if (at := speeds[road > _GRAVITY]).size:
+        yield (
+            f"the road accelerates the wheel by up to {road.max():.4g} m/s2, past gravity, at {_range(at)}: "
+            "the wheel leaves the road; was a velocity given as a height?"
+        )
+    if (at := speeds[found.time_error > tolerance * found.largest]).size:
+        yield f"the steps in time do not reach the tolerance {tolerance:g} at {_range(at)}; see time_error"
+
+
+def _range(speeds: np.ndarray) -> str:
+    ends = [f"{speed:.6g}" for speed in (speeds.min(), speeds.max())]
+    return " to ".join(dict.fromkeys(ends)) + " rad/s"

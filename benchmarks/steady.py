@@ -1,0 +1,77 @@
+"""Accuracy and speed of resonance speeds and harmonic balance.  Run: python -m benchmarks.steady
+
+Prints every figure that the README quotes of them, each beside its bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+import beamdyn as bd
+from benchmarks.beam_core import Row, best_time
+from tests.literature.test_resonance import HEAVY, ROLLING
+
+
+def crossings() -> Iterator[Row]:
+    """Speeds at which lines meet the first natural frequency."""
+    expected = {
+        ("road +", "forced"): "53.08584183",
+        ("road -", "forced"): "69.80240337",
+        ("rotation", "forced"): "148.9196",
+        ("road +", "parametric"): "92.0443",
+        ("road -", "parametric"): "111.3564",
+    }
+    for c in bd.resonance_speeds(HEAVY, 150.0):
+        if bound := expected.get((c.line.name, c.kind)):
+            yield f"{c.line.name}, {c.kind} [rad/s]", f"{c.speed:.8f}", bound
+    time = best_time(lambda: bd.resonance_speeds(ROLLING, 150.0))
+    yield "all crossings below 150 rad/s, 3 modes [s]", f"{time:.3f}", "-"
+
+
+def amplitudes() -> Iterator[Row]:
+    """Steady response at 55 rad/s."""
+    for name, scene, modes, amplitude, bound in (
+        ("undamped, 5 modes", ROLLING, 5, "0.261876", "0.261951"),
+        ("with gravity, 3 modes", HEAVY, 3, "0.29895", "0.36868"),
+    ):
+        found = bd.steady_response(scene, [55.0], modes)
+        yield f"amplitude at 55 rad/s, {name} [mm]", f"{found.amplitude[0] * 1e3:.6f}", amplitude
+        yield f"sum of lines, {name} [mm]", f"{found.bound[0] * 1e3:.6f}", bound
+        yield "... estimated error by neglected harmonics", f"{found.error[0]:.1e}", "1e-5"
+
+
+def tongues() -> Iterator[Row]:
+    """Parametric instability."""
+    for speed in (92.0443, 111.3564):
+        found = bd.steady_response(ROLLING, [speed])
+        yield f"at {speed} rad/s", f"{found.status[0]}, {found.growth_rate[0]:.4f} 1/s", "unstable"
+
+
+def speed() -> Iterator[Row]:
+    """Times after import."""
+    speeds = np.linspace(1, 150, 1000)
+    for name, scene, bound in (
+        ("undamped", ROLLING, "0.5"),
+        ("1 % damping", replace(ROLLING, damping_ratio=0.01), "0.5"),
+        ("with gravity", HEAVY, "-"),
+    ):
+        time = best_time(lambda scene=scene: bd.steady_response(scene, speeds, 3), 5)
+        yield f"1000 speeds x 3 modes, {name} [s]", f"{time:.3f}", bound
+
+
+def main() -> None:
+    table = Table("what", "measured", "bound", title="resonance and steady response")
+    for part in (crossings, amplitudes, tongues, speed):
+        for row in part():
+            table.add_row(*map(escape, row))
+    Console(width=120).print(table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,173 @@
+"""Transients: initial states, stock methods, what a run answers, and bad input."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.batch import histories
+from beamdyn.estimate import Model
+from beamdyn.transient import ModalSystem, largest_deflection
+from tests.scenes import HARVESTER, ROLLING
+
+STEADY = replace(HARVESTER, mount=bd.Mount(0.215, 0.02), motion=bd.SteadyRotation(50.0))
+
+
+@pytest.fixture(scope="module")
+def short() -> bd.Transient:
+    return bd.simulate(ROLLING, 2.0, modes=2, tolerance=1e-9)
+
+
+def test_equilibrium_stays() -> None:
+    run = bd.simulate(STEADY, 1.0, initial="equilibrium")
+    static = bd.natural_modes(STEADY, 50.0).static_deflection
+    assert run.tip == pytest.approx(static, rel=1e-3)  # three modes of the static deflection
+    assert np.ptp(run.tip) < 1e-9 * abs(static)
+
+
+def test_energy_is_constant_at_steady_speed() -> None:
+    run = bd.simulate(STEADY, 5.0, modes=3)
+    piece = run.path.pieces[0]
+    energy = run.energy(piece.start + piece.h * np.arange(0, len(piece.acceleration), 7))  # ends of steps
+    kinetic = (run.velocities**2).sum(axis=1).max() / 2
+    assert np.ptp(energy) < 1e-10 * kinetic
+
+
+def test_free_vibration_has_the_natural_frequency() -> None:
+    """One mode at rest: q = cos(omega t)."""
+    scene = replace(HARVESTER, motion=bd.SteadyRotation(0.0))
+    run = bd.simulate(scene, 1.0, modes=1, initial=np.array([1e-6, 0.0]), tolerance=1e-10)
+    omega = 2 * np.pi * bd.natural_modes(HARVESTER, 0.0).frequency[0]
+    np.testing.assert_allclose(run.coordinates[:, 0], 1e-6 * np.cos(omega * run.t), atol=1e-14)
+
+
+def test_damping_rings_down() -> None:
+    scene = replace(HARVESTER, motion=bd.SteadyRotation(0.0), damping_ratio=0.02)
+    run = bd.simulate(scene, 1.0, modes=1, initial=np.array([1e-6, 0.0]), tolerance=1e-9)
+    omega = 2 * np.pi * bd.natural_modes(HARVESTER, 0.0).frequency[0]
+    turned = omega * np.sqrt(1 - 0.02**2) * run.t
+    exact = np.exp(-0.02 * omega * run.t) * (np.cos(turned) + 0.02 / np.sqrt(1 - 0.02**2) * np.sin(turned))
+    np.testing.assert_allclose(run.coordinates[:, 0], 1e-6 * exact, atol=1e-13)
+
+
+@pytest.mark.parametrize("method", ["RK45", "DOP853", "Radau", "BDF", "LSODA", bd.GaussCollocation])
+def test_stock_methods_agree(method, short: bd.Transient) -> None:
+    loose = method in ("BDF", "RK45")
+    options = {"rtol": 1e-6 if loose else 1e-8, "atol": 1e-14 if loose else 1e-15}
+    run = bd.simulate(ROLLING, 2.0, modes=2, method=method, **options)
+    t = np.linspace(0, 2, 60)
+    deviation = np.abs(run.deflection(t) - short.deflection(t)).max()
+    assert deviation < (2e-2 if loose else 1e-4) * short.largest
+    assert math.isnan(run.time_error)
+
+
+def test_time_error_covers_the_true_one(short: bd.Transient) -> None:
+    t = np.linspace(0, 2, 301)
+    for tolerance in (1e-3, 1e-5):
+        run = bd.simulate(ROLLING, 2.0, modes=2, tolerance=tolerance)
+        true = np.abs(run.deflection(t) - short.deflection(t)).max()
+        assert true <= run.time_error <= tolerance * run.largest
+
+
+def test_jacobian_is_the_derivative(short: bd.Transient) -> None:
+    y = np.array([1e-5, 2e-6, 1e-3, -1e-3])
+    J = short.system.jacobian(1.3, y)
+    columns = [short.system.rhs(1.3, y + e) - short.system.rhs(1.3, y) for e in np.eye(4)]
+    np.testing.assert_allclose(J, np.array(columns).T, rtol=1e-6, atol=1e-6)
+
+
+def test_shape_strain_and_tip(short: bd.Transient) -> None:
+    x = np.linspace(0, 0.05, 5)
+    u = short.shape(x, [0.5, 1.0])
+    assert u.shape == (2, 5)
+    np.testing.assert_allclose(u[:, 0], 0, atol=1e-18)
+    np.testing.assert_allclose(u[:, -1], short.deflection([0.5, 1.0]))
+
+
+def test_root_strain_of_a_static_load() -> None:
+    """Root strain = moment h / (2 EI), with the moment of the centrifugal load about the root."""
+    scene = replace(STEADY, motion=bd.SteadyRotation(5.0))
+    run = bd.simulate(scene, 0.1, modes=30, initial="equilibrium")
+    rho_a, ei = 7850 * 0.01 * 2e-4, 200e9 * 0.01 * 2e-4**3 / 12
+    load = -rho_a * 25 * 0.215 * math.sin(0.02)
+    expected = load * 0.05**2 / 2 / ei * 1e-4
+    assert run.root_strain([0.05])[0] == pytest.approx(expected, rel=0.02)  # a clamped end converges slowly
+
+
+def test_peak_between_samples_is_larger_than_the_samples(short: bd.Transient) -> None:
+    dense = np.abs(short.deflection(np.linspace(1, 2, 100001))).max()
+    assert short.peak(1.0, 2.0) == pytest.approx(dense, rel=1e-7)
+    assert short.peak(1.0, 2.0) >= dense * (1 - 1e-14)
+
+
+def test_full_finite_elements_equal_their_modes() -> None:
+    scene = replace(ROLLING, motion=ROLLING.motion.with_speed(30.0))
+    full = bd.simulate(scene, 0.5, modes=None, discretization=bd.Fem(6))
+    some = bd.simulate(scene, 0.5, modes=6, discretization=bd.Fem(6))
+    t = np.linspace(0, 0.5, 50)
+    assert np.abs(full.deflection(t) - some.deflection(t)).max() < 1e-3 * some.largest
+
+
+def test_a_batch_is_its_cases_one_by_one() -> None:
+    motions = [ROLLING.motion.with_speed(v) for v in (0.0, 40.0, 55.0, 120.0)]
+    modal = Model(HARVESTER, bd.Ritz(18)).modal(4)
+    batch = histories([ModalSystem(modal.equations, m) for m in motions], modal.tip, 3.0)
+    for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
+        run = bd.simulate(replace(ROLLING, motion=motion), 3.0, modes=4, tolerance=1e-9)
+        found = largest_deflection(np.ones(1), tip, 1.0, 3.0)
+        assert abs(found - run.peak(1.0, 3.0)) <= 1e-5 * run.largest
+        assert error <= 1e-5 * run.largest
+
+
+def test_a_damped_batch_with_stretch_and_gravity() -> None:
+    scene = replace(ROLLING, damping_ratio=0.03, gravity=9.81, stretch=True)
+    motions = [ROLLING.motion.with_speed(v) for v in (40.0, 55.0)]
+    modal = Model(scene, bd.Ritz(16)).modal(2)
+    batch = histories([ModalSystem(modal.equations, m) for m in motions], modal.tip, 1.0)
+    for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
+        run = bd.simulate(replace(scene, motion=motion), 1.0, modes=2, tolerance=1e-9)
+        t = np.linspace(0.1, 1, 20)
+        assert np.abs(tip.at(t)[0][:, 0] - run.deflection(t)).max() <= error
+        assert error <= 1e-5 * run.largest
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: bd.simulate(ROLLING, 0.0), ["t_end", "0"]),
+        (lambda: bd.simulate(ROLLING, -1.0), ["t_end", "-1"]),
+        (lambda: bd.simulate(ROLLING, math.nan), ["t_end"]),
+        (lambda: bd.simulate(HARVESTER, 1.0), ["motion"]),
+        (lambda: bd.simulate(ROLLING, 1.0, modes=0), ["modes"]),
+        (lambda: bd.simulate(ROLLING, 1.0, tolerance=0.0), ["tolerance"]),
+        (lambda: bd.simulate(ROLLING, 1.0, initial="hot"), ["initial", "rest"]),
+        (lambda: bd.simulate(ROLLING, 1.0, initial=np.zeros(3)), ["initial", "6"]),
+        (lambda: bd.simulate(ROLLING, 1.0, t_eval=[0.0, 2.0]), ["t_eval"]),
+        (lambda: bd.simulate(ROLLING, 1.0, t_eval=[0.5, 0.1]), ["t_eval", "ascend"]),
+        (
+            lambda: bd.simulate(replace(ROLLING, motion=ROLLING.motion.with_speed(170.0)), 12.0),
+            ["critical", "159.8", "t ="],
+        ),
+        (
+            lambda: bd.simulate(replace(HARVESTER, motion=bd.SampledRotation((0.0, 1.0), (0.0, 9.0))), 2.0),
+            ["1", "2"],
+        ),
+        (lambda: bd.simulate(ROLLING, 1.0, method="Euler"), ["method", "Euler"]),
+    ],
+)
+def test_bad_input(call, words) -> None:
+    with pytest.raises(ValueError) as caught:
+        call()
+    assert all(word in str(caught.value) for word in words)
+
+
+def test_windows_and_times_outside_the_run(short: bd.Transient) -> None:
+    for window in ((1.0, 3.0), (-1.0, 1.0), (1.0, 1.0), (1.5, 1.0), (math.nan, 1.0)):
+        with pytest.raises(ValueError, match="window|start"):
+            short.peak(*window)
+    with pytest.raises(ValueError, match="run"):
+        short.at([2.5])
