@@ -101,7 +101,7 @@ def _advanced(
         steps = max(resolution.steps(s, a, b) for s in systems)
         runs.append(_Run(systems, tip, a, (b - a) / steps, steps))
         state = runs[-1].advance(*state)
-    if not all(run.converged.all() for run in runs):
+    if not all(run.converged for run in runs):
         raise ArithmeticError("the iteration of a step did not converge: simulate the cases one by one")
     tips = [Trajectory(tuple(run.piece(case) for run in runs)) for case in range(C)]
     errors = [time_error(tip, s, [run.checks(case) for run in runs]) for case, s in enumerate(systems)]
@@ -138,8 +138,7 @@ class _Run:
         self.accelerations = np.empty((steps, STAGES, C))
         self.checked = checked_steps(steps)
         self.states = np.empty((len(self.checked), C, 2 * n + 1))
-        self.converged = np.ones(C, dtype=bool)
-        self.iterations = 2
+        self.converged, self.iterations = True, 2
 
     def advance(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Advance all cases from (q, v), shapes (C, n), to the end of the stretch."""
@@ -166,14 +165,13 @@ class _Run:
             yield from _coefficients(self.systems, times, self.h)
 
     def _survey(self, step: _Step, q: np.ndarray, v: np.ndarray) -> None:
-        """Find how many iterations the next steps need, and which cases do not converge."""
+        """Find how many iterations the next steps need, and whether all cases converge."""
         for self.iterations in range(2, _ITERATIONS):
             (_, before), (_, after) = (self._solve(step, q, v, self.iterations + i) for i in (0, 1))
             change, size = (np.abs(x).max(axis=(0, 2)) for x in (after - before, after + np.abs(q)))
-            converged = change <= _CONVERGED * size
-            if converged.all():
+            if (change <= _CONVERGED * size).all():
                 return
-        self.converged &= converged
+        self.converged = False
 
     def _solve(
         self, step: _Step, q: np.ndarray, v: np.ndarray, iterations: int
@@ -182,7 +180,7 @@ class _Run:
         table, h = tableau(STAGES), self.h
         forward, back, _ = _spectrum(STAGES)
         still = q + h * table.c[:, None, None] * v  # displacement at the nodes without acceleration
-        shape, moved, rate = still.shape, np.zeros_like(still), v if step.damping else None
+        shape, a, moved, rate = still.shape, still, np.zeros_like(still), v if step.damping else None
         for _ in range(iterations):
             g = step.acceleration(still + moved, rate)
             g += step.diagonal * moved
@@ -215,7 +213,7 @@ class _Step:
     inverse: np.ndarray
 
     def acceleration(self, q: np.ndarray, v: np.ndarray | None) -> np.ndarray:
-        """f - K q - C v at the nodes, shape (s, C, n)."""
+        """F - K q - C v at the nodes, shape (s, C, n)."""
         total = self.load.copy()
         for quantity, transposed in self.stiffness:
             total -= quantity * (q @ transposed)
@@ -238,9 +236,10 @@ def _spectrum(stages: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         One eigenvalue of each pair.
     """
     beta, vectors = np.linalg.eig(tableau(stages).A2)
-    inverse, upper = np.linalg.inv(vectors), beta.imag > 0
-    forward = np.concatenate([inverse[upper].real, inverse[upper].imag])
-    back = 2 * np.concatenate([vectors[:, upper].real, -vectors[:, upper].imag], axis=1)
+    upper = np.imag(beta) > 0
+    inverse, vectors = np.linalg.inv(vectors)[upper], vectors[:, upper]
+    forward = np.concatenate([np.real(inverse), np.imag(inverse)])
+    back = 2 * np.concatenate([np.real(vectors), -np.imag(vectors)], axis=1)
     return forward, back, beta[upper]
 
 

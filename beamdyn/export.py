@@ -1,4 +1,7 @@
-"""Mode shapes and motions as mesh files, for ParaView and the like (the only module that knows meshio), and animations."""
+"""Mode shapes and motions as mesh files, for ParaView and the like, and as animations.
+
+The only module that knows meshio.
+"""
 
 from __future__ import annotations
 

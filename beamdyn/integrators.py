@@ -368,7 +368,7 @@ class GaussCollocation(OdeSolver):
     def _step_impl(self) -> tuple[bool, str | None]:
         if not self.queue:
             self._solve_block()
-        self.start, self.begin, self.accelerations = self.t, self.augmented(), None
+        self.start, self.begin = self.t, self.augmented()
         end, step, stages = self.queue.pop(0)
         self.accelerations = stages @ self.begin
         self.y = step @ self.begin

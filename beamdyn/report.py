@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from beamdyn.spectrum import Locus, Modes
     from beamdyn.stability import SettingAngleLimits
     from beamdyn.steady import SteadyResponse
-    from beamdyn.sweep import Sweep
+    from beamdyn.sweeps import Sweep
     from beamdyn.transient import Transient
 
 _DIGITS = 10  # most that a table shows
@@ -333,13 +333,14 @@ def steady_table(found: SteadyResponse) -> Group:
 
 def sweep_table(found: Sweep) -> Group:
     """The table of a sweep: some of its speeds, its peaks among them."""
-    shown = _shown_response(found.speeds, found.peaks, found.status)
+    shown = _shown_response(found.speeds, found.peaks, np.array(found.status))
     rows = []
     for s in shown:
         peak = ", peak" if s in _peaks(found.peaks) else ""
         size = supported(1e3 * found.peaks[s], 1e3 * found.time_error[s], _MODEL_DIGITS)
         rows.append((f"{found.speeds[s]:.8g}", size, f"{found.status[s]}{peak}"))
-    title = f"Largest tip deflection in {found.window[0]:g} to {found.window[1]:g} s, by {found.provenance.method}"
+    start, end = found.window
+    title = f"Largest tip deflection in {start:g} to {end:g} s, by {found.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "status")
     return table(title + _part(shown, found.speeds), heads, rows, (2,))
 

@@ -82,7 +82,7 @@ class ModalSystem:
         return C, _sum(self.parts[0], root), self.equations.load(root)
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
-        """y' for y = (q, q'), as `solve_ivp` asks for it."""
+        """Y' for y = (q, q'), as `solve_ivp` asks for it."""
         C, K, f = self.coefficients(np.asarray(t))
         q, v = np.split(y, 2)
         return np.concatenate([v, f - K @ q - (0 if C is None else C @ v)])
@@ -236,7 +236,7 @@ class Trajectory:
 
 
 def _check_window(start: float, end: float, path: Any) -> None:
-    real("start", start, "s"), real("end", end, "s")
+    start, end = real("start", start, "s"), real("end", end, "s")
     if not path.start <= start < end <= path.end * (1 + 1e-12):
         raise ValueError(
             f"window = {start:g} ... {end:g} s: it must lie in the run, {path.start:g} ... {path.end:g} s"

@@ -95,12 +95,17 @@ def speed() -> Iterator[Row]:
     yield "beamdyn --help [s]", f"{help_time:.2f}", "0.5"
 
 
-def main() -> None:
-    table = Table("what", "measured", "bound", title="beam core")
-    for part in (tables, published_scene, many_functions, speed):
+def show(title: str, *parts: Callable[[], Iterator[Row]]) -> None:
+    """Print the rows of all parts as one table."""
+    table = Table("what", "measured", "bound", title=title)
+    for part in parts:
         for row in part():
             table.add_row(*map(escape, row))
     Console(width=120).print(table)
+
+
+def main() -> None:
+    show("beam core", tables, published_scene, many_functions, speed)
 
 
 if __name__ == "__main__":

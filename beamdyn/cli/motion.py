@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from beamdyn.cli.outputs import Outputs, write
+from beamdyn.cli.outputs import NO_FILES, Outputs, write
 from beamdyn.cli.program import Interrupted, NoAnswer, app, warn
 from beamdyn.cli.values import Method, SceneFile, Text, parse_positive, parse_speeds, parse_window
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from beamdyn.resonance import Crossings
     from beamdyn.steady import SteadyResponse
-    from beamdyn.sweep import Sweep
+    from beamdyn.sweeps import Sweep
     from beamdyn.transient import Transient
 
 Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
@@ -41,7 +41,7 @@ def simulate(
     window: Text | None = None,
     series: Path | None = None,
     animation: Path | None = None,
-    outputs: Outputs = Outputs(),
+    outputs: Outputs = NO_FILES,
 ) -> None:
     """Motion of the beam in time, from rest.
 
@@ -91,7 +91,7 @@ def resonances(
     modes: int = 3,
     order: int = 1,
     method: Method = "ritz",
-    outputs: Outputs = Outputs(),
+    outputs: Outputs = NO_FILES,
 ) -> None:
     """Speeds at which what the scene excites meets a natural frequency.
 
@@ -130,7 +130,7 @@ def steady(
     modes: int = 3,
     tolerance: float = 1e-5,
     method: Method = "ritz",
-    outputs: Outputs = Outputs(),
+    outputs: Outputs = NO_FILES,
 ) -> None:
     """Steady response over speed: what is left when the start has died away.
 
@@ -176,7 +176,7 @@ def sweep(
         str | None, Parameter(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
     ] = None,
     store: Path | None = None,
-    outputs: Outputs = Outputs(),
+    outputs: Outputs = NO_FILES,
 ) -> None:
     """Largest deflection in a stretch of time, one transient a speed.
 
@@ -201,7 +201,7 @@ def sweep(
     """
     from beamdyn import load_scene
     from beamdyn.report import console, sweep_table
-    from beamdyn.sweep import sweep
+    from beamdyn.sweeps import sweep
 
     outputs.check()
     asked, stretch, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
@@ -210,8 +210,8 @@ def sweep(
             loaded,
             asked,
             stretch,
-            modes,
-            tolerance,
+            modes=modes,
+            tolerance=tolerance,
             workers=workers,
             executor=executor,
             store=store,
@@ -277,9 +277,11 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
-    """A bar with the remaining time; Ctrl-C says what is done."""
+    """A bar with the remaining time; where the sweep is interrupted, say what is done."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from beamdyn.sweeps import SweepInterrupted
 
     columns = TextColumn("sweep"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     done = 0
@@ -295,11 +297,13 @@ def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], N
             yield progress
         except KeyboardInterrupt:
             raise Interrupted(_how_to_resume(done, cases, store)) from None
+        except SweepInterrupted as error:
+            raise Interrupted(str(error)) from None
 
 
 def _how_to_resume(done: int, cases: int, store: Path | None) -> str:
     if store is None:
-        return f"{done} of {cases} speeds were done and are lost; with --store DIR the command would go on from there"
+        return f"{done} of {cases} speeds were done and are lost; --store DIR keeps what is done"
     return f"{done} of {cases} speeds are stored in {store}; the same command goes on from there"
 
 

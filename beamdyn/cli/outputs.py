@@ -57,6 +57,9 @@ class Outputs:
             raise ValueError(f"{' and '.join('--' + o for o in given)}: give each its own file")
 
 
+NO_FILES = Outputs()
+
+
 def write(
     found: Result,
     outputs: Outputs,

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.outputs import Flag, Outputs, write
+from beamdyn.cli.outputs import NO_FILES, Flag, Outputs, write
 from beamdyn.cli.program import NoAnswer, app, warn
 from beamdyn.cli.values import Method, SceneFile, Text, asked_speed, parse_positive, parse_speeds
 
@@ -26,7 +26,7 @@ def modes(
     modes: int = 3,
     method: Method = "ritz",
     shapes: Path | None = None,
-    outputs: Outputs = Outputs(),
+    outputs: Outputs = NO_FILES,
 ) -> None:
     """Natural frequencies, errors and stability at one speed.
 
@@ -67,7 +67,7 @@ def locus(
     speeds: Text,
     modes: int = 3,
     method: Method = "ritz",
-    outputs: Outputs = Outputs(),
+    outputs: Outputs = NO_FILES,
 ) -> None:
     """Natural frequencies over speed, each mode followed through crossings.
 

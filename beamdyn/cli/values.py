@@ -57,9 +57,7 @@ def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
     if not 0 <= start < end:
         raise ValueError(f'--window = "{text}": it must start at 0 or later and end after its start')
     if t_end is not None and end > t_end:
-        raise ValueError(
-            f'--window = "{text}": it ends after the run, at {t_end:g} s; give a longer --t-end or an earlier end'
-        )
+        raise ValueError(f'--window = "{text}": it ends after the run, at {t_end:g} s; give a longer --t-end')
     return start, end
 
 

@@ -167,7 +167,7 @@ def test_bad_input(call, words) -> None:
 
 def test_windows_and_times_outside_the_run(short: bd.Transient) -> None:
     for window in ((1.0, 3.0), (-1.0, 1.0), (1.0, 1.0), (1.5, 1.0), (math.nan, 1.0)):
-        with pytest.raises(ValueError, match="window|start"):
+        with pytest.raises(ValueError, match=r"window|start"):
             short.peak(*window)
     with pytest.raises(ValueError, match="run"):
         short.at([2.5])

@@ -1,0 +1,145 @@
+"""Table 3's transient: ours against the stock integrators, and energy over a million periods.
+
+Run: python -m benchmarks.transient            (some minutes: the stock integrators take most of it)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import cos, pi, sin
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import beamdyn as bd
+from beamdyn.estimate import Model
+from beamdyn.integrators import propagate
+from beamdyn.transient import ModalSystem
+from benchmarks.beam_core import Row, best_time, show
+from tests.convergence.test_integrators import Oscillator
+from tests.scenes import ROLLING
+
+T_END, MODES = 30.0, 5
+STOCK = [  # the fastest settings of each method whose error is near ours
+    ("Radau", {"rtol": 2e-6, "atol": 2e-10}),
+    ("Radau", {"rtol": 2e-5, "atol": 2e-9}),
+    ("LSODA", {"rtol": 1e-7, "atol": 1e-11}),
+    ("DOP853", {"rtol": 1e-4, "atol": 1e-8}),
+]
+
+
+def lean(system: ModalSystem) -> tuple[Callable, Callable]:
+    """The published scene's right-hand side and Jacobian, written by hand with scalars."""
+    parts, loads = system.parts[0], {f.quantity: f.factor * f.vector for f in system.equations.loads}
+    base, spin, axial = (parts[name] for name in ("unity", "speed_squared", "root_axial"))
+    P, Q, n = loads["root_transverse"], loads["acceleration"], system.size
+    top, T, R, C, k, r = 55.0, 10.0, 0.3, 0.01, 2 * pi, 0.215
+    y_dot, J = np.empty(2 * n), np.zeros((2 * n, 2 * n))
+    J[:n, n:] = np.eye(n)
+
+    def motion(t: float) -> tuple[float, float, float, float]:
+        if t < T:
+            x = 2 * pi * t / T
+            w, dw = top * (t / T - sin(x) / (2 * pi)), top / T * (1 - cos(x))
+            angle = top * T * ((t / T) ** 2 / 2 + (cos(x) - 1) / (4 * pi**2))
+        else:
+            w, dw, angle = top, 0.0, top * T / 2 + top * (t - T)
+        c, s = cos(angle), sin(angle)
+        v1, v2 = R * dw, C * k * w * cos(k * angle)
+        return w * w, dw, w * w * r + v1 * c - v2 * s, v1 * s + v2 * c + dw * r
+
+    def rhs(t: float, y: np.ndarray) -> np.ndarray:
+        w2, dw, a1, a2 = motion(t)
+        q = y[:n]
+        y_dot[:n] = y[n:]
+        y_dot[n:] = dw * Q + a2 * P - base.dot(q) - w2 * spin.dot(q) - a1 * axial.dot(q)
+        return y_dot.copy()
+
+    def jacobian(t: float, y: np.ndarray) -> np.ndarray:
+        w2, _, a1, _ = motion(t)
+        J[n:, :n] = -(base + w2 * spin + a1 * axial)
+        return J
+
+    return rhs, jacobian
+
+
+def system() -> ModalSystem:
+    """The modal equations of Table 3."""
+    modal = Model(ROLLING, bd.Ritz(20)).modal(MODES)
+    assert ROLLING.motion is not None
+    return ModalSystem(modal.equations, ROLLING.motion)
+
+
+def race() -> Iterator[Row]:
+    """Times and errors in one run, relative to the peak; errors against a far finer run of ours."""
+    t = np.linspace(0, T_END, 30001)
+    exact = bd.simulate(ROLLING, T_END, MODES, tolerance=1e-10)
+    wanted, peak = exact.deflection(t), exact.peak(20.0, 30.0)
+    ours = best_time(lambda: bd.simulate(ROLLING, T_END, MODES, tolerance=1e-5))
+    run = bd.simulate(ROLLING, T_END, MODES, tolerance=1e-5)
+    error = np.abs(run.deflection(t) - wanted).max() / peak
+    yield "ours, tolerance 1e-5: time [s]", f"{ours:.3f}", "0.1"
+    yield "... largest error over the peak", f"{error:.1e}", "1e-5"
+    yield "... estimated", f"{run.time_error / peak:.1e}", "above the error"
+    fastest = np.inf
+    for method, options in STOCK:
+        time, found = stock(method, options, t, exact.modal.tip, system())
+        stock_error = np.abs(found - wanted).max() / peak
+        if stock_error >= error:
+            fastest = min(fastest, time)
+        yield f"solve_ivp {method}, rtol {options['rtol']:g}: time [s]", f"{time:.1f}", ""
+        yield "... largest error over the peak", f"{stock_error:.1e}", ""
+    yield "fastest stock method of equal or larger error, over ours", f"{fastest / ours:.0f}", "250"
+
+
+def stock(
+    method: str, options: dict[str, Any], t: np.ndarray, tip: np.ndarray, equations: ModalSystem
+) -> tuple[float, np.ndarray]:
+    """Time of a stock method, and the tip deflection that it finds."""
+    rhs, jacobian = lean(equations)
+    extra = {} if method == "DOP853" else {"jac": jacobian}
+    y0 = np.zeros(2 * equations.size)
+    start = perf_counter()
+    solved = solve_ivp(rhs, (0, T_END), y0, method, dense_output=True, **options, **extra)
+    time = perf_counter() - start
+    return time, solved.sol(t)[: equations.size].T @ tip
+
+
+def lean_cost() -> Iterator[Row]:
+    """A call of the hand-written right-hand side, and that it is the equations."""
+    equations = system()
+    rhs, _ = lean(equations)
+    y = np.linspace(1e-6, 2e-6, 2 * MODES)
+    time = best_time(lambda: [rhs(12.3, y) for _ in range(1000)]) * 1e3
+    yield "hand-written right-hand side [us a call]", f"{time:.1f}", "25"
+    off = max(np.abs(rhs(t, y) / equations.rhs(t, y) - 1).max() for t in (1.2, 9.9, 12.3))
+    yield "... its deviation from the equations", f"{off:.0e}", "1e-9"
+
+
+def table_3() -> Iterator[Row]:
+    """The peak of Table 3, by the number of modes and by finite elements."""
+    for modes in (1, 2, 3, 4, 5, 6):
+        run = bd.simulate(ROLLING, T_END, modes, tolerance=1e-6)
+        yield f"largest deflection in 20...30 s, {modes} modes [mm]", f"{1e3 * run.peak(20, 30):.6f}", ""
+    fem = bd.simulate(ROLLING, T_END, MODES, discretization="fem")
+    yield "the same by finite elements, 5 modes [mm]", f"{1e3 * fem.peak(20, 30):.6f}", "1.942558"
+    full = bd.simulate(ROLLING, T_END, modes=None, discretization=bd.Fem(16), tolerance=1e-4)
+    yield "the same by 16 elements, not reduced [mm]", f"{1e3 * full.peak(20, 30):.6f}", "1.94246 +- 1e-4"
+
+
+def energy() -> Iterator[Row]:
+    """An oscillator over a million periods in ten steps each."""
+    periods = 1_000_000
+    piece = propagate(Oscillator(), 0, 2 * np.pi * periods, 10 * periods, np.ones(1), np.zeros(1), 8)
+    drift = np.abs((piece.state[:, 1:] ** 2).sum(axis=1) - 1).max()
+    yield "energy drift over 1e6 periods, 10 steps each", f"{drift:.1e}", "1e-9"
+
+
+def main() -> None:
+    show("transients", lean_cost, table_3, energy, race)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,233 @@
+"""A sweep is the same to the bit: whatever computes it, in whatever order, interrupted or not."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from importlib.util import find_spec
+from multiprocessing import get_context
+from pathlib import Path
+
+import pytest
+
+import beamdyn as bd
+from tests.unit.test_sweep import SCENE, WINDOW
+
+ROOT = Path(__file__).parents[2]
+SPEEDS = [0.0, 20.0, 40.0, 53.0, 55.0, 69.8, 90.0, 100.0, 120.0, 130.0, 149.0, 150.0]
+unix = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+
+
+def run(**options):
+    return bd.sweep(SCENE, SPEEDS, WINDOW, chunk=2, **options)
+
+
+def bits(found):
+    return [a.tobytes() for a in (found.peaks, found.largest, found.time_error)], found.status
+
+
+def chunks(store):
+    """When each chunk was stored."""
+    return {p.name: p.stat().st_mtime_ns for p in store.glob("*.json") if p.name != "store.json"}
+
+
+@pytest.fixture(scope="module")
+def undisturbed():
+    return bits(run())
+
+
+class Backwards(Executor):
+    """Does the last task first, when all are there."""
+
+    def __init__(self, count):
+        self.tasks, self.count = [], count
+
+    def submit(self, fn, /, *args, **kwargs):
+        self.tasks.append((future := Future(), fn, args))
+        if len(self.tasks) == self.count:
+            for future_, fn_, args_ in reversed(self.tasks):
+                future_.set_result(fn_(*args_))
+        return future
+
+
+class Breaking(Executor):
+    """Breaks after some tasks."""
+
+    def __init__(self, good):
+        self.good = good
+
+    def submit(self, fn, /, *args, **kwargs):
+        future = Future()
+        self.good -= 1
+        if self.good < 0:
+            future.set_exception(BrokenExecutor("gone"))
+        else:
+            future.set_result(fn(*args))
+        return future
+
+
+def test_workers(undisturbed):
+    assert bits(run(workers=2)) == undisturbed
+
+
+def test_threads(undisturbed):
+    with ThreadPoolExecutor(3) as executor:
+        assert bits(run(executor=executor)) == undisturbed
+
+
+def test_processes_of_the_standard_library(undisturbed):
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
+        assert bits(run(executor=executor)) == undisturbed
+
+
+def test_order(undisturbed):
+    assert bits(run(executor=Backwards(len(SPEEDS) // 2))) == undisturbed
+
+
+def test_a_store_is_read_back(undisturbed, tmp_path):
+    assert bits(run(store=tmp_path / "s")) == undisturbed
+    before = chunks(tmp_path / "s")
+    assert bits(run(store=tmp_path / "s", executor=Breaking(0))) == undisturbed  # never asked
+    assert chunks(tmp_path / "s") == before
+
+
+def test_another_request_is_another_answer(tmp_path):
+    run(store=tmp_path / "s")
+    bd.sweep(SCENE, SPEEDS, WINDOW, chunk=2, store=tmp_path / "s", tolerance=1e-4)
+    assert len(chunks(tmp_path / "s")) == 12
+
+
+def test_a_broken_executor_is_named_and_the_same_call_resumes(undisturbed, tmp_path):
+    store = tmp_path / "s"
+    with pytest.raises(bd.SweepInterrupted, match="4 of 12 cases stored; the same call") as caught:
+        run(store=store, executor=Breaking(2))
+    assert (caught.value.done, caught.value.total) == (4, 12)
+    assert isinstance(caught.value.__cause__, BrokenExecutor)
+    before = chunks(store)
+    assert len(before) == 2
+    assert bits(run(store=store)) == undisturbed
+    assert before.items() <= chunks(store).items()  # not computed twice
+
+
+def test_without_a_store_the_error_says_so():
+    with pytest.raises(bd.SweepInterrupted, match="give a store="):
+        run(executor=Breaking(1))
+
+
+def test_an_error_of_a_case_is_not_one_of_the_executor(monkeypatch):
+    monkeypatch.setattr("beamdyn.sweeps._together", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError), ThreadPoolExecutor(1) as executor:
+        run(executor=executor)
+
+
+def test_ctrl_c_keeps_what_is_finished(undisturbed, tmp_path):
+    def interrupt(done, total):
+        if done >= 4:
+            raise KeyboardInterrupt
+
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        run(workers=2, store=tmp_path / "s", progress=interrupt)
+    assert time.monotonic() - start < 10
+    before = chunks(tmp_path / "s")
+    assert 2 <= len(before) < 6
+    assert children(os.getpid()) == []
+    assert bits(run(store=tmp_path / "s")) == undisturbed
+    assert before.items() <= chunks(tmp_path / "s").items()
+
+
+def children(pid):
+    """Processes that a process has started (Linux)."""
+    tasks = Path(f"/proc/{pid}/task").glob("*/children")
+    return [int(child) for task in tasks for child in task.read_text().split()]
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds the workers in /proc")
+def test_a_worker_is_killed(undisturbed, tmp_path, caplog):
+    killed = []
+
+    def kill(done, total):
+        if done >= 2 and not killed:
+            killed.append(max(children(os.getpid())))
+            os.kill(killed[0], signal.SIGKILL)
+
+    assert bits(run(workers=2, store=tmp_path / "s", progress=kill)) == undisturbed
+    assert killed
+    assert len([r for r in caplog.records if "its task runs again" in r.message]) <= 1
+    assert len(chunks(tmp_path / "s")) == 6
+
+
+PROGRAM = """
+import sys
+from tests.invariants.test_sweep_bits import run
+run(workers=2, store=sys.argv[1], progress=lambda done, total: print(done, flush=True))
+"""
+
+
+def started(program, *arguments):
+    return subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(program), *map(str, arguments)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+@unix
+@pytest.mark.slow
+def test_the_whole_program_is_killed(undisturbed, tmp_path):
+    with started(PROGRAM, tmp_path / "s") as program:
+        for line in program.stdout:
+            if int(line) >= 4:
+                workers = children(program.pid)
+                program.kill()
+                break
+    before = chunks(tmp_path / "s")
+    assert 2 <= len(before) <= 6
+    assert bits(run(workers=2, store=tmp_path / "s")) == undisturbed
+    assert before.items() <= chunks(tmp_path / "s").items()
+    end = time.monotonic() + 10
+    while any(Path(f"/proc/{pid}").exists() for pid in workers) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not [pid for pid in workers if Path(f"/proc/{pid}").exists()]
+
+
+DASK = """
+import os, signal, sys
+from dask.distributed import Client, LocalCluster
+from tests.invariants.test_sweep_bits import bits, run
+
+def main():
+    killed = []
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        pids = list(client.run(os.getpid).values())
+        def kill(done, total):
+            if done >= 2 and not killed:
+                killed.append(pids[0])
+                os.kill(pids[0], signal.SIGKILL)
+        found = run(executor=client.get_executor(), store=sys.argv[1], progress=kill)
+    print("killed", len(killed), bits(found) == bits(run()))
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@unix
+@pytest.mark.slow
+@pytest.mark.skipif(find_spec("distributed") is None, reason="dask.distributed is not installed (extra dask)")
+def test_a_dask_worker_is_killed(tmp_path):
+    (tmp_path / "program.py").write_text(DASK)
+    done = subprocess.run(
+        [sys.executable, tmp_path / "program.py", tmp_path / "s"],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert "killed 1 True" in done.stdout, done.stderr
+    assert len(chunks(tmp_path / "s")) == 6

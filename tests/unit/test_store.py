@@ -1,0 +1,148 @@
+"""The store: whole files only, its own directory only, keys by content."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beamdyn.common.store import Store, fingerprint
+
+
+@dataclass(frozen=True)
+class Point:
+    x: float
+    y: float
+
+    @cached_property
+    def radius(self):
+        return math.hypot(self.x, self.y)
+
+
+def double(x):
+    return 2 * x
+
+
+def test_floats_come_back_to_the_bit(tmp_path):
+    values = [0.1 + 0.2, math.pi * 1e-300, 5e-324, -0.0, math.inf, 1 / 3]
+    Store(tmp_path / "s", "test").write("key", {"values": values})
+    found = Store(tmp_path / "s", "test").read("key")
+    assert [v.hex() for v in found["values"]] == [v.hex() for v in values]
+
+
+def test_nan_comes_back(tmp_path):
+    store = Store(tmp_path, "test")
+    store.write("key", {"value": math.nan})
+    assert math.isnan(store.read("key")["value"])
+
+
+def test_what_was_not_written_is_missing(tmp_path):
+    assert Store(tmp_path, "test").read("key") is None
+
+
+def test_a_damaged_file_is_missing(tmp_path):
+    store = Store(tmp_path, "test")
+    store.write("key", {"value": 1.0})
+    (tmp_path / "key.json").write_text('{"value": 1.')
+    assert store.read("key") is None
+
+
+def test_a_write_that_fails_leaves_nothing(tmp_path):
+    store = Store(tmp_path, "test")
+    with pytest.raises(TypeError):
+        store.write("key", {"value": object()})
+    assert [p.name for p in tmp_path.iterdir()] == ["store.json"]
+
+
+def test_an_unfinished_file_of_a_killed_program_does_no_harm(tmp_path):
+    (tmp_path / "left.part").write_text("{")
+    assert Store(tmp_path, "test").read("left") is None
+
+
+def test_a_directory_with_other_content_is_refused(tmp_path):
+    (tmp_path / "thesis.tex").write_text("x")
+    with pytest.raises(ValueError, match=r"thesis\.tex.*does not exist yet"):
+        Store(tmp_path, "test")
+    assert [p.name for p in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_a_store_of_another_kind_is_refused(tmp_path):
+    Store(tmp_path, "brakes")
+    with pytest.raises(ValueError, match="something else than a test"):
+        Store(tmp_path, "test")
+
+
+def test_a_file_is_refused(tmp_path):
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(ValueError, match="is a file"):
+        Store(tmp_path / "file", "test")
+
+
+@pytest.mark.parametrize("path", ["file/store", "missing/store"])
+def test_what_cannot_be_made_is_refused(tmp_path, path):
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(ValueError, match="cannot be written"):
+        Store(tmp_path / path, "test")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
+def test_a_directory_without_permission_is_refused(tmp_path):
+    tmp_path.chmod(0o555)
+    with pytest.raises(ValueError, match="cannot be written"):
+        Store(tmp_path, "test")
+
+
+def test_files_are_json(tmp_path):
+    Store(tmp_path, "test").write("key", {"cases": [(1.0, "done")]})
+    assert json.loads((tmp_path / "key.json").read_text()) == {"cases": [[1.0, "done"]]}
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (1.0, math.nextafter(1.0, 2)),
+        (0.0, -0.0),
+        (1, 1.0),
+        (("a", "b"), ("ab",)),
+        ([[1.0], [2.0]], [[1.0, 2.0]]),
+        (np.zeros(4), np.zeros((2, 2))),
+        (Point(1.0, 2.0), Point(2.0, 1.0)),
+        (Point(1.0, 2.0), (1.0, 2.0)),
+        ({"a": 1.0}, {"b": 1.0}),
+        (double, math.sin),
+        (lambda x: x + 1, lambda x: x + 2),
+    ],
+)
+def test_other_values_have_other_keys(one, other):
+    assert fingerprint(one) != fingerprint(other)
+
+
+def test_the_key_of_a_value_stays_when_the_value_is_used():
+    point = Point(3.0, 4.0)
+    before = fingerprint(point)
+    assert point.radius == 5.0
+    assert fingerprint(point) == before == fingerprint(Point(np.float64(3.0), 4.0))
+
+
+def test_keys_are_the_same_in_another_process():
+    code = (
+        "from tests.unit.test_store import Point, double; from beamdyn.common.store import fingerprint; "
+        "print(fingerprint(Point(0.1, 2.0), double, {'a': [None, 'é']}))"
+    )
+    env = {**os.environ, "PYTHONHASHSEED": "7"}
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=root, env=env, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == fingerprint(Point(0.1, 2.0), double, {"a": [None, "é"]})
+
+
+def test_what_cannot_be_pickled_has_no_key():
+    with pytest.raises(ValueError, match="cannot be stored"):
+        fingerprint(x for x in ())

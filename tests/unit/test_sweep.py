@@ -1,0 +1,135 @@
+"""The sweep: its answers, and what it refuses before it begins."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from tests.scenes import HARVESTER
+
+MOTION = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=0.2), bd.RoadWave(0.3, velocity_amplitude=0.01))
+SCENE = replace(HARVESTER, motion=MOTION)
+SPEEDS = [0.0, 30.0, 53.0, 140.0]
+WINDOW = (0.3, 0.5)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return bd.sweep(SCENE, SPEEDS, WINDOW)
+
+
+def test_peaks_are_those_of_single_transients(found):
+    for speed, peak, largest, error in zip(SPEEDS, found.peaks, found.largest, found.time_error, strict=True):
+        run = bd.simulate(replace(SCENE, motion=MOTION.with_speed(speed)), WINDOW[1], 5, 1e-8)
+        assert abs(peak - run.peak(*WINDOW)) <= error + 1e-6 * peak
+        assert error <= 1e-5 * largest
+        assert largest == pytest.approx(run.largest, rel=0.01)
+    assert found.peaks[0] == 0
+    assert found.status == ("done",) * 4
+
+
+def test_finite_elements_agree(found):
+    fem = bd.sweep(SCENE, SPEEDS, WINDOW, discretization="fem")
+    assert fem.peaks == pytest.approx(found.peaks, rel=1e-4)
+
+
+def test_a_later_end_adds_to_the_run_only(found):
+    longer = bd.sweep(SCENE, SPEEDS, WINDOW, t_end=0.6)
+    assert longer.peaks == pytest.approx(found.peaks, rel=3e-5)
+    assert (longer.largest >= 0.99 * found.largest).all()
+
+
+def test_progress_begins_and_ends(found):
+    calls = []
+    bd.sweep(SCENE, SPEEDS, WINDOW, chunk=2, progress=lambda *call: calls.append(call))
+    assert calls == [(0, 4), (2, 4), (4, 4)]
+
+
+def test_result_is_saved_and_drawn(found, tmp_path):
+    found.save(tmp_path / "sweep.json")
+    saved = json.loads((tmp_path / "sweep.json").read_text())
+    assert saved["peaks"] == found.peaks.tolist()
+    assert saved["window"] == list(WINDOW)
+    assert found.plot().lines[0].get_ydata() == pytest.approx(1e3 * found.peaks)
+
+
+def test_limits_of_the_model_are_named():
+    rough = replace(SCENE, motion=replace(MOTION, road=bd.RoadWave(0.3, velocity_amplitude=3.0)))
+    warnings = " ".join(bd.sweep(rough, SPEEDS, WINDOW).warnings)
+    assert "outside linear theory" in warnings
+    assert "leaves the road" in warnings
+
+
+def user_motion(t):
+    return bd.motion.MotionSample(t, t, t, np.zeros((*t.shape, 3)))
+
+
+BAD = {
+    "empty": ({"speeds": []}, "speeds is empty"),
+    "descending": ({"speeds": [2.0, 1.0]}, "must ascend"),
+    "critical": ({"speeds": [10.0, 159.0, 160.0, 170.0]}, r"2 of 4 \(160 to 170 rad/s\).*159\.818"),
+    "window past the end": ({"t_end": 0.4}, "lie in the run"),
+    "window before 0": ({"window": (-0.1, 0.3)}, "lie in the run"),
+    "window turned": ({"window": (0.5, 0.3)}, "must begin before it ends"),
+    "window of one": ({"window": 0.5}, "its beginning and its end"),
+    "window of text": ({"window": ("a", 0.5)}, "finite number"),
+    "t_end": ({"t_end": -1.0}, "greater than 0"),
+    "modes": ({"modes": 0}, "whole number of 1"),
+    "tolerance": ({"tolerance": 0.0}, "greater than 0"),
+    "workers": ({"workers": 0}, "whole number of 1"),
+    "chunk": ({"chunk": 1.5}, "whole number of 1"),
+    "method": ({"discretization": "finite"}, "give 'ritz', 'fem'"),
+    "no motion": ({"scene": HARVESTER}, "needs a motion"),
+    "other speeds unknown": ({"scene": replace(SCENE, motion=bd.UserMotion(user_motion))}, "one speed only"),
+    "motion ends": (
+        {"scene": replace(SCENE, motion=bd.SampledRotation([0.0, 0.1, 0.2, 0.3], [0.0, 1.0, 3.0, 3.0]))},
+        "the motion ends at 0.3",
+    ),
+}
+
+
+@pytest.mark.parametrize(("given", "message"), BAD.values(), ids=BAD)
+def test_bad_input_is_refused_before_any_work(given, message, tmp_path, monkeypatch):
+    monkeypatch.setattr("beamdyn.sweeps.solve", None)  # not to be called
+    store = tmp_path / "store"
+    with pytest.raises(ValueError, match=message):
+        bd.sweep(**{"scene": SCENE, "speeds": SPEEDS, "window": WINDOW, "store": store} | given)
+    assert not store.exists()
+
+
+def test_workers_and_an_executor_are_one_too_many():
+    with pytest.raises(ValueError, match="give one of them"):
+        bd.sweep(SCENE, SPEEDS, WINDOW, workers=2, executor=object())
+
+
+@pytest.mark.parametrize("content", ["directory", "file", "below a file"])
+def test_foreign_and_unwritable_stores_are_refused_before_any_work(content, tmp_path, monkeypatch):
+    monkeypatch.setattr("beamdyn.sweeps.solve", None)
+    (tmp_path / "notes.txt").write_text("mine")
+    store = {
+        "directory": tmp_path,
+        "file": tmp_path / "notes.txt",
+        "below a file": tmp_path / "notes.txt" / "s",
+    }
+    with pytest.raises(ValueError, match="an earlier store"):
+        bd.sweep(SCENE, SPEEDS, WINDOW, store=store[content])
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def of_lambdas():
+    speed = bd.RotationFunction(lambda t: 20 * t**2, lambda t: 40 * t, lambda t: 40.0, t_end=0.5)
+    return replace(SCENE, motion=replace(MOTION, speed=speed))
+
+
+def test_lambdas_work_in_memory():
+    assert bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW).status == ("done", "done")
+
+
+@pytest.mark.parametrize("where", ["store", "workers", "executor"])
+def test_lambdas_are_refused_by_stores_and_pools(where, tmp_path):
+    given = {"store": tmp_path / "store", "workers": 2, "executor": object()}
+    with pytest.raises(ValueError, match="def at the top of a module"):
+        bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW, **{where: given[where]})
+    assert not (tmp_path / "store").exists()

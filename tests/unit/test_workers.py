@@ -1,0 +1,106 @@
+"""Worker processes: tasks, errors, death, interruption."""
+
+import os
+import signal
+import sys
+import time
+from concurrent.futures import CancelledError, as_completed
+from pathlib import Path
+
+import pytest
+from threadpoolctl import threadpool_info
+
+from beamdyn.common.workers import WorkerDied, Workers, one_blas_thread
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+
+
+def logged(log, name, seconds):
+    """A task that leaves a line in a log when it begins."""
+    with open(log, "a") as file:
+        file.write(f"{name} {os.getpid()}\n")
+    time.sleep(seconds)
+    return name
+
+
+def begun(log):
+    return [line.split() for line in Path(log).read_text().splitlines()] if Path(log).exists() else []
+
+
+def wait_for(condition, seconds=10.0):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert condition()
+
+
+def gone(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    return False
+
+
+def fail(message):
+    raise ZeroDivisionError(message)
+
+
+def talk():
+    print("this must not mix with the answers")
+    return "said"
+
+
+def end_process():
+    os._exit(7)
+
+
+def test_results_errors_and_prints():
+    with Workers(1) as pool:
+        assert pool.submit(os.getpid).result() != os.getpid()
+        assert pool.submit(talk).result() == "said"
+        with pytest.raises(ZeroDivisionError, match="by me"):
+            pool.submit(fail, "by me").result()
+        assert pool.submit(divmod, 7, 2).result() == (3, 1)
+
+
+def test_only_the_task_in_flight_runs_again(tmp_path, caplog):
+    log = tmp_path / "log"
+    with Workers(2) as pool:
+        futures = [pool.submit(logged, log, str(k), 0.3) for k in range(6)]
+        wait_for(lambda: len(begun(log)) == 2)
+        name, pid = begun(log)[0]
+        os.kill(int(pid), signal.SIGKILL)
+        assert sorted(f.result() for f in as_completed(futures)) == list("012345")
+    names = [n for n, _ in begun(log)]
+    assert {n for n in names if names.count(n) > 1} == {name}
+    assert len(names) == 7
+    assert "its task runs again" in caplog.text
+
+
+def test_a_task_that_ends_its_process_is_given_up():
+    with Workers(1) as pool, pytest.raises(WorkerDied, match="exit code 7"):
+        pool.submit(end_process).result()
+
+
+def test_an_error_ends_the_processes_at_once(tmp_path):
+    log = tmp_path / "log"
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt), Workers(2) as pool:
+        futures = [pool.submit(logged, log, str(k), 60.0) for k in range(4)]
+        wait_for(lambda: len(begun(log)) == 2)
+        raise KeyboardInterrupt
+    assert time.monotonic() - start < 10
+    assert all(gone(int(pid)) for _, pid in begun(log))
+    for future in futures:
+        with pytest.raises(CancelledError):
+            future.result()
+
+
+def test_blas_has_one_thread_until_the_last_leaves():
+    before = [lib["num_threads"] for lib in threadpool_info()]
+    with one_blas_thread():
+        with one_blas_thread():
+            pass
+        assert {lib["num_threads"] for lib in threadpool_info()} <= {1}
+    assert [lib["num_threads"] for lib in threadpool_info()] == before
