@@ -16,11 +16,11 @@ import numpy as np
 
 from beamdyn.equations import RootMotion
 from beamdyn.integrators import BLOCK, Piece, Tableau, tableau
+from beamdyn.modal import ModalSystem
 from beamdyn.motion import SteadyRotation
-from beamdyn.transient import (
+from beamdyn.stepping import (
     STAGES,
     Checks,
-    ModalSystem,
     Resolution,
     TimeError,
     Trajectory,

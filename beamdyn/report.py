@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,18 @@ def console() -> Console:
     """Where reports are printed: standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     return Console(width=width, markup=False, highlight=False, emoji=False)
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar with the remaining time on standard error, if that is a terminal: yields its progress."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    screen = Console(stderr=True)
+    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
+        task = bar.add_task(what)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 def supported(value: float, error: float, most: int = _DIGITS) -> str:
@@ -163,7 +176,7 @@ class Comparison:
             self.what,
             self.source,
             self._published(),
-            supported(self.ours, self.error, 12),
+            supported(self.ours, self.error, 12) if self.error else f"{self.ours:.{self.decimals}f}",
             self._deviation(),
             self.verdict,
         ]
@@ -175,8 +188,8 @@ class Comparison:
     def _deviation(self) -> str:
         if isinstance(self.published, tuple) and self.deviation == 0:
             return "inside"
-        sign = "+" if self.deviation > 2 * self.error else ""
-        return sign + supported(self.deviation, self.error, 2)
+        text = supported(self.deviation, self.error, 2)
+        return text if self.deviation <= 0 or "±" in text else f"+{text}"
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
@@ -319,45 +332,65 @@ def crossings_table(found: Crossings) -> Group:
 
 def steady_table(found: SteadyResponse) -> Group:
     """The table of a steady response: some of its speeds, its peaks among them."""
-    shown = _shown_response(found.speeds, found.amplitude, found.status)
-    rows = []
-    for s in shown:
-        error = 1e3 * found.error[s] * found.bound[s]
-        sizes = (supported(1e3 * v[s], error, _MODEL_DIGITS) for v in (found.amplitude, found.bound))
-        peak = ", peak" if s in _peaks(found.amplitude) else ""
-        rows.append((f"{found.speeds[s]:.8g}", *sizes, f"{found.status[s]}{peak}"))
+    with np.errstate(divide="ignore"):
+        summits = peaks(np.log(found.amplitude), np.log(3))
+    shown = _shown_response(found.status, summits)
+    error = found.error * found.bound
+    sizes = [_millimetres(values, error) for values in (found.amplitude, found.bound)]
+    columns = _speed_cells(found.speeds), *sizes, _status_cells(found.status, summits)
     title = f"Steady response, by harmonic balance with {found.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
-    return table(title + _part(shown, found.speeds), heads, rows, (3,))
+    return table(title + _part(shown, found.speeds), heads, _rows(columns, shown), (3,))
 
 
 def sweep_table(found: Sweep) -> Group:
     """The table of a sweep: some of its speeds, its peaks among them."""
-    shown = _shown_response(found.speeds, found.peaks, np.array(found.status))
-    rows = []
-    for s in shown:
-        peak = ", peak" if s in _peaks(found.peaks) else ""
-        size = supported(1e3 * found.peaks[s], 1e3 * found.time_error[s], _MODEL_DIGITS)
-        rows.append((f"{found.speeds[s]:.8g}", size, f"{found.status[s]}{peak}"))
+    summits = sweep_peaks(found)
+    shown = _shown_response(np.array(found.status), summits)
+    sizes = _millimetres(found.peaks, found.time_error)
+    columns = _speed_cells(found.speeds), sizes, _status_cells(found.status, summits)
     start, end = found.window
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {found.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "status")
-    return table(title + _part(shown, found.speeds), heads, rows, (2,))
+    return table(title + _part(shown, found.speeds), heads, _rows(columns, shown), (2,))
 
 
-def _shown_response(speeds: np.ndarray, amplitude: np.ndarray, status: np.ndarray) -> np.ndarray:
+def sweep_peaks(found: Sweep) -> np.ndarray:
+    """Indices of the speeds at which a sweep peaks: by a quarter of its largest deflection."""
+    return peaks(found.peaks, 0.25 * np.nanmax(found.peaks, initial=0.0))
+
+
+def _speed_cells(speeds: np.ndarray) -> list[str]:
+    return [f"{speed:.8g}" for speed in speeds]
+
+
+def _millimetres(values: np.ndarray, error: np.ndarray) -> list[str]:
+    pairs = zip(1e3 * values, 1e3 * error, strict=True)
+    return [supported(float(v), float(e), _MODEL_DIGITS) for v, e in pairs]
+
+
+def _status_cells(status: Iterable[str], summits: np.ndarray) -> list[str]:
+    high = set(summits.tolist())
+    return [f"{s}, peak" if i in high else str(s) for i, s in enumerate(status)]
+
+
+def _rows(columns: Sequence[Sequence[str]], shown: np.ndarray) -> Iterable[Sequence[str]]:
+    return ([column[s] for column in columns] for s in shown)
+
+
+def _shown_response(status: np.ndarray, summits: np.ndarray) -> np.ndarray:
     """Indices of speeds for people: evenly spread, the peaks, and where the status changes."""
-    spread = np.linspace(0, len(speeds) - 1, min(len(speeds), _SHOWN)).round().astype(int)
+    spread = np.linspace(0, len(status) - 1, min(len(status), _SHOWN)).round().astype(int)
     change = np.flatnonzero(status[1:] != status[:-1])[:_SHOWN]
-    return np.unique(np.concatenate([spread, _peaks(amplitude)[:_SHOWN], change, change + 1]))
+    return np.unique(np.concatenate([spread, summits[:_SHOWN], change, change + 1]))
 
 
-def _peaks(amplitude: np.ndarray) -> np.ndarray:
-    """Indices of the local maxima that stand out: at least twice the median."""
-    known = np.nan_to_num(amplitude)
-    inner = known[1:-1]
-    summit = (inner > known[:-2]) & (inner >= known[2:]) & (inner > 2 * np.median(known))
-    return 1 + np.flatnonzero(summit)
+def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
+    """Indices of the local maxima that stand out by so much; values that are not finite do not count."""
+    from scipy.signal import find_peaks
+
+    known = np.flatnonzero(np.isfinite(values))
+    return known[find_peaks(values[known], prominence=prominence)[0]]
 
 
 def _part(shown: np.ndarray, all_: np.ndarray) -> str:

@@ -19,12 +19,14 @@ from beamdyn.common.checks import ascending, count, positive, real
 from beamdyn.common.store import Store, fingerprint
 from beamdyn.common.workers import Workers, one_blas_thread
 from beamdyn.estimate import Model, choose
+from beamdyn.modal import ModalSystem
 from beamdyn.motion import Motion, check_picklable
 from beamdyn.operators import Discretization
 from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
-from beamdyn.transient import ModalSystem, Trajectory, largest_deflection, simulate
+from beamdyn.stepping import Trajectory, largest_deflection
+from beamdyn.transient import simulate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -116,7 +118,7 @@ def sweep(
     store: str | Path | None = None,
     progress: Progress | None = None,
     discretization: str | Discretization = "ritz",
-    chunk: int = 20,
+    chunk: int = 40,
 ) -> Sweep:
     """Peak of the tip deflection in a window of time, from rest, for each final speed of the motion.
 
@@ -272,23 +274,22 @@ class Case(NamedTuple):
 
 def solve(request: Request, speeds: tuple[float, ...]) -> list[Case]:
     """Cases of one chunk: together, and alone where that is not as accurate as is asked."""
+    motions = request.motions(speeds)
     with one_blas_thread(), np.errstate(all="ignore"):
-        together = _together(request, request.motions(speeds))
         return [
             case if case.time_error <= request.tolerance * case.largest else _alone(request, motion)
-            for case, motion in zip(together, request.motions(speeds), strict=True)
+            for case, motion in zip(_together(request, motions), motions, strict=True)
         ]
 
 
 def _together(request: Request, motions: Sequence[Motion]) -> list[Case]:
     modal = request.model().modal(request.modes)
     systems = [ModalSystem(modal.equations, motion) for motion in motions]
-    found = histories(systems, modal.tip, request.t_end, request.tolerance)
-    pairs = zip(found.tips, found.time_error, strict=True)
-    return [
-        _case(request, path, error) if np.isfinite(error) else _failed("not converged")
-        for path, error in pairs
-    ]
+    try:
+        found = histories(systems, modal.tip, request.t_end, request.tolerance)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        return [_failed(str(error))] * len(motions)
+    return [_case(request, *pair) for pair in zip(found.tips, found.time_error, strict=True)]
 
 
 def _alone(request: Request, motion: Motion) -> Case:

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 import beamdyn as bd
 from beamdyn.estimate import Model
 from beamdyn.integrators import propagate
-from beamdyn.transient import ModalSystem
+from beamdyn.modal import ModalSystem
 from benchmarks.beam_core import Row, best_time, show
 from tests.convergence.test_integrators import Oscillator
 from tests.scenes import ROLLING

@@ -278,27 +278,23 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
     """A bar with the remaining time; where the sweep is interrupted, say what is done."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
+    from beamdyn.report import progress_bar
     from beamdyn.sweeps import SweepInterrupted
 
-    columns = TextColumn("sweep"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    done = 0
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("sweep", total=cases)
+    finished = 0
 
-        def progress(now: int, total: int) -> None:
-            nonlocal done
-            done = now
-            bar.update(task, completed=now, total=total)
+    def progress(done: int, total: int) -> None:
+        nonlocal finished
+        finished = done
+        show(done, total)
 
-        try:
+    try:
+        with progress_bar("sweep") as show:
             yield progress
-        except KeyboardInterrupt:
-            raise Interrupted(_how_to_resume(done, cases, store)) from None
-        except SweepInterrupted as error:
-            raise Interrupted(str(error)) from None
+    except KeyboardInterrupt:
+        raise Interrupted(_how_to_resume(finished, cases, store)) from None
+    except SweepInterrupted as error:
+        raise Interrupted(str(error)) from None
 
 
 def _how_to_resume(done: int, cases: int, store: Path | None) -> str:

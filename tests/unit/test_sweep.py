@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.motion import MotionSample
 from tests.scenes import HARVESTER
 
 MOTION = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=0.2), bd.RoadWave(0.3, velocity_amplitude=0.01))
@@ -63,7 +64,7 @@ def test_limits_of_the_model_are_named():
 
 
 def user_motion(t):
-    return bd.motion.MotionSample(t, t, t, np.zeros((*t.shape, 3)))
+    return MotionSample(t, t, t, np.zeros((*t.shape, 3)))
 
 
 BAD = {

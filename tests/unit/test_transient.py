@@ -11,7 +11,8 @@ import pytest
 import beamdyn as bd
 from beamdyn.batch import histories
 from beamdyn.estimate import Model
-from beamdyn.transient import ModalSystem, largest_deflection
+from beamdyn.modal import ModalSystem
+from beamdyn.stepping import largest_deflection
 from tests.scenes import HARVESTER, ROLLING
 
 STEADY = replace(HARVESTER, mount=bd.Mount(0.215, 0.02), motion=bd.SteadyRotation(50.0))

@@ -1,0 +1,187 @@
+"""Natural frequencies and setting angles of Lee and Yoo: Table 2, sections 3.3 and 4, Fig. 4, 8 and 9."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from beamdyn.plots import mark_points, plot_loci_by_angle, plot_locus
+from beamdyn.published import load
+from beamdyn.report import Comparison
+from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
+from beamdyn.ritz import Ritz
+from beamdyn.scene import Scene
+from beamdyn.spectrum import frequency_locus, natural_modes
+from beamdyn.stability import critical_point, setting_angle_limits
+
+_ANSYS = "ANSYS (4)"
+_ROUNDING = 1e-12  # relative, of a value that is defined by a basis of given size
+_OUTSIDE = "(linear equations, outside their range)"
+
+
+def first_frequencies() -> Iterator[Comparison]:
+    """Table 2: the first frequency at three speeds, by the paper and ANSYS, against three models of ours."""
+    paper, scene = load("lee_yoo_2019"), published_scene()
+    models = (
+        ("Ritz", scene, "ritz"),
+        ("FE", scene, "fem"),
+        ("with stretch", replace(scene, stretch=True), "ritz"),
+    )
+    for row, exact in zip(paper["first_frequency"], paper["reference"]["first_frequency"], strict=True):
+        speed = row["speed"]["value"]
+        for name, model, method in models:
+            found = natural_modes(model, speed, 1, method)
+            ours = float(found.frequency[0])
+            error = float(found.error[0]) * ours
+            what = f"{speed:g} rad/s, {name}"
+            for source, entry in ((PAPER, row["proposed"]), (_ANSYS, row["ansys"])):
+                reason = "unexplained (1)" if source == PAPER and speed == 0 else ""
+                yield Comparison(what, source, entry["value"], ours, error, entry["decimals"], reason)
+            value = exact["stretch" if model.stretch else "bending"]["value"]
+            yield Comparison(what, OWN, value, ours, error, 8)
+
+
+def limits_of_setting_angle() -> Iterator[Comparison]:
+    """Section 3.3: the two setting-angle limits."""
+    paper, scene = load("lee_yoo_2019"), published_scene()
+    yield from _first_limit(paper, scene)
+    yield from _second_limit_of_modes(paper, scene)
+    yield from _second_limit(paper, scene)
+
+
+def buckling_speed() -> Iterator[Comparison]:
+    """The speed at which the inward beam buckles, of which the paper has no number."""
+    entry = load("lee_yoo_2019")["reference"]["critical_speed"]
+    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+        found = critical_point(published_scene(), method)
+        yield Comparison(
+            f"critical speed, {name}", OWN, entry["value"], found.speed, found.error * found.speed, 4
+        )
+
+
+def _first_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    printed, exact = paper["setting_angle_limits"]["first"], paper["reference"]["first_setting_angle_limit"]
+    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+        found = setting_angle_limits(scene, TOP, method)
+        what, ours, error = (
+            f"first limit, {name}",
+            float(np.degrees(found.first)),
+            float(np.degrees(found.error)),
+        )
+        yield Comparison(what, PAPER, tuple(printed["value"]), ours, error, 2)
+        yield Comparison(what, OWN, exact["value"], ours, error, 5)
+
+
+def _second_limit_of_modes(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    """Of a basis of N eigenfunctions, whose limit at any speed is a number of that basis."""
+    printed, exact = (
+        paper["setting_angle_limits"]["second"],
+        paper["reference"]["second_setting_angle_limit_of_modes"],
+    )
+    for modes, value in zip(exact["modes"], exact["value"], strict=True):
+        found = setting_angle_limits(scene, np.inf, Ritz(modes, "eigenfunctions"))
+        what, ours = f"second limit of {modes} modes", float(np.degrees(found.second))
+        if modes == 5:
+            yield Comparison(what, PAPER, tuple(printed["value"]), ours, ours * _ROUNDING, 2)
+        yield Comparison(what, OWN, value, ours, ours * _ROUNDING, decimals(value))
+
+
+def _second_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    """Converged, for several top speeds."""
+    printed = tuple(paper["setting_angle_limits"]["second"]["value"])
+    exact = [(e["top_speed"]["value"], e["value"]) for e in paper["reference"]["second_setting_angle_limit"]]
+    for top, value in [(TOP, None), *exact]:
+        found = setting_angle_limits(scene, top)
+        what, ours = f"second limit, to {top:g} rad/s", float(np.degrees(found.second))
+        error = float(np.degrees(found.error))
+        if value is None:
+            yield Comparison(what, PAPER, printed, ours, error, 2, "top speed (2)")
+        else:
+            yield Comparison(what, OWN, value, ours, error, decimals(value))
+
+
+def notes() -> Iterator[str]:
+    """What the tables do not say."""
+    scene = published_scene()
+    rest = natural_modes(scene, 0.0, 1)
+    second = setting_angle_limits(scene, 400.0)
+    yield (
+        "(1) The paper prints 65.231 Hz at rest; its own input gives "
+        f"{rest.frequency[0]:.6f} Hz, as ANSYS does. The cause of the difference is unknown."
+    )
+    yield (
+        "(2) Above the second limit the first frequency rises up to the top speed, so the limit depends on "
+        "where one stops. The paper does not say where; 150 rad/s is the end of its Fig. 6. Its 89.62 to "
+        "89.63 deg is what exactly five clamped-free modes give; with more modes the limit tends to 90 deg."
+    )
+    yield (
+        "(3) The limits are results of the linear equations outside their range: at the second limit for "
+        f"400 rad/s the rotation would bend the tip by {second.static_deflection:.2g} lengths of the beam."
+    )
+    yield (
+        "(4) As printed in the paper. (5) Computed apart from this program, not in the paper: frequencies by "
+        "40-digit Rayleigh-Ritz and power series. A deviation '0 ± e' is lost in our estimated error."
+    )
+
+
+def fig_4() -> Figure:
+    """First frequency over speed, with ANSYS."""
+    rows = load("lee_yoo_2019")["first_frequency"]
+    scene, figure = published_scene(), Figure(figsize=(7.5, 4.8), layout="constrained")
+    critical = critical_point(scene).speed
+    speeds = critical * np.sin(np.linspace(0, np.pi / 2 - 1e-3, 301))  # dense where the frequency falls to 0
+    ax = figure.subplots()
+    ax.set_xlim(-4, 204)
+    plot_locus(speeds, frequency_locus(scene, speeds, 1).frequency, ax, ["ours (Ritz)"], critical)
+    mark_points(
+        ax, [r["speed"]["value"] for r in rows], [r["ansys"]["value"] for r in rows], "ANSYS, in the paper"
+    )
+    ax.set_title("Fig. 4: first natural frequency, setting angle 0")
+    return figure
+
+
+def fig_8() -> Figure:
+    """First frequency on either side of the first setting-angle limit."""
+    angles = load("lee_yoo_2019")["figures"]["fig_8"]["setting_angle"]
+    figure = Figure(figsize=(12, 4.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    speeds = np.linspace(0, TOP, 301)
+    plot_loci_by_angle(speeds, _first_by_angle(angles, speeds), angles, left)
+    speeds = np.linspace(0, 17, 171)
+    first = _first_by_angle(angles, speeds)
+    plot_loci_by_angle(speeds, (first - first[:, :1]) * 1e6, angles, right)
+    right.set(ylim=(-0.5, 0.5), ylabel="change from rest [µHz]")
+    left.set_title("over speed")
+    right.set_title("near rest: one falls, the other first rises")
+    figure.suptitle(
+        f"Fig. 8: first natural frequency on either side of the first setting-angle limit {_OUTSIDE}"
+    )
+    return figure
+
+
+def fig_9() -> Figure:
+    """First frequency on either side of the second setting-angle limit."""
+    angles = load("lee_yoo_2019")["figures"]["fig_9"]["setting_angle"]
+    figure = Figure(figsize=(12, 4.8), layout="constrained")
+    cases = (
+        (12000.0, Ritz(5, "eigenfunctions"), "five clamped-free modes: one turns, the other rises on"),
+        (5000.0, "ritz", "converged: both turn"),
+    )
+    for ax, (top, method, title) in zip(figure.subplots(1, 2), cases, strict=True):
+        speeds = np.linspace(0, top, 501)
+        plot_loci_by_angle(speeds, _first_by_angle(angles, speeds, method), angles, ax)
+        ax.set_title(title)
+    figure.suptitle(f"Fig. 9: first natural frequency on either side of the paper's second limit {_OUTSIDE}")
+    return figure
+
+
+def _first_by_angle(angles: Sequence[float], speeds: np.ndarray, method: str | Ritz = "ritz") -> np.ndarray:
+    """First frequency at setting angles [deg] over speeds: shape (angles, speeds)."""
+    scene = published_scene()
+    mounts = [replace(scene.mount, setting_angle=float(np.radians(angle))) for angle in angles]
+    loci = [frequency_locus(replace(scene, mount=mount), speeds, 1, method) for mount in mounts]
+    return np.array([locus.frequency[:, 0] for locus in loci])

@@ -1,0 +1,194 @@
+"""Motion in time and resonance of Lee and Yoo: Table 3, Fig. 5, 6 and 7."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.optimize import brentq
+
+from beamdyn.plots import COLOURS
+from beamdyn.published import load
+from beamdyn.report import Comparison, sweep_peaks
+from beamdyn.reproduce.common import OWN, PAPER, TOP, rolling_scene
+from beamdyn.resonance import Crossings, resonance_speeds
+from beamdyn.scene import Scene
+from beamdyn.steady import steady_response
+from beamdyn.sweeps import Sweep, sweep
+from beamdyn.transient import Transient, simulate
+
+_MODES = 5
+_TOLERANCE = 1e-6
+_SPEEDS = np.linspace(0, TOP, 151)  # of Fig. 6
+_DAMPING = 0.01  # ratio with which ring-down dies away
+_MM = 1e3
+
+
+def largest_deflections() -> Iterator[Comparison]:
+    """Table 3: the largest tip deflection [mm] in 20 to 30 s, by one to six modes and by finite elements."""
+    paper = load("lee_yoo_2019")
+    printed, exact = paper["largest_deflection"], paper["reference"]["largest_deflection"]
+    known = dict(zip(exact["modes"], exact["in_window"]["value"], strict=True))
+    for modes, name, method in [*((n, "Ritz", "ritz") for n in range(1, 7)), (_MODES, "FE", "fem")]:
+        run = _published_run(modes, method)
+        what = f"{modes} mode{'s' * (modes > 1)}, {name}"
+        ours, error = _MM * run.peak(*_window()), _MM * run.time_error
+        few = "too few modes (7)" if modes < 3 else ""
+        yield Comparison(what, PAPER, _MM * printed["proposed"]["value"], ours, error, 2, few)
+        if modes == _MODES:
+            recurdyn = _MM * printed["recurdyn"]["value"]
+            yield Comparison(what, "RecurDyn (4)", recurdyn, ours, error, 2, "unexplained (6)")
+        yield Comparison(what, OWN, _MM * known[modes], ours, error, 6)
+
+
+def resonances() -> Iterator[Comparison]:
+    """Fig. 7: speeds [rad/s] at which an excited frequency meets the first natural one."""
+    reference = load("lee_yoo_2019")["reference"]
+    further = reference["further_resonance_speeds"]
+    forced, parametric = reference["resonance_speeds"]["value"], further["parametric"]["value"]
+    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+        found = _crossings(rolling_scene(), method)
+        yield from _crossing_rows(found, "forced", forced, name)
+        yield from _crossing_rows(found, "parametric", parametric, name)
+    heavy = _crossings(replace(rolling_scene(), gravity=9.81))
+    yield from _crossing_rows(heavy, "forced", [*forced, further["gravity"]["value"]], "gravity")
+
+
+def _crossing_rows(found: Crossings, kind: str, values: list[float], name: str) -> Iterator[Comparison]:
+    ours = [c for c in found if c.kind == kind]
+    for c, value in zip(ours, values, strict=True):
+        if name != "gravity" or value == values[-1]:
+            what = f"{kind} {c.line.name}, {name}"
+            yield Comparison(what, OWN, value, c.speed, c.error * c.speed, 4)
+
+
+def sweep_of_speeds(
+    progress: Callable[[int, int], object] | None = None, speeds: np.ndarray = _SPEEDS
+) -> Sweep:
+    """Fig. 6: the largest deflection in 20 to 30 s over speed."""
+    workers = min(2, os.cpu_count() or 1)
+    return sweep(rolling_scene(), speeds, _window(), modes=_MODES, workers=workers, progress=progress)
+
+
+def peaks_of_sweep(swept: Sweep) -> Iterator[Comparison]:
+    """Fig. 6: how many peaks there are, and that they lie [rad/s] where Fig. 7 has its crossings."""
+    paper, found = load("lee_yoo_2019"), sweep_peaks(swept)
+    count = paper["figures"]["fig_6"]["peaks"]
+    yield Comparison("number of peaks", PAPER, count, len(found), 0.0, 0)
+    forced, half = paper["reference"]["resonance_speeds"]["value"], float(np.diff(swept.speeds).max()) / 2
+    for i, (place, value) in enumerate(zip(found, forced, strict=False), 1):
+        yield Comparison(f"speed of peak {i}", OWN, value, float(swept.speeds[place]), half, 4)
+
+
+def steady_amplitudes() -> Iterator[Comparison]:
+    """The steady response [mm] at the speed of Table 3, of which the paper has no number."""
+    paper = load("lee_yoo_2019")
+    exact, printed = paper["reference"]["steady_response"], paper["largest_deflection"]["proposed"]
+    found = steady_response(rolling_scene(), [_speed()], _MODES)
+    largest, bound = float(_MM * found.amplitude[0]), float(_MM * found.bound[0])
+    error = float(found.error[0]) * bound
+    what = "steady amplitude, undamped"
+    yield Comparison(what, PAPER, _MM * printed["value"], largest, error, 2, "ring-down (8)")
+    yield Comparison(what, OWN, _MM * exact["largest_deflection"]["value"], largest, error, 6)
+    yield Comparison("sum of the lines", OWN, _MM * exact["line_sum"]["value"], bound, error, 6)
+    damped = replace(rolling_scene(), damping_ratio=_DAMPING)
+    tail = simulate(damped, _t_end(), _MODES, _TOLERANCE)
+    steady = float(_MM * steady_response(damped, [_speed()], _MODES).amplitude[0])
+    ours, error = _MM * tail.peak(*_window()), _MM * tail.time_error
+    yield Comparison("damped transient in 20 to 30 s", "harmonic balance (8)", steady, ours, error, 4)
+
+
+def notes() -> Iterator[str]:
+    """What the tables do not say."""
+    run = _published_run()
+    passage, line = _passage()
+    start, end = _window()
+    steady = _MM * float(steady_response(rolling_scene(), [_speed()], _MODES).amplitude[0])
+    peak = _MM * run.peak(start, end)
+    low, high = (
+        _MM * v for v in load("lee_yoo_2019")["reference"]["largest_deflection_exudyn"]["in_window"]["value"]
+    )
+    yield (
+        "(6) By another program, whose settings are not known. The response is sensitive to them: Exudyn, "
+        f"whose integrator damps, gives {low:.2f} to {high:.2f} mm."
+    )
+    yield "(7) Three modes and more give the digits of the paper; one and two do not."
+    yield (
+        f"(8) The {peak:.2f} mm of Table 3 are ring-down: on its way to {_speed():g} rad/s the wheel passes "
+        f"the resonance at {line:.2f} rad/s at {passage:.2f} s, and without damping what was excited there "
+        f"stays. The steady amplitude at {_speed():g} rad/s is {steady:.2f} mm, {peak / steady:.1f} times "
+        f"less; with a damping ratio of {_DAMPING:g} the transient ends there."
+    )
+
+
+def _passage() -> tuple[float, float]:
+    """When the spin-up passes the first resonance [s], and its speed [rad/s]."""
+    scene = rolling_scene()
+    first = next(c.speed for c in _crossings(scene) if c.kind == "forced")
+    motion = scene.motion
+    assert motion is not None
+    time = brentq(lambda t: float(motion.at(np.array([t])).speed[0]) - first, 0.0, motion.settled)
+    return float(time), first  # pyright: ignore[reportArgumentType]  (brentq returns a float)
+
+
+def fig_5() -> Figure:
+    """Tip deflection over time."""
+    figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+    ax = _published_run().plot(figure.subplots())
+    passage, line = _passage()
+    ax.axvline(passage, color="0.3", linestyle="--", linewidth=1, label=f"passage through {line:.2f} rad/s")
+    ax.axvspan(*_window(), color="0.93", zorder=0, label="window of Table 3")
+    ax.set_ylim(top=3.2)
+    ax.legend(fontsize=10, loc="upper left")
+    ax.set_title(f"Fig. 5: tip deflection, spin-up to {_speed():g} rad/s")
+    return figure
+
+
+def fig_6(swept: Sweep) -> Figure:
+    """Largest deflection over speed, with the steady amplitude."""
+    figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+    ax = swept.plot(figure.subplots())
+    ax.lines[0].set_label("undamped transient, 20 to 30 s")
+    speeds = np.linspace(1, TOP, 1000)
+    steady = _MM * steady_response(rolling_scene(), speeds, 3).amplitude
+    ax.plot(speeds, steady, color=COLOURS[1], linewidth=1.2, label="steady amplitude")
+    ax.set_ylim(0, 1.1 * _MM * float(swept.peaks.max()))
+    ax.legend(fontsize=10, loc="upper right")
+    ax.set_title("Fig. 6: largest tip deflection over speed")
+    return figure
+
+
+def fig_7() -> Figure:
+    """First natural frequency and the two excited ones over speed."""
+    figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+    found = _crossings(rolling_scene())
+    ax = found.plot(figure.subplots())
+    for c in found:
+        if c.kind == "forced":
+            ax.annotate(f"{c.speed:.2f} rad/s", (c.speed, c.frequency), (15, 4), textcoords="offset points")
+    ax.set_title("Fig. 7: first natural frequency and excited frequencies")
+    return figure
+
+
+def _crossings(scene: Scene, method: str = "ritz") -> Crossings:
+    return resonance_speeds(scene, TOP, 1, method=method)
+
+
+def _published_run(modes: int = _MODES, method: str = "ritz") -> Transient:
+    return simulate(rolling_scene(), _t_end(), modes, _TOLERANCE, discretization=method)
+
+
+def _window() -> tuple[float, float]:
+    start, end = load("lee_yoo_2019")["scene"]["window"]["value"]
+    return start, end
+
+
+def _t_end() -> float:
+    return load("lee_yoo_2019")["scene"]["t_end"]["value"]
+
+
+def _speed() -> float:
+    return load("lee_yoo_2019")["largest_deflection"]["speed"]["value"]

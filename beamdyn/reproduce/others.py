@@ -1,0 +1,128 @@
+"""Rotating beams of other sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from rich.console import Group
+
+from beamdyn.beam import Beam, TipMass
+from beamdyn.published import load
+from beamdyn.report import table
+from beamdyn.reproduce.common import decimals
+from beamdyn.scene import Mount, Scene
+from beamdyn.spectrum import natural_modes
+from beamdyn.stability import critical_point
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Many values of one source against one method.
+
+    Parameters
+    ----------
+    source, method : str
+        Of which values, by which method.
+    values : int
+        How many.
+    printed : float
+        Largest relative half unit of the last digit printed.
+    deviation, error : float
+        Largest relative deviation and largest estimated relative error.
+    outside : int
+        How many deviate by more than both together.
+    """
+
+    source: str
+    method: str
+    values: int
+    printed: float
+    deviation: float
+    error: float
+    outside: int
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether all values agree."""
+        return not self.outside
+
+    def cells(self) -> list[str]:
+        """Its row of the table."""
+        numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
+        verdict = f"differs: {self.outside} value(s)" if self.outside else "agrees"
+        return [self.source, self.method, str(self.values), *numbers, verdict]
+
+
+def summaries() -> Iterator[Summary]:
+    """All cases of the published tables, and the critical speeds, by source and method."""
+    data = load("rotating_beams")
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for case in data["case"]:
+        groups.setdefault(case["source"], []).append(case)
+    groups["critical speeds, computed"] = [c for c in data["critical"] if np.isfinite(c["gamma"])]
+    for source, cases in groups.items():
+        for name, method in (("Ritz", "ritz"), ("FE", "fem")):
+            yield summary(source, name, [solved(case, method) for case in cases])
+
+
+def summary_table(rows: Sequence[Summary]) -> Group:
+    """The table of summaries."""
+    heads = (
+        "source",
+        "method",
+        "values",
+        "printed to",
+        "worst deviation",
+        "worst estimated error",
+        "verdict",
+    )
+    title = "Rotating beams of other sources; all relative"
+    return table(title, heads, (row.cells() for row in rows), (0, 1, 6))
+
+
+def summary(source: str, method: str, parts: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Summary:
+    """Many values against ours; `parts` are as from `solved`."""
+    printed, ours, error = (np.concatenate(column) for column in zip(*parts, strict=True))
+    rounding = np.array([0.5 * 10.0 ** -decimals(value) for value in printed]) / printed
+    deviation = np.abs(ours / printed - 1)
+    outside = int((deviation > rounding + error).sum())
+    return Summary(source, method, len(ours), rounding.max(), deviation.max(), error.max(), outside)
+
+
+def solved(case: dict[str, Any], method: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Published values, ours, and our relative errors."""
+    scene = nondimensional(case)
+    if "frequency" in case:
+        found = natural_modes(scene, case["gamma"], len(case["frequency"]), method)
+        return np.array(case["frequency"]), np.abs(found.eigenvalue), found.error
+    point = critical_point(scene, method)
+    return np.array([case["gamma"]]), np.array([point.speed]), np.array([point.error])
+
+
+def nondimensional(case: dict[str, Any]) -> Scene:
+    """The scene of a nondimensional case: root stiffness, root mass per length and length are 1.
+
+    Parameters
+    ----------
+    case : dict
+        A ``case`` or ``critical`` of ``rotating_beams.toml``.
+
+    Returns
+    -------
+    Scene
+        Its eigenvalues at gamma rad/s are lambda in size.
+    """
+    delta, alpha = case["delta"], case.get("alpha")
+    beam = Beam.from_stiffness(
+        1.0,
+        mass_per_length=Polynomial(case["mass"]),
+        bending_stiffness=Polynomial(case["stiffness"]),
+        axial_stiffness=alpha and alpha**2,
+        tip=TipMass(**case["tip"]) if "tip" in case else None,
+    )
+    mount = Mount(abs(delta), 0.0 if delta < 0 else np.pi, float(np.radians(case["bending_angle_deg"])))
+    return Scene(beam, mount, stretch=alpha is not None)
