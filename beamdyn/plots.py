@@ -199,10 +199,13 @@ def plot_response(
     -------
     Axes
     """
-    ax = _dressed(ax, _SPEED, "largest tip deflection [m]")
-    rows = {"largest over both phases": amplitude, "sum of the lines": amplitude if bound is None else bound}
-    shown = list(rows)[: 1 if bound is None else 2]
-    _lines(ax, speeds, (np.where(rows[name] > 0, rows[name], np.nan) for name in shown), shown)
+    ax = _dressed(ax, _SPEED, "largest tip deflection [mm]")
+    rows = {"largest over both phases": np.asarray(amplitude)}
+    if bound is not None:
+        rows["sum of the lines"] = np.asarray(bound)
+    _lines(ax, speeds, (1e3 * np.where(row > 0, row, np.nan) for row in rows.values()), list(rows))
+    for line in ax.lines[1:]:
+        line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
     return _with_legend(ax)

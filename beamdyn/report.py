@@ -272,6 +272,7 @@ def limits_table(found: SettingAngleLimits) -> Group:
 # Motion in time and resonance -------------------------------------------------------------------------
 
 _MODEL_DIGITS = 6  # most of a deflection: the modes that are left out allow no more
+_UNKNOWN = 5e-4  # relative error with which a deflection of unknown error is shown
 
 
 def transient_table(run: Transient, window: tuple[float, float] | None = None) -> Group:
@@ -300,9 +301,9 @@ def time_of_peak(run: Transient, start: float, end: float) -> tuple[float, float
 
 def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str]:
     size, length = run.peak(start, end), run.scene.beam.length
-    error = 0.0 if math.isnan(run.time_error) else run.time_error
-    numbers = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
-    return *numbers, supported(*time_of_peak(run, start, end))
+    error = _UNKNOWN * size if math.isnan(run.time_error) else run.time_error
+    deflection, share = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
+    return deflection, share, supported(*time_of_peak(run, start, end))
 
 
 def _time_error(run: Transient) -> str:
@@ -337,7 +338,7 @@ def steady_table(found: SteadyResponse) -> Group:
     shown = _shown_response(found.status, summits)
     error = found.error * found.bound
     sizes = [_millimetres(values, error) for values in (found.amplitude, found.bound)]
-    columns = _speed_cells(found.speeds), *sizes, _status_cells(found.status, summits)
+    columns = [_speed_cells(found.speeds), *sizes, _status_cells(found.status, summits)]
     title = f"Steady response, by harmonic balance with {found.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
     return table(title + _part(shown, found.speeds), heads, _rows(columns, shown), (3,))
@@ -374,7 +375,7 @@ def _status_cells(status: Iterable[str], summits: np.ndarray) -> list[str]:
     return [f"{s}, peak" if i in high else str(s) for i, s in enumerate(status)]
 
 
-def _rows(columns: Sequence[Sequence[str]], shown: np.ndarray) -> Iterable[Sequence[str]]:
+def _rows(columns: Sequence[list[str]], shown: np.ndarray) -> Iterator[list[str]]:
     return ([column[s] for column in columns] for s in shown)
 
 

@@ -24,7 +24,8 @@ from tests.scenes import ROLLING
 T_END, MODES = 30.0, 5
 STOCK = [  # the fastest settings of each method whose error is near ours
     ("Radau", {"rtol": 2e-6, "atol": 2e-10}),
-    ("Radau", {"rtol": 2e-5, "atol": 2e-9}),
+    ("Radau", {"rtol": 5e-7, "atol": 5e-11}),
+    ("LSODA", {"rtol": 1e-6, "atol": 1e-10}),
     ("LSODA", {"rtol": 1e-7, "atol": 1e-11}),
     ("DOP853", {"rtol": 1e-4, "atol": 1e-8}),
 ]
@@ -73,38 +74,44 @@ def system() -> ModalSystem:
 
 
 def race() -> Iterator[Row]:
-    """Times and errors in one run, relative to the peak; errors against a far finer run of ours."""
-    t = np.linspace(0, T_END, 30001)
+    """Times and errors in one run; errors against a far finer run of ours, over the peak.
+
+    Ours is measured everywhere, between steps too; the stock methods only at their own steps.
+    """
     exact = bd.simulate(ROLLING, T_END, MODES, tolerance=1e-10)
-    wanted, peak = exact.deflection(t), exact.peak(20.0, 30.0)
+    peak, t = exact.peak(20.0, 30.0), np.linspace(0, T_END, 30001)
     ours = best_time(lambda: bd.simulate(ROLLING, T_END, MODES, tolerance=1e-5))
     run = bd.simulate(ROLLING, T_END, MODES, tolerance=1e-5)
-    error = np.abs(run.deflection(t) - wanted).max() / peak
+    error = np.abs(run.deflection(t) - exact.deflection(t)).max() / peak
     yield "ours, tolerance 1e-5: time [s]", f"{ours:.3f}", "0.1"
     yield "... largest error over the peak", f"{error:.1e}", "1e-5"
     yield "... estimated", f"{run.time_error / peak:.1e}", "above the error"
-    fastest = np.inf
+    comparable = []
     for method, options in STOCK:
-        time, found = stock(method, options, t, exact.modal.tip, system())
-        stock_error = np.abs(found - wanted).max() / peak
-        if stock_error >= error:
-            fastest = min(fastest, time)
+        time, stock_error = stock(method, options, exact, system())
+        if error <= stock_error / peak <= 100 * error:
+            comparable.append(time)
         yield f"solve_ivp {method}, rtol {options['rtol']:g}: time [s]", f"{time:.1f}", ""
-        yield "... largest error over the peak", f"{stock_error:.1e}", ""
-    yield "fastest stock method of equal or larger error, over ours", f"{fastest / ours:.0f}", "250"
+        yield "... largest error over the peak", f"{stock_error / peak:.1e}", ""
+    yield (
+        "fastest stock method, its error 1 to 100 times ours, over ours",
+        f"{min(comparable) / ours:.0f}",
+        "250",
+    )
 
 
 def stock(
-    method: str, options: dict[str, Any], t: np.ndarray, tip: np.ndarray, equations: ModalSystem
-) -> tuple[float, np.ndarray]:
-    """Time of a stock method, and the tip deflection that it finds."""
+    method: str, options: dict[str, Any], exact: bd.Transient, equations: ModalSystem
+) -> tuple[float, float]:
+    """Time of a stock method, and its largest error at its own steps [m]."""
     rhs, jacobian = lean(equations)
     extra = {} if method == "DOP853" else {"jac": jacobian}
-    y0 = np.zeros(2 * equations.size)
     start = perf_counter()
-    solved = solve_ivp(rhs, (0, T_END), y0, method, dense_output=True, **options, **extra)
+    solved = solve_ivp(rhs, (0, T_END), np.zeros(2 * equations.size), method, **options, **extra)
     time = perf_counter() - start
-    return time, solved.sol(t)[: equations.size].T @ tip
+    chosen = slice(None, None, max(1, len(solved.t) // 30000))
+    found = solved.y[: equations.size, chosen].T @ exact.modal.tip
+    return time, float(np.abs(found - exact.deflection(solved.t[chosen])).max())
 
 
 def lean_cost() -> Iterator[Row]:
@@ -125,8 +132,8 @@ def table_3() -> Iterator[Row]:
         yield f"largest deflection in 20...30 s, {modes} modes [mm]", f"{1e3 * run.peak(20, 30):.6f}", ""
     fem = bd.simulate(ROLLING, T_END, MODES, discretization="fem")
     yield "the same by finite elements, 5 modes [mm]", f"{1e3 * fem.peak(20, 30):.6f}", "1.942558"
-    full = bd.simulate(ROLLING, T_END, modes=None, discretization=bd.Fem(16), tolerance=1e-4)
-    yield "the same by 16 elements, not reduced [mm]", f"{1e3 * full.peak(20, 30):.6f}", "1.94246 +- 1e-4"
+    full = bd.simulate(ROLLING, T_END, modes=None, discretization=bd.Fem(20, "uniform"), tolerance=1e-4)
+    yield "the same by 20 elements, not reduced [mm]", f"{1e3 * full.peak(20, 30):.6f}", "1.94246 +- 1e-4"
 
 
 def energy() -> Iterator[Row]:

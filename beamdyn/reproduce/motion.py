@@ -168,7 +168,8 @@ def fig_7() -> Figure:
     ax = found.plot(figure.subplots())
     for c in found:
         if c.kind == "forced":
-            ax.annotate(f"{c.speed:.2f} rad/s", (c.speed, c.frequency), (15, 4), textcoords="offset points")
+            label, at = f"{c.speed:.2f} rad/s", (c.speed, c.frequency)
+            ax.annotate(label, at, (13, 3), textcoords="offset points", fontsize=9)
     ax.set_title("Fig. 7: first natural frequency and excited frequencies")
     return figure
 

@@ -32,7 +32,7 @@ def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept):
         assert number in out
     for number in ("88.35 to 88.36", "88.359846", "89.6266", "88.372", "88.5343", "159.818332659"):
         assert number in out
-    for number in ("1.94718", "1.94256", "1.96", "0.2618759", "53.0858418", "69.8024033", "8.22 s"):
+    for number in ("1.94718", "1.94256", "1.96", "0.2618759", "53.0858418", "69.8024033", "at 8.22"):
         assert number in out
     for words in (
         "Modeling and Vibration",

@@ -1,10 +1,11 @@
-"""Mode-shape files: read back with meshio, and refused where they should be."""
+"""Files of shapes, series and animations: read back, and refused where they should be."""
 
 import meshio
 import numpy as np
 import pytest
+from PIL import Image
 
-from beamdyn.export import output_path, write_shapes
+from beamdyn.export import animate, output_path, write_series, write_shapes
 
 X = np.linspace(0, 0.05, 11)
 SHAPES = np.stack([71.4 * (X / 0.05) ** 2, -30 * np.sin(60 * X)])
@@ -119,3 +120,83 @@ def area(mesh):
     """Signed area of a mesh of quadrilaterals in the plane z = 0."""
     a, b, c, d = mesh.points[mesh.cells_dict["quad"]].transpose(1, 0, 2)
     return np.cross(c - a, d - b)[:, 2].sum() / 2
+
+
+# Motions ------------------------------------------------------------------------------------------
+
+T = np.linspace(29.6, 29.7, 6)
+MOTION = np.sin(60 * T)[:, None] * 1e-3 * (X / 0.05) ** 2
+
+
+def test_series_is_read_back_in_true_size(tmp_path):
+    path = tmp_path / "motion.xdmf"
+    write_series(path, X, T, MOTION, width=0.01)
+    reader = meshio.xdmf.TimeSeriesReader(path)
+    points, cells = reader.read_points_cells()
+    assert np.ptp(points, axis=0) == pytest.approx([0.05, 0.01, 0])
+    assert len(cells[0].data) == len(X) - 1
+    for k in range(reader.num_steps):
+        time, fields, _ = reader.read_data(k)
+        assert time == T[k]
+        np.testing.assert_array_equal(fields["displacement"][:, 2].reshape(2, -1), [MOTION[k], MOTION[k]])
+    assert reader.num_steps == len(T)
+
+
+def test_series_is_one_file(tmp_path):
+    write_series(tmp_path / "motion.xdmf", X, T, MOTION)
+    assert [p.name for p in tmp_path.iterdir()] == ["motion.xdmf"]
+
+
+def test_animation_has_one_picture_a_time_that_moves(tmp_path):
+    path = tmp_path / "motion.gif"
+    animate(X, T, MOTION, path)
+    with Image.open(path) as image:
+        assert image.n_frames == len(T) and image.info["loop"] == 0
+        pictures = []
+        for k in range(len(T)):
+            image.seek(k)
+            pictures.append(image.convert("L").tobytes())
+    assert len(set(pictures)) == len(T)
+
+
+def test_beam_at_rest_is_animated(tmp_path):
+    animate(X, T[:2], 0 * MOTION[:2], tmp_path / "rest.gif")
+
+
+WRITERS = {
+    ".xdmf": lambda path, *arrays, **options: write_series(path, *arrays, **options),
+    ".gif": lambda path, *arrays, **options: animate(*arrays, path, **options),
+}
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_motion_that_exists_is_kept_unless_forced(tmp_path, suffix):
+    path = tmp_path / f"motion{suffix}"
+    path.write_text("precious")
+    with pytest.raises(FileExistsError, match="force"):
+        WRITERS[suffix](path, X, T[:2], MOTION[:2])
+    assert path.read_text() == "precious"
+    WRITERS[suffix](path, X, T[:2], MOTION[:2], force=True)
+    assert path.read_bytes() != b"precious"
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize(
+    ("x", "t", "motion", "message"),
+    [
+        (X, T, MOTION.T, "6 times and 11 positions"),
+        (X, T[::-1], MOTION, "ascend"),
+        (X[::-1], T, MOTION, "ascend"),
+        (X, T, MOTION * np.nan, "finite"),
+    ],
+)
+def test_motions_that_do_not_fit_are_refused(tmp_path, suffix, x, t, motion, message):
+    with pytest.raises(ValueError, match=message):
+        WRITERS[suffix](tmp_path / f"motion{suffix}", x, t, motion)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_other_suffixes_are_refused(tmp_path, suffix):
+    with pytest.raises(ValueError, match=f"unknown suffix '.x'; give one of {suffix}"):
+        WRITERS[suffix](tmp_path / "motion.x", X, T, MOTION)

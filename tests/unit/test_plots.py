@@ -16,7 +16,9 @@ from beamdyn.plots import (
     plot_growth,
     plot_loci_by_angle,
     plot_locus,
+    plot_response,
     plot_shapes,
+    plot_transient,
     save_figure,
 )
 
@@ -113,6 +115,35 @@ def test_loci_by_angle_have_one_line_an_angle(ax):
     plot_loci_by_angle(SPEEDS, LOCUS.T, [88.35, 88.36], ax)
     assert legend(ax) == ["setting angle 88.35°", "setting angle 88.36°"]
     np.testing.assert_array_equal(ax.lines[1].get_ydata(), LOCUS[:, 1])
+
+
+def test_transient_is_in_millimetres_over_all_of_the_time(ax):
+    t = np.linspace(0, 30, 301)
+    assert plot_transient(t, 1e-3 * np.sin(t), ax) is ax
+    np.testing.assert_allclose(ax.lines[0].get_ydata(), np.sin(t))
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [s]", "tip deflection [mm]")
+    assert ax.get_xlim() == (0, 30)
+
+
+def test_dense_transient_is_drawn_thin(ax):
+    plot_transient(np.arange(100.0), np.zeros(100), ax)
+    plot_transient(np.arange(9000.0), np.zeros(9000), ax)
+    few, many = ax.lines
+    assert many.get_linewidth() < few.get_linewidth()
+
+
+def test_response_shows_its_bound_and_itself_in_millimetres(ax):
+    amplitude = np.array([1e-3, np.nan, 0.0, 2e-3])
+    plot_response(np.arange(4.0), amplitude, 1.5 * amplitude, ax)
+    own, bound = ax.lines
+    np.testing.assert_allclose(own.get_ydata(), [1, np.nan, np.nan, 2])
+    np.testing.assert_allclose(bound.get_ydata(), [1.5, np.nan, np.nan, 3])
+    assert (own.get_linestyle(), bound.get_linestyle(), ax.get_yscale()) == ("-", "--", "log")
+    assert ax.get_ylabel() == "largest tip deflection [mm]"
+
+
+def test_response_without_a_bound_is_one_line(ax):
+    assert legend(plot_response(np.arange(3.0), np.ones(3), ax=ax)) == ["largest over both phases"]
 
 
 def test_close_frequencies_are_written_in_full(ax):
