@@ -303,7 +303,7 @@ def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str
     size, length = run.peak(start, end), run.scene.beam.length
     error = _UNKNOWN * size if math.isnan(run.time_error) else run.time_error
     deflection, share = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
-    return deflection, share, supported(*time_of_peak(run, start, end))
+    return deflection, share, supported(*time_of_peak(run, start, end)) if size else "-"
 
 
 def _time_error(run: Transient) -> str:

@@ -50,6 +50,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         app(given, exit_on_error=False, print_error=False, result_action="return_value")
     except (NoAnswer, ArithmeticError) as error:
         return _complain("no answer: ", error, NO_ANSWER)
+    except MemoryError as error:
+        return _complain(
+            "not enough memory: ", f"{error}; ask for a shorter run or for fewer modes", BAD_INPUT
+        )
     except Interrupted as error:
         return _complain("interrupted: ", error, INTERRUPTED)
     except KeyboardInterrupt:

@@ -189,6 +189,20 @@ def test_ctrl_c_anywhere_is_no_traceback(run, monkeypatch):
     assert (code, out, err) == (INTERRUPTED, "", "beamdyn: interrupted\n")
 
 
+def test_a_run_that_does_not_fit_into_memory_is_no_traceback(run, monkeypatch):
+    def fill(*_, **__):
+        raise MemoryError("Unable to allocate 875 GiB")
+
+    monkeypatch.setattr("beamdyn.transient.simulate", fill)
+    code, out, err = run("simulate", SCENE, *QUICK)
+    assert (code, out) == (BAD_INPUT, "")
+    assert "not enough memory" in err and "shorter" in err
+
+
+def test_a_beam_that_stays_at_rest_has_no_time_of_its_peak(run):
+    assert re.search(r"whole run +0 +0 +-", run("simulate", BLADE, "--t-end", "0.1 s")[1])
+
+
 # Bad input ----------------------------------------------------------------------------------------
 
 BAD = {
