@@ -24,6 +24,7 @@ from beamdyn.stepping import (
     Resolution,
     TimeError,
     Trajectory,
+    check_steps,
     checked_steps,
     smooth_stretches,
     time_error,
@@ -99,6 +100,7 @@ def _advanced(
     runs: list[_Run] = []
     for a, b in pairwise(smooth_stretches(systems[0].motion, t_end)):
         steps = max(resolution.steps(s, a, b) for s in systems)
+        check_steps(steps, t_end)
         runs.append(_Run(systems, tip, a, (b - a) / steps, steps))
         state = runs[-1].advance(*state)
     if not all(run.converged for run in runs):

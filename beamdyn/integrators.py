@@ -150,9 +150,9 @@ def _left(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.n
     """Matrix of the accelerations at all nodes: shape (N, s n, s n)."""
     N, s, n, _ = K.shape
     left = np.empty((N, s, n, s, n))
-    np.multiply(h**2 * table.A2[None, :, None, :, None], K[:, :, :, None, :], out=left)
+    np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=left)
     if C is not None:
-        left += h * table.A[None, :, None, :, None] * C[:, :, :, None, :]
+        left += (h * table.A)[:, None, :, None] * C[:, :, :, None, :]
     left = left.reshape(N, s * n, s * n)
     left[:, np.arange(s * n), np.arange(s * n)] += 1
     return left

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 from typing import Literal
 
@@ -176,22 +176,27 @@ def _integrated_legendre(functions: int, edges: np.ndarray, integrations: int) -
 
 def _on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
     """The n functions of segment [a, b], integrated so many times, at xi: shape (n, k)."""
-    half = (b - a) / 2
-    scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))
     if integrations < 0:
         raise ValueError("only as many derivatives as the basis was integrated")
-    series: list[np.ndarray] = [scale * np.eye(n)]
-    for _ in range(integrations):
-        series.append(legendre.legint(series[-1], lbnd=-1, scl=half))
-    inside = (xi >= a) & (xi <= b)
+    half = (b - a) / 2
+    scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))[:, None]
+    inside, beyond = (xi >= a) & (xi <= b), xi > b
     t = ((xi[inside] - a) - (b - xi[inside])) / (b - a)
     values = np.zeros((n, len(xi)))
-    values[:, inside] = series[-1].T @ legendre.legvander(t, len(series[-1]) - 1).T
-    beyond = xi > b
-    for k in range(integrations):  # Taylor's polynomial from the end of the segment
-        derivative = legendre.legval(1.0, series[integrations - k])
-        values[:, beyond] += np.outer(derivative, (xi[beyond] - b) ** k)  # k is 0 or 1: k! = 1
-    return values
+    series = _integrals(n, integrations)
+    values[:, inside] = half**integrations * (series.T @ legendre.legvander(t, len(series) - 1).T)
+    for k in range(integrations if beyond.any() else 0):  # Taylor's polynomial from the end; k! = 1
+        derivative = half ** (integrations - k) * _integrals(n, integrations - k).sum(axis=0)
+        values[:, beyond] += np.outer(derivative, (xi[beyond] - b) ** k)
+    return scale * values
+
+
+@cache
+def _integrals(n: int, integrations: int) -> np.ndarray:
+    """Legendre coefficients, in columns, of P_0 ... P_(n-1) integrated so many times from -1."""
+    if integrations == 0:
+        return np.eye(n)
+    return legendre.legint(_integrals(n, integrations - 1), lbnd=-1)
 
 
 def _legendre_bending(functions: int, edges: np.ndarray) -> Evaluation:

@@ -15,12 +15,14 @@ from beamdyn.modal import ModalSystem
 from beamdyn.motion import Motion
 
 STAGES = 8
+TOLERANCES = (1e-12, 0.1)  # smaller ones are lost in rounding
 SAMPLES = 8  # of the response in each step, where the caller gives no times
 _RADIANS = 3.75  # turned by the fastest motion in a step, for an error of 1e-5: measured
 _PARTS = 4  # of a stretch of changing speed, each with its own step
 _BETWEEN = np.array([0.25, 0.5, 0.75])  # fractions of a step at which the interpolation is measured
 _LOST = 0.05  # error of phase in a step [rad] from which a mode is not followed
-_CHECKS = 16  # steps at which the local error is measured
+_MOST_STEPS = 3_000_000
+_CHECKS = 8  # steps at which the local error is measured
 _CANDIDATES = 12  # maxima that are refined: sampled ones differ by less than 1e-3 from the true
 
 
@@ -157,6 +159,7 @@ def integrate(
     edges, resolution = smooth_stretches(system.motion, t_end), Resolution.of(tolerance)
     while True:
         steps = [resolution.steps(system, a, b) for a, b in pairwise(edges)]
+        check_steps(sum(steps), t_end)
         path = _propagate(system, edges, steps, y0)
         error = time_error(tip, system, [_checks(p) for p in path.pieces])
         bound = tolerance * max(float(np.abs(tip_deflection(tip, p.state[:, 1:])).max()) for p in path.pieces)
@@ -209,6 +212,15 @@ class Resolution:
     def exhausted(self) -> bool:
         """Whether shorter steps gain nothing but rounding."""
         return self.radians < _RADIANS / 50
+
+
+def check_steps(steps: int, t_end: float) -> None:
+    """Refuse a run that would not fit into memory."""
+    if steps > _MOST_STEPS:
+        raise ValueError(
+            f"t_end = {t_end:g} s takes {steps} steps in time; at most {_MOST_STEPS} are kept: "
+            "give an earlier end or a larger tolerance, or ask for the steady response"
+        )
 
 
 def smooth_stretches(motion: Motion, t_end: float) -> np.ndarray:

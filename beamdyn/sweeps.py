@@ -15,7 +15,7 @@ import scipy
 
 from beamdyn import __version__
 from beamdyn.batch import histories
-from beamdyn.common.checks import ascending, count, positive, real
+from beamdyn.common.checks import ascending, count, positive, real, within
 from beamdyn.common.store import Store, fingerprint
 from beamdyn.common.workers import Workers, one_blas_thread
 from beamdyn.estimate import Model, choose
@@ -25,7 +25,7 @@ from beamdyn.operators import Discretization
 from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
-from beamdyn.stepping import Trajectory, largest_deflection
+from beamdyn.stepping import TOLERANCES, Trajectory, largest_deflection
 from beamdyn.transient import simulate
 
 if TYPE_CHECKING:
@@ -227,7 +227,7 @@ def _request(
             f"window = {start:g} ... {end:g} s: it must begin before it ends, "
             f"and lie in the run, 0 ... {last:g} s"
         )
-    modes, tolerance = count("modes", modes), positive("tolerance", tolerance)
+    modes, tolerance = count("modes", modes), within("tolerance", tolerance, *TOLERANCES)
     return Request(scene, (start, end), last, modes, tolerance, discretization)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -75,11 +75,7 @@ def simulate(
     end = parse_positive("--t-end", t_end, "s")
     stretch = None if window is None else parse_window(window, end)
     loaded = load_scene(scene)
-    run = simulate(loaded, end, modes, tolerance, discretization=discretization)
-    if method != "auto":
-        run = simulate(
-            loaded, end, modes, tolerance, method, discretization, **_stock_tolerances(run, tolerance)
-        )
+    run = simulate(loaded, end, modes, tolerance, method, discretization)
     console().print(transient_table(run, stretch))
     write(run, outputs, _transient_csv(run), run.plot)
     _write_close_up(run, stretch or (0.0, end), series, animation, outputs.force)
@@ -223,14 +219,6 @@ def sweep(
     console().print(sweep_table(found))
     write(found, outputs, _sweep_csv(found), found.plot)
     warn(found.warnings)
-
-
-def _stock_tolerances(ours: Transient, tolerance: float) -> dict[str, Any]:
-    """Tolerances for scipy's integrators, whose absolute ones must know the size of the answer."""
-    import numpy as np
-
-    sizes = [np.full(y.shape[1], np.abs(y).max()) for y in (ours.coordinates, ours.velocities)]
-    return {"rtol": tolerance, "atol": 0.1 * tolerance * np.concatenate(sizes) + 1e-300}
 
 
 # Close-up -----------------------------------------------------------------------------------------

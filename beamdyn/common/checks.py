@@ -35,6 +35,14 @@ def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> 
     return number
 
 
+def within(name: str, value: object, least: float, most: float) -> float:
+    """A number from `least` to `most`."""
+    number = real(name, value)
+    if not least <= number <= most:
+        raise ValueError(f"{name} = {number:g}: give a number from {least:g} to {most:g}")
+    return number
+
+
 def angle(name: str, value: object) -> float:
     """An angle within one turn either way [rad]."""
     number = real(name, value, "rad")

@@ -226,7 +226,7 @@ BAD = {
     "one-sided window": (("simulate", SCENE, *QUICK, "--window", "0.3 s"), ("--window", "start:end")),
     "bare window": (("simulate", SCENE, *QUICK, "--window", "0.3:0.4"), ("--window", "unit")),
     "window of speeds": (("simulate", SCENE, *QUICK, "--window", "1:2 rpm"), ("--window", "time")),
-    "tolerance": (("simulate", SCENE, *QUICK, "--tolerance", "0"), ("tolerance", "greater than 0")),
+    "tolerance": (("simulate", SCENE, *QUICK, "--tolerance", "0"), ("tolerance", "from 1e-12")),
     "no modes": (("simulate", SCENE, "--t-end", "1 s", "--modes", "0"), ("modes = 0", "1 or more")),
     "integrator": (("simulate", SCENE, *QUICK, "--method", "Euler"), ("--method", "Euler", "Radau")),
     "series suffix": (("simulate", SCENE, *QUICK, "--series", "x.vtu"), ("--series", ".xdmf")),

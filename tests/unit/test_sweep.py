@@ -78,7 +78,7 @@ BAD = {
     "window of text": ({"window": ("a", 0.5)}, "finite number"),
     "t_end": ({"t_end": -1.0}, "greater than 0"),
     "modes": ({"modes": 0}, "whole number of 1"),
-    "tolerance": ({"tolerance": 0.0}, "greater than 0"),
+    "tolerance": ({"tolerance": 0.0}, "from 1e-12"),
     "workers": ({"workers": 0}, "whole number of 1"),
     "chunk": ({"chunk": 1.5}, "whole number of 1"),
     "method": ({"discretization": "finite"}, "give 'ritz', 'fem'"),

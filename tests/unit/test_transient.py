@@ -145,6 +145,8 @@ def test_a_damped_batch_with_stretch_and_gravity() -> None:
         (lambda: bd.simulate(HARVESTER, 1.0), ["motion"]),
         (lambda: bd.simulate(ROLLING, 1.0, modes=0), ["modes"]),
         (lambda: bd.simulate(ROLLING, 1.0, tolerance=0.0), ["tolerance"]),
+        (lambda: bd.simulate(ROLLING, 1.0, tolerance=1e-14), ["tolerance", "1e-12"]),
+        (lambda: bd.simulate(ROLLING, 1e8), ["t_end", "steps", "steady"]),
         (lambda: bd.simulate(ROLLING, 1.0, initial="hot"), ["initial", "rest"]),
         (lambda: bd.simulate(ROLLING, 1.0, initial=np.zeros(3)), ["initial", "6"]),
         (lambda: bd.simulate(ROLLING, 1.0, t_eval=[0.0, 2.0]), ["t_eval"]),
