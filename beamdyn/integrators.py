@@ -115,7 +115,7 @@ def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau
     C, K, f = system.coefficients(starts[:, None] + h * table.c)
     if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
         return _equal_maps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
-    a = np.linalg.solve(_left(C, K, h, table), _right(C, K, f, h, table))
+    a = np.linalg.solve(left_side(C, K, h, table), _right(C, K, f, h, table))
     return Maps(_step(a, h, table), a.reshape(*f.shape, -1))
 
 
@@ -123,7 +123,7 @@ def _equal_maps(
     C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau, count: int
 ) -> Maps:
     """Maps of equal steps, solved once and refined: their error would grow with every power."""
-    left, right = _left(C, K, h, table), _right(C, K, f, h, table)
+    left, right = left_side(C, K, h, table), _right(C, K, f, h, table)
     a = np.linalg.solve(left, right).astype(np.longdouble)
     for _ in range(2):
         a += np.linalg.solve(left, (right - left.astype(np.longdouble) @ a).astype(float))
@@ -137,16 +137,26 @@ def _equal_maps(
 
 def _step(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
     """Maps to (q, v) at the ends of the steps, shape (N, 2 n, 2 n + 1), from the accelerations."""
+    return add_drift(at_end(a, h, table), h, first=1)
+
+
+def at_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """What accelerations at the nodes, shape (N, s n, m), add to (q, v) at the end: shape (N, 2 n, m)."""
     N, rows, columns = a.shape
+    weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)
-    weights = np.stack([h**2 * table.b2, h * table.b])  # of displacement and velocity at the end
-    step = (weights @ a.reshape(N, len(table.c), n * columns)).reshape(N, 2 * n, columns)
-    step[:, np.arange(2 * n), np.arange(1, 2 * n + 1)] += 1
-    step[:, np.arange(n), np.arange(n + 1, 2 * n + 1)] += h
+    return (weights @ a.reshape(N, len(table.c), n * columns)).reshape(N, 2 * n, columns)
+
+
+def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
+    """Add q + h v and v to maps whose columns from `first` on are q and v."""
+    n = step.shape[1] // 2
+    step[:, np.arange(2 * n), first + np.arange(2 * n)] += 1
+    step[:, np.arange(n), first + n + np.arange(n)] += h
     return step
 
 
-def _left(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
     """Matrix of the accelerations at all nodes: shape (N, s n, s n)."""
     N, s, n, _ = K.shape
     left = np.empty((N, s, n, s, n))
@@ -314,9 +324,14 @@ def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.nda
             powers = _powers(maps.every, len(maps.step))
         state[1:, 1:] = powers[: len(maps.step)] @ state[0]
         return powers
-    for k, step in enumerate(maps.step):
-        np.dot(step, state[k], out=state[k + 1, 1:])
+    advance(maps.step, state)
     return None
+
+
+def advance(steps: np.ndarray, state: np.ndarray) -> None:
+    """Fill the augmented states state[1:] from state[0] by affine maps, one after the other."""
+    for k, step in enumerate(steps):
+        np.dot(step, state[k], out=state[k + 1, 1:])
 
 
 def _powers(step: np.ndarray, count: int) -> np.ndarray:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
 
 from beamdyn.equations import Equations, RootMotion
+from beamdyn.modulated import Modulation
 from beamdyn.motion import Motion
 
 
@@ -52,6 +53,32 @@ class ModalSystem:
         root = self.root(np.asarray(t, dtype=float))
         C = _sum(self.parts[1], root) if self.parts[1] else None
         return C, _sum(self.parts[0], root), self.equations.load(root)
+
+    def modulation(self, start: float, end: float) -> Modulation | None:
+        """The equations from start to end [s] as constant ones that the root's acceleration modulates.
+
+        None where the speed changes.
+        """
+        if self.motion.settled > start:
+            return None
+        root = self.root(np.linspace(start, end, 257)[1:-1])
+        mean = RootMotion(*(np.asarray(getattr(root, f.name).mean()) for f in fields(RootMotion)))
+        loads = {f.quantity: np.zeros(self.size) for f in self.equations.loads}
+        for load in self.equations.loads:
+            loads[load.quantity][self.equations.fields[load.rows]] += load.factor * load.vector
+
+        def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            now = self.root(t)
+            g = [getattr(now, quantity) for quantity in loads]
+            return now.root_axial - mean.root_axial, np.stack(g, axis=-1)
+
+        return Modulation(
+            C=_sum(self.parts[1], mean) if self.parts[1] else None,
+            K=_sum(self.parts[0], mean),
+            G=self.parts[0].get("root_axial", np.zeros((self.size, self.size))),
+            P=np.array(list(loads.values())),
+            scalars=scalars,
+        )
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Y' for y = (q, q'), as `solve_ivp` asks for it."""

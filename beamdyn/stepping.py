@@ -12,6 +12,7 @@ import numpy as np
 
 from beamdyn.integrators import Piece, interior, propagate, step_maps, tableau
 from beamdyn.modal import ModalSystem
+from beamdyn.modulated import propagate_modulated
 from beamdyn.motion import Motion
 
 STAGES = 8
@@ -160,7 +161,7 @@ def integrate(
     while True:
         steps = [resolution.steps(system, a, b) for a, b in pairwise(edges)]
         check_steps(sum(steps), t_end)
-        path = _propagate(system, edges, steps, y0)
+        path = _propagate(system, edges, steps, y0, tolerance)
         error = time_error(tip, system, [_checks(p) for p in path.pieces])
         bound = tolerance * max(float(np.abs(tip_deflection(tip, p.state[:, 1:])).max()) for p in path.pieces)
         if error.total <= bound or resolution.exhausted:
@@ -233,12 +234,26 @@ def smooth_stretches(motion: Motion, t_end: float) -> np.ndarray:
     return np.concatenate([*parts, [t_end]])
 
 
-def _propagate(system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray) -> Trajectory:
+def _propagate(
+    system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray, tolerance: float
+) -> Trajectory:
     pieces, n = [], system.size
     for (a, b), many in zip(pairwise(edges), steps, strict=True):
-        pieces.append(propagate(system, a, b, many, y0[:n], y0[n:], STAGES))
+        pieces.append(_piece(system, a, b, many, y0[:n], y0[n:], 0.1 * tolerance))
         y0 = pieces[-1].state[-1, 1:]
     return Trajectory(tuple(pieces))
+
+
+def _piece(
+    system: ModalSystem, a: float, b: float, steps: int, q: np.ndarray, v: np.ndarray, accuracy: float
+) -> Piece:
+    """One stretch: by the series for a weakly modulated system where it is one, else step by step."""
+    modulation = system.modulation(a, b)
+    if modulation is not None:
+        piece = propagate_modulated(modulation, a, b, steps, q, v, STAGES, accuracy)
+        if piece is not None:
+            return piece
+    return propagate(system, a, b, steps, q, v, STAGES)
 
 
 @dataclass(frozen=True)

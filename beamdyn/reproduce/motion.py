@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from beamdyn.plots import COLOURS
 from beamdyn.published import load
 from beamdyn.report import Comparison, sweep_peaks
-from beamdyn.reproduce.common import OWN, PAPER, TOP, rolling_scene
+from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, rolling_scene
 from beamdyn.resonance import Crossings, resonance_speeds
 from beamdyn.scene import Scene
 from beamdyn.steady import steady_response
@@ -62,7 +62,7 @@ def _crossing_rows(found: Crossings, kind: str, values: list[float], name: str) 
     for c, value in zip(ours, values, strict=True):
         if name != "gravity" or value == values[-1]:
             what = f"{kind} {c.line.name}, {name}"
-            yield Comparison(what, OWN, value, c.speed, c.error * c.speed, 4)
+            yield Comparison(what, OWN, value, c.speed, c.error * c.speed, decimals(value))
 
 
 def sweep_of_speeds(

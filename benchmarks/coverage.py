@@ -1,0 +1,120 @@
+"""Whether the stated errors of frequencies hold.  Run: python -m benchmarks.coverage [--scenes N]
+
+Random scenes of the range in which nothing is refused, against the power series in mpmath.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+import beamdyn as bd
+from benchmarks.beam_core import Row, show
+from tests.reference.of_scene import exact, relative_errors
+
+_MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))  # Young's modulus [Pa], density [kg/m3]
+_BOUND, _OVER = 0.999, 30.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """One random scene: stated and true errors of its first three frequencies, or why it was refused."""
+
+    number: int
+    stated: tuple[float, ...] = ()
+    true: tuple[float, ...] = ()
+    refusal: str = ""
+
+
+def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
+    """A scene and a speed: slenderness 20...2000, gamma <= 50, |delta| <= 10, to 0.999 critical."""
+    beam = random_beam(rng)
+    mount = bd.Mount(
+        radius=beam.length * rng.choice([0.0, rng.uniform(0, 10), 10 ** rng.uniform(-2, 1)]),
+        setting_angle=rng.choice([0.0, np.pi, rng.uniform(-np.pi, np.pi)]),
+        bending_angle=rng.choice([0.0, np.pi / 2, rng.uniform(-np.pi, np.pi)]),
+    )
+    scene = bd.Scene(beam, mount)
+    share = rng.choice([rng.uniform(0, 0.999), 1 - 10 ** rng.uniform(-3, 0)])
+    return scene, float(min(rng.uniform(0, 50) / time_unit(beam), share * bd.critical_speed(scene)))
+
+
+def random_beam(rng: np.random.Generator) -> bd.Beam:
+    """A beam of rectangular section, half of them tapered, half with a tip body."""
+    length = 10 ** rng.uniform(-2, 1)
+    thickness = length / 10 ** rng.uniform(np.log10(20), np.log10(2000))
+    width = thickness * 10 ** rng.uniform(0.7, 1.5)
+    modulus, density = _MATERIALS[rng.integers(len(_MATERIALS))]
+    tapers = rng.uniform(0, 0.8, 2) * rng.integers(0, 2)
+    sides = [Polynomial([side, -taper * side]) for side, taper in zip((width, thickness), tapers, strict=True)]
+    mass = density * length * width * thickness
+    return bd.Beam.rectangular(length, *sides, modulus, density, tip=random_tip(rng, mass, length))
+
+
+def random_tip(rng: np.random.Generator, beam_mass: float, length: float) -> bd.TipMass | None:
+    """None, or a slender or stout body of up to ten beam masses."""
+    if rng.integers(0, 2):
+        return None
+    mass = beam_mass * 10 ** rng.uniform(-3, 1)
+    inertia = mass * (length * rng.uniform(0, 0.3)) ** 2
+    return bd.TipMass(mass, length * rng.uniform(0, 0.2), inertia, axial_inertia=inertia * rng.uniform(0, 1))
+
+
+def time_unit(beam: bd.Beam) -> float:
+    """sqrt(rho A L^4 / EI) at the root [s]."""
+    root = np.zeros(1)
+    return float(beam.length**2 * np.sqrt(beam.mass_per_length(root) / beam.bending_stiffness(root))[0])
+
+
+def measured(number: int, seed: int = 4) -> Case:
+    """One case, told by its number."""
+    scene, speed = random_scene(np.random.default_rng([seed, number]))
+    try:
+        found = bd.natural_modes(scene, speed)
+    except (ValueError, ArithmeticError) as error:
+        return Case(number, refusal=str(error))
+    return Case(number, tuple(found.error.tolist()), tuple(relative_errors(found, exact(scene, speed))))
+
+
+def coverage(cases: Sequence[Case]) -> Iterator[Row]:
+    """Share of errors covered, and by how much."""
+    answered = [case for case in cases if not case.refusal]
+    stated, true = (np.array([getattr(case, name) for case in answered]) for name in ("stated", "true"))
+    covered = stated >= true
+    yield "random scenes, first three frequencies", str(len(cases)), "10000"
+    yield "refused", str(len(cases) - len(answered)), "0"
+    yield "stated error covers the true one", f"{covered.mean():.2%}", f"{_BOUND:.1%}"
+    yield "median over-estimate", f"{np.median(stated / true):.1f}", f"{_OVER:g}"
+    for mode, over in enumerate(np.median(stated / true, axis=0), 1):
+        yield f"... of mode {mode}", f"{over:.1f}", ""
+    yield "largest ratio of true to stated error", f"{(true / stated).max():.2g}", "1"
+    yield "largest true error", f"{true.max():.1e}", ""
+    for case in (case for case, hit in zip(answered, covered, strict=True) if not hit.all()):
+        yield f"not covered: scene {case.number}", f"{max(case.true):.1e} > {max(case.stated):.1e}", ""
+
+
+def run(scenes: int, workers: int) -> list[Case]:
+    """Measure the cases 0 ... scenes - 1."""
+    with ProcessPoolExecutor(workers) as pool:
+        return list(pool.map(measured, range(scenes), chunksize=8))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=10_000)
+    parser.add_argument("--workers", type=int, default=2)
+    options = parser.parse_args()
+    cases = run(options.scenes, options.workers)
+    show("stated errors of frequencies", lambda: coverage(cases))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""The series for weakly modulated systems against the same steps, each factorised."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.estimate import Model
+from beamdyn.integrators import propagate
+from beamdyn.modal import ModalSystem
+from beamdyn.modulated import propagate_modulated
+from tests.scenes import ROLLING
+
+SCENES = {
+    "published": ROLLING,
+    "gravity": replace(ROLLING, gravity=9.81),
+    "damped": replace(ROLLING, damping_ratio=0.01),
+    "stretch, oblique": replace(ROLLING, stretch=True, mount=bd.Mount(0.215, 0.1, 0.3), damping_ratio=0.001),
+    "without road": replace(ROLLING, motion=replace(ROLLING.motion, road=None)),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_same_as_step_by_step(name: str) -> None:
+    scene = SCENES[name]
+    system = ModalSystem(Model(scene, bd.Ritz(16)).modal(3).equations, scene.motion)
+    y = np.random.default_rng(1).standard_normal(2 * system.size) * 1e-6
+    modulation, n, steps = system.modulation(10.0, 14.0), system.size, 430
+    series = propagate_modulated(modulation, 10.0, 14.0, steps, y[:n], y[n:], 8, accuracy=1e-6)
+    exact = propagate(system, 10.0, 14.0, steps, y[:n], y[n:], 8)
+    for found, wanted in ((series.state, exact.state), (series.acceleration, exact.acceleration)):
+        scale = np.abs(wanted).max(axis=tuple(range(wanted.ndim - 1)))
+        assert (np.abs(found - wanted) <= 1e-6 * scale).all()
+
+
+def test_error_is_of_third_order_in_the_modulation() -> None:
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal(2).equations, ROLLING.motion)
+    y, errors = np.full(4, 1e-6), []
+    for amplitude in (0.1, 0.2):
+        road = bd.RoadWave(0.3, velocity_amplitude=amplitude)
+        strong = replace(system, motion=replace(ROLLING.motion, road=road))
+        modulation = strong.modulation(10.0, 10.1)
+        series = propagate_modulated(modulation, 10.0, 10.1, 10, y[:2], y[2:], 8, accuracy=1.0)
+        exact = propagate(strong, 10.0, 10.1, 10, y[:2], y[2:], 8)
+        free = exact.state[-1, 1:3]
+        errors.append(np.abs(series.state[-1, 1:3] - free).max() / np.abs(free).max())
+    assert 6 < errors[1] / errors[0] < 11
+
+
+def test_refused_where_it_is_too_strong_or_the_speed_changes() -> None:
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal(2).equations, ROLLING.motion)
+    assert system.modulation(5.0, 12.0) is None
+    modulation = system.modulation(10.0, 30.0)
+    assert propagate_modulated(modulation, 10.0, 30.0, 2000, *np.zeros((2, 2)), 8, accuracy=1e-12) is None
