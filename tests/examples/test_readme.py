@@ -1,0 +1,40 @@
+"""The Python of the README and of the page on sweeps runs as it stands."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def blocks(page: str, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / page).read_text(), re.DOTALL | re.MULTILINE)
+
+
+def test_readme(capsys) -> None:
+    names: dict[str, object] = {}
+    for block in blocks("README.md", "python"):
+        exec(block, names)
+    printed = capsys.readouterr().out
+    for number in ("61.96301", "159.8183326", "0.0019425", "53.0858418", "69.802403", "0.000261"):
+        assert number in printed
+
+
+def test_first_block_of_sweeps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With fewer speeds and a shorter run than on the page."""
+    matplotlib.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    block = blocks("docs/sweeps.md", "python")[0]
+    short = block.replace("150, 151", "60, 4").replace("(20.0, 30.0)", "(0.5, 1.0)")
+    assert short.count("60, 4") == short.count("(0.5, 1.0)") == 1
+    exec(short, {})
+    assert (tmp_path / "fig6.png").exists() and any((tmp_path / "fig6").iterdir())
+
+
+def test_the_first_two_shell_blocks_are_install_and_test() -> None:
+    install, test = blocks("README.md", "sh")[:2]
+    assert "beamdyn reproduce" in install and "pytest" in test
