@@ -13,10 +13,6 @@ Hairer, Lubich, Wanner, Geometric Numerical Integration, 2006, sections II.1.3 a
 
 from __future__ import annotations
 
-import os
-from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Protocol
@@ -25,7 +21,6 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.integrate import DenseOutput, OdeSolver
 
-_THREADS = min(4, os.cpu_count() or 1)
 BLOCK = 64  # steps solved as one batch: their matrices fit the processor's cache
 
 
@@ -290,31 +285,12 @@ def propagate(
     state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
     acceleration = np.empty((steps, stages, n))
     powers = None
-
-    def solved(block: slice) -> Maps:
-        return step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
-
-    for block, maps in _ahead(solved, steps):
+    for first in range(0, steps, BLOCK):
+        block = slice(first, min(first + BLOCK, steps))
+        maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
         powers = _advance(maps, state[block.start : block.stop + 1], powers)
         acceleration[block] = (maps.stages @ state[block, None, :, None])[..., 0]
     return Piece(t0, h, state, acceleration)
-
-
-def _ahead(solved: Callable[[slice], Maps], steps: int) -> Iterator[tuple[slice, Maps]]:
-    """Blocks in order with their maps, which threads solve ahead: LAPACK frees the interpreter."""
-    blocks = (slice(first, min(first + BLOCK, steps)) for first in range(0, steps, BLOCK))
-    if steps <= BLOCK:
-        yield from ((block, solved(block)) for block in blocks)
-        return
-    with ThreadPoolExecutor(_THREADS) as pool:
-        waiting: deque[tuple[slice, Future[Maps]]] = deque()
-        for block in blocks:
-            waiting.append((block, pool.submit(solved, block)))
-            if len(waiting) > 2 * _THREADS:
-                first, maps = waiting.popleft()
-                yield first, maps.result()
-        for block, maps in waiting:
-            yield block, maps.result()
 
 
 def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
