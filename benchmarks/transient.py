@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from math import cos, pi, sin
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -22,12 +21,10 @@ from tests.convergence.test_integrators import Oscillator
 from tests.scenes import ROLLING
 
 T_END, MODES = 30.0, 5
-STOCK = [  # the fastest settings of each method whose error is near ours
-    ("Radau", {"rtol": 2e-6, "atol": 2e-10}),
-    ("Radau", {"rtol": 5e-7, "atol": 5e-11}),
-    ("LSODA", {"rtol": 1e-6, "atol": 1e-10}),
-    ("LSODA", {"rtol": 1e-7, "atol": 1e-11}),
-    ("DOP853", {"rtol": 1e-4, "atol": 1e-8}),
+STOCK = [  # rtol, and atol in the modal coordinates, which are some 1e-5 kg^1/2 m
+    ("Radau", 1e-6, 1.5e-12),
+    ("LSODA", 5e-7, 5e-13),
+    ("DOP853", 1e-4, 1.5e-10),
 ]
 
 
@@ -87,31 +84,30 @@ def race() -> Iterator[Row]:
     yield "... largest error over the peak", f"{error:.1e}", "1e-5"
     yield "... estimated", f"{run.time_error / peak:.1e}", "above the error"
     comparable = []
-    for method, options in STOCK:
-        time, stock_error = stock(method, options, exact, system())
-        if error <= stock_error / peak <= 100 * error:
+    for method, rtol, atol in STOCK:
+        time, stock_error, found = stock(method, rtol, atol, exact, system())
+        if stock_error / peak >= error:
             comparable.append(time)
-        yield f"solve_ivp {method}, rtol {options['rtol']:g}: time [s]", f"{time:.1f}", ""
+        yield f"solve_ivp {method}, rtol {rtol:g}: time [s]", f"{time:.1f}", ""
         yield "... largest error over the peak", f"{stock_error / peak:.1e}", ""
-    yield (
-        "fastest stock method, its error 1 to 100 times ours, over ours",
-        f"{min(comparable) / ours:.0f}",
-        "250",
-    )
+        yield "... its peak in 20...30 s [mm]", f"{1e3 * found:.6f}", "1.942558 +- 3e-5"
+    yield "fastest of these with an error not below ours, over ours", f"{min(comparable) / ours:.0f}", "250"
 
 
 def stock(
-    method: str, options: dict[str, Any], exact: bd.Transient, equations: ModalSystem
-) -> tuple[float, float]:
-    """Time of a stock method, and its largest error at its own steps [m]."""
+    method: str, rtol: float, atol: float, exact: bd.Transient, equations: ModalSystem
+) -> tuple[float, float, float]:
+    """Time of a stock method, its largest error [m] and its peak [m]; between steps where they are long."""
     rhs, jacobian = lean(equations)
-    extra = {} if method == "DOP853" else {"jac": jacobian}
+    extra = {"dense_output": False} if method == "DOP853" else {"jac": jacobian, "dense_output": True}
     start = perf_counter()
-    solved = solve_ivp(rhs, (0, T_END), np.zeros(2 * equations.size), method, **options, **extra)
+    solved = solve_ivp(rhs, (0, T_END), np.zeros(2 * MODES), method, rtol=rtol, atol=atol, **extra)
     time = perf_counter() - start
-    chosen = slice(None, None, max(1, len(solved.t) // 30000))
-    found = solved.y[: equations.size, chosen].T @ exact.modal.tip
-    return time, float(np.abs(found - exact.deflection(solved.t[chosen])).max())
+    thin = slice(None, None, max(1, len(solved.t) // 300_000))
+    t = np.linspace(0, T_END, 300_001) if solved.sol else solved.t[thin]
+    y = solved.sol(t) if solved.sol else solved.y[:, thin]
+    tip = y[:MODES].T @ exact.modal.tip
+    return time, float(np.abs(tip - exact.deflection(t)).max()), float(np.abs(tip[t >= 20]).max())
 
 
 def lean_cost() -> Iterator[Row]:
