@@ -15,6 +15,7 @@ __all__ = [
     "Crossing",
     "Crossings",
     "Fem",
+    "FrequencyBounds",
     "GaussCollocation",
     "Locus",
     "Modes",
@@ -36,6 +37,7 @@ __all__ = [
     "UserMotion",
     "critical_point",
     "critical_speed",
+    "frequency_bounds",
     "frequency_locus",
     "load_scene",
     "natural_modes",
@@ -44,6 +46,7 @@ __all__ = [
     "simulate",
     "steady_response",
     "sweep",
+    "terms",
 ]
 
 _HOME = {
@@ -51,6 +54,7 @@ _HOME = {
     "Crossing": "resonance",
     "Crossings": "resonance",
     "Fem": "fem",
+    "FrequencyBounds": "bounds",
     "GaussCollocation": "integrators",
     "Locus": "spectrum",
     "Modes": "spectrum",
@@ -72,6 +76,7 @@ _HOME = {
     "UserMotion": "motion",
     "critical_point": "stability",
     "critical_speed": "stability",
+    "frequency_bounds": "bounds",
     "frequency_locus": "spectrum",
     "load_scene": "config",
     "natural_modes": "spectrum",
@@ -80,13 +85,16 @@ _HOME = {
     "simulate": "transient",
     "steady_response": "steady",
     "sweep": "sweeps",
+    "terms": "inventory",
 }
 
 if TYPE_CHECKING:
     from beamdyn.beam import Beam, TipMass
+    from beamdyn.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.config import load_scene
     from beamdyn.fem import Fem
     from beamdyn.integrators import GaussCollocation
+    from beamdyn.inventory import terms
     from beamdyn.motion import (
         RoadWave,
         RollingWheel,

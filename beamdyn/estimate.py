@@ -15,7 +15,9 @@ from beamdyn.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.scene import Scene
 
 TARGET = 1e-11  # relative error aimed at by the defaults: two digits beyond the promised 1e-9
+TOLERANCES = 1e-14, 0.1  # the least and the largest that can be asked for
 _FEM_TARGET = 1e-7
+_LEAST = 9  # functions: fewer differ from their coarser companion by one, which a mode may have no use for
 
 
 @dataclass(frozen=True)
@@ -130,8 +132,50 @@ def estimated(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> E
     return Estimated(model, coarse, fine, np.where(np.isnan(error), np.inf, error))
 
 
+def solved(
+    scene: Scene,
+    method: str | Discretization,
+    speeds: np.ndarray,
+    modes: int,
+    tolerance: float | None = None,
+    extra: int = 0,
+) -> Estimated:
+    """Modes by the cheapest model that keeps the tolerance at every speed; None is the promise of 1e-9.
+
+    The parameters are those of `choose` and `estimated`.
+    """
+    if tolerance is None:
+        return estimated(choose(scene, method, speeds, modes), speeds, modes, extra)
+    found = estimated(choose(scene, method, speeds, modes, tolerance, cheapest=True), speeds, modes, extra)
+    while isinstance(method, str) and not _reached(found, tolerance):
+        if (finer := found.model.discretization.finer()) is None:
+            break
+        found = estimated(Model(scene, finer), speeds, modes, extra)
+    return found
+
+
+def _reached(found: Estimated, target: float) -> bool:
+    """Whether the error is below the target, or within rounding."""
+    modes = found.error.shape[1]
+    return bool((found.error <= np.maximum(target, 3 * found.eigen.rounding[:, :modes])).all())
+
+
+def missed(error: float, tolerance: float) -> Iterator[str]:
+    """What to say of a tolerance that is not kept."""
+    if error > tolerance:
+        yield (
+            f"tolerance = {tolerance:g} is not reached: the estimated relative error is {error:.1g}, "
+            "and the model is the largest that helps"
+        )
+
+
 def choose(
-    scene: Scene, method: str | Discretization, speeds: np.ndarray, modes: int, target: float = TARGET
+    scene: Scene,
+    method: str | Discretization,
+    speeds: np.ndarray,
+    modes: int,
+    target: float = TARGET,
+    cheapest: bool = False,
 ) -> Model:
     """The smallest model whose estimated error is below the target at the slowest and fastest speed.
 
@@ -147,6 +191,8 @@ def choose(
         Modes that are wanted.
     target : float
         Relative error of their eigenvalues that is aimed at; finite elements stop at 1e-7.
+    cheapest : bool
+        Begin with the very smallest model, and not with one that is mostly enough for the default target.
 
     Returns
     -------
@@ -162,29 +208,33 @@ def choose(
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = target if method == "ritz" else max(target, _FEM_TARGET)
     model = None
-    for discretization in _ladder(method, scene, modes):
+    for discretization in _ladder(method, scene, modes, cheapest):
         model = Model(scene, discretization)
-        found = estimated(model, ends, modes)
-        if (found.error <= np.maximum(target, 3 * found.eigen.rounding[:, :modes])).all():
+        if _reached(estimated(model, ends, modes), target):
             break
     assert model is not None
     return model
 
 
-def _ladder(method: str, scene: Scene, modes: int) -> Iterator[Discretization]:
+def _ladder(method: str, scene: Scene, modes: int, cheapest: bool) -> Iterator[Discretization]:
     """Discretizations of one kind from the smallest worth trying."""
     segments = len(scene.beam.breakpoints) - 1
     if method == "ritz":
-        start = max(5, -(-(10 + 2 * modes) // segments))
-        step: Discretization | None = _roomy(Ritz(min(start, MOST_FUNCTIONS)), modes)
+        least = _LEAST if segments == 1 and cheapest else 5
+        wanted = modes + 3 if cheapest else 10 + 2 * modes
+        start = max(least, -(-wanted // segments))
+        first: Discretization = Ritz(min(start, MOST_FUNCTIONS))
     elif method == "fem":
         from beamdyn.fem import Fem  # loads scikit-fem, which Ritz has no need of
 
-        step = _roomy(Fem(max(80, 2 * segments, 4 * modes)), modes)
+        first = Fem(max(4 if cheapest else 80, 2 * segments, 4 * modes))
     else:
         raise ValueError(
             f"method = {method!r}: give 'ritz', 'fem', or a beamdyn.Ritz or beamdyn.Fem of your own"
         )
+    while not first.fits(modes) and (finer := first.finer()) is not None:
+        first = finer
+    step: Discretization | None = _roomy(first, modes)
     while step is not None:
         yield step
         step = step.finer()

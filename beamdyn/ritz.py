@@ -74,7 +74,7 @@ class Ritz:
     def coarser(self) -> Ritz:
         """A basis whose distance from this one bounds this one's error by its rate of convergence."""
         keep = 0.88 if self.basis == "legendre" else 0.5
-        return replace(self, functions=max(1, int(keep * self.functions)))
+        return replace(self, functions=max(1, min(int(keep * self.functions), self.functions - 2)))
 
     def finer(self) -> Ritz | None:
         """The next larger basis."""

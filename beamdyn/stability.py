@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from time import perf_counter
@@ -11,10 +12,10 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beamdyn import __version__
-from beamdyn.common.checks import positive
+from beamdyn.common.checks import positive, within
 from beamdyn.eigen import Solver
 from beamdyn.equations import SteadyPencil
-from beamdyn.estimate import TARGET, Model, choose
+from beamdyn.estimate import TARGET, TOLERANCES, Model, choose, missed
 from beamdyn.operators import Discretization
 from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
@@ -35,16 +36,21 @@ class CriticalPoint(Result):
         Critical speed [rad/s]; inf if there is none.
     error : float
         Its estimated relative error.
+    warnings : tuple of str
+        What limits the answer.
     provenance : Provenance
         How it was found.
     """
 
     speed: float
     error: float
+    warnings: tuple[str, ...]
     provenance: Provenance
 
 
-def critical_speed(scene: Scene, method: str | Discretization = "ritz") -> float:
+def critical_speed(
+    scene: Scene, method: str | Discretization = "ritz", tolerance: float | None = None
+) -> float:
     """Speed at which the beam buckles dynamically [rad/s]; inf if there is none.
 
     Parameters
@@ -53,15 +59,22 @@ def critical_speed(scene: Scene, method: str | Discretization = "ritz") -> float
         The scene; its motion is not used.
     method : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`; a warning is issued if it cannot be kept.
 
     Returns
     -------
     float
     """
-    return critical_point(scene, method).speed
+    point = critical_point(scene, method, tolerance)
+    for text in point.warnings:
+        warnings.warn(text, stacklevel=2)
+    return point.speed
 
 
-def critical_point(scene: Scene, method: str | Discretization = "ritz") -> CriticalPoint:
+def critical_point(
+    scene: Scene, method: str | Discretization = "ritz", tolerance: float | None = None
+) -> CriticalPoint:
     """The critical speed with its error: the lowest speed whose stiffness K0 + omega^2 K2 is singular.
 
     Parameters
@@ -70,21 +83,27 @@ def critical_point(scene: Scene, method: str | Discretization = "ritz") -> Criti
         The scene; its motion is not used.
     method : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`.
 
     Returns
     -------
     CriticalPoint
     """
     start = perf_counter()
-    model = choose(scene, method, np.zeros(1), 1)
+    target = TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    model = choose(scene, method, np.zeros(1), 1, target, cheapest=tolerance is not None)
     while True:
         speed, error = _critical(model)
         finer = None if not isinstance(method, str) else model.discretization.finer()
-        if finer is None or error <= max(TARGET, 3 * model.solver.critical_rounding):
+        if finer is None or error <= max(target, 3 * model.solver.critical_rounding):
             break
         model = Model(scene, finer)
     names = str(model.discretization), str(model.coarser().discretization)
-    return CriticalPoint(speed, error, Provenance(__version__, *names, wall_time=perf_counter() - start))
+    texts = () if tolerance is None else tuple(missed(error, target))
+    return CriticalPoint(
+        speed, error, texts, Provenance(__version__, *names, wall_time=perf_counter() - start)
+    )
 
 
 def _critical(model: Model) -> tuple[float, float]:

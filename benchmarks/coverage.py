@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
 
@@ -17,11 +18,13 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
+from beamdyn.operators import tension
 from benchmarks.beam_core import Row, show
 from tests.reference.of_scene import exact, relative_errors
 
 _MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))  # Young's modulus [Pa], density [kg/m3]
 _BOUND, _OVER = 0.999, 30.0
+_MOST_TENSION = 1e5
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,10 @@ class Case:
 
 
 def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A scene and a speed: slenderness 20...2000, gamma <= 50, |delta| <= 10, to 0.999 critical."""
+    """A scene and a speed: slenderness 20...2000, gamma <= 50, |delta| <= 10, to 0.999 critical.
+
+    The tension is at most 1e5 EI / L^2 anywhere: past it the series of the reference takes minutes.
+    """
     beam = random_beam(rng)
     mount = bd.Mount(
         radius=beam.length * rng.choice([0.0, rng.uniform(0, 10), 10 ** rng.uniform(-2, 1)]),
@@ -44,7 +50,17 @@ def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     )
     scene = bd.Scene(beam, mount)
     share = rng.choice([rng.uniform(0, 0.999), 1 - 10 ** rng.uniform(-3, 0)])
-    return scene, float(min(rng.uniform(0, 50) / time_unit(beam), share * bd.critical_speed(scene)))
+    fastest = _MOST_TENSION / largest_tension(scene)
+    limits = rng.uniform(0, 50) / time_unit(beam), share * bd.critical_speed(scene), np.sqrt(fastest)
+    return scene, float(min(limits))
+
+
+def largest_tension(scene: bd.Scene) -> float:
+    """Largest tension over EI / L^2 at unit speed [s^2]."""
+    beam, mount, xi = scene.beam, scene.mount, np.linspace(0, 1, 101)
+    n_a, n_b = tension(beam)
+    force = n_b(xi) - np.cos(mount.setting_angle) * mount.radius * n_a(xi)
+    return float(np.abs(force / beam.bending_stiffness(xi)).max()) * beam.length**2
 
 
 def random_beam(rng: np.random.Generator) -> bd.Beam:
@@ -54,7 +70,9 @@ def random_beam(rng: np.random.Generator) -> bd.Beam:
     width = thickness * 10 ** rng.uniform(0.7, 1.5)
     modulus, density = _MATERIALS[rng.integers(len(_MATERIALS))]
     tapers = rng.uniform(0, 0.8, 2) * rng.integers(0, 2)
-    sides = [Polynomial([side, -taper * side]) for side, taper in zip((width, thickness), tapers, strict=True)]
+    sides = [
+        Polynomial([side, -taper * side]) for side, taper in zip((width, thickness), tapers, strict=True)
+    ]
     mass = density * length * width * thickness
     return bd.Beam.rectangular(length, *sides, modulus, density, tip=random_tip(rng, mass, length))
 
@@ -74,7 +92,7 @@ def time_unit(beam: bd.Beam) -> float:
     return float(beam.length**2 * np.sqrt(beam.mass_per_length(root) / beam.bending_stiffness(root))[0])
 
 
-def measured(number: int, seed: int = 4) -> Case:
+def measured(number: int, seed: int) -> Case:
     """One case, told by its number."""
     scene, speed = random_scene(np.random.default_rng([seed, number]))
     try:
@@ -101,18 +119,19 @@ def coverage(cases: Sequence[Case]) -> Iterator[Row]:
         yield f"not covered: scene {case.number}", f"{max(case.true):.1e} > {max(case.stated):.1e}", ""
 
 
-def run(scenes: int, workers: int) -> list[Case]:
+def run(scenes: int, workers: int, seed: int) -> list[Case]:
     """Measure the cases 0 ... scenes - 1."""
     with ProcessPoolExecutor(workers) as pool:
-        return list(pool.map(measured, range(scenes), chunksize=8))
+        return list(pool.map(partial(measured, seed=seed), range(scenes), chunksize=8))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=10_000)
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=5, help="4 was used to fit the estimate of rounding")
     options = parser.parse_args()
-    cases = run(options.scenes, options.workers)
+    cases = run(options.scenes, options.workers, options.seed)
     show("stated errors of frequencies", lambda: coverage(cases))
 
 

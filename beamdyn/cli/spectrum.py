@@ -25,6 +25,7 @@ def modes(
     speed: Text | None = None,
     modes: int = 3,
     method: Method = "ritz",
+    tolerance: float | None = None,
     shapes: Path | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -40,6 +41,8 @@ def modes(
         How many modes.
     method
         Assumed modes or finite elements: each checks the other.
+    tolerance
+        Relative error that is allowed: the cheapest model that keeps it is chosen.
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
     outputs
@@ -50,7 +53,7 @@ def modes(
 
     outputs.check(shapes=shapes)
     loaded = load_scene(scene)
-    found = natural_modes(loaded, asked_speed(loaded, speed), modes, method)
+    found = natural_modes(loaded, asked_speed(loaded, speed), modes, method, tolerance)
     console().print(modes_table(found))
     write(found, outputs, _modes_csv(found), found.plot)
     if shapes is not None:
@@ -67,6 +70,7 @@ def locus(
     speeds: Text,
     modes: int = 3,
     method: Method = "ritz",
+    tolerance: float | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Natural frequencies over speed, each mode followed through crossings.
@@ -81,6 +85,8 @@ def locus(
         How many modes.
     method
         Assumed modes or finite elements: each checks the other.
+    tolerance
+        Relative error that is allowed: the cheapest model that keeps it is chosen.
     outputs
         Files to write.
     """
@@ -89,7 +95,7 @@ def locus(
 
     outputs.check()
     asked = parse_speeds(speeds)
-    found = frequency_locus(load_scene(scene), asked, modes, method)
+    found = frequency_locus(load_scene(scene), asked, modes, method, tolerance)
     console().print(locus_table(found))
     write(found, outputs, _locus_csv(found), partial(_draw_locus, found))
     warn(found.warnings)
@@ -163,6 +169,32 @@ def limits(
         raise NoAnswer(found.warnings[0])
     console().print(limits_table(found))
     warn(found.warnings)
+
+
+@app.command
+def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False) -> None:
+    """Terms of the equations of motion: which are in the scene, and why.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    json
+        Write the list into this file.
+    force
+        Overwrite a file that exists.
+    """
+    from beamdyn import load_scene
+    from beamdyn.inventory import terms
+    from beamdyn.report import console, table
+
+    outputs = Outputs(json=json, force=force)
+    outputs.check()
+    found = terms(load_scene(scene))
+    heads = ("", "term", "symbol", "largest", "reason")
+    console().print(table("Terms of the equations of motion", heads, found.rows(), (0, 1, 2, 4)))
+    console().print(found.excited())
+    write(found, outputs)
 
 
 def _draw_locus(found: Locus, ax: Axes) -> None:

@@ -17,7 +17,10 @@ def exact(scene: bd.Scene, speed: float, count: int = 3) -> list[mpc]:
     """The lowest s of exp(s t) [1/s] of a beam without breakpoints, stretch and damping."""
     with mp.workdps(_DIGITS):
         beam, mount = scene.beam, scene.mount
-        L, mass, stiffness = mpf(beam.length), *map(_monomials, (beam.mass_per_length, beam.bending_stiffness))
+        L, mass, stiffness = (
+            mpf(beam.length),
+            *map(_monomials, (beam.mass_per_length, beam.bending_stiffness)),
+        )
         tau = mp.sqrt(mass[0] * L**4 / stiffness[0])
         squares = bending_eigenvalues(
             gamma=mpf(speed) * tau,

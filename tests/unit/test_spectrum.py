@@ -90,6 +90,69 @@ def test_shapes_are_mass_normalised() -> None:
     np.testing.assert_allclose(modes.shape([0.05])[:, 0], modes.tip, rtol=1e-12)
 
 
+EXACT = bd.natural_modes(HARVESTER, 100.0, method=bd.Ritz(40)).frequency
+
+
+@pytest.mark.parametrize("method", ["ritz", "fem"])
+@pytest.mark.parametrize("tolerance", [0.1, 1e-2, 1e-4, 1e-6])
+def test_tolerance_is_kept(tolerance: float, method: str) -> None:
+    modes = bd.natural_modes(HARVESTER, 100.0, method=method, tolerance=tolerance)
+    assert (np.abs(modes.frequency / EXACT - 1) <= modes.error).all()
+    assert modes.error.max() <= tolerance and not modes.warnings
+
+
+def test_a_looser_tolerance_is_cheaper() -> None:
+    sizes = [
+        bd.natural_modes(HARVESTER, 100.0, tolerance=tolerance).model.solver.size
+        for tolerance in (0.1, 1e-3, 1e-6, 1e-11)
+    ]
+    assert sizes == sorted(sizes) and sizes[0] < 0.7 * sizes[-1]
+
+
+def test_provenance_says_what_was_chosen_and_compared() -> None:
+    found = bd.natural_modes(HARVESTER, 100.0, tolerance=1e-3).provenance
+    assert "Ritz(functions=9" in found.method and "Ritz(functions=7" in found.compared_with
+
+
+@pytest.mark.parametrize(
+    "method, tolerance", [("ritz", 1e-14), ("fem", 1e-9), (bd.Ritz(6), 1e-6), (bd.Fem(8), 1e-6)]
+)
+def test_a_tolerance_that_is_not_reached_is_told(method, tolerance: float) -> None:
+    modes = bd.natural_modes(HARVESTER, 100.0, 5 if method == "ritz" else 3, method, tolerance)
+    assert modes.error.max() > tolerance and "is not reached" in modes.warnings[0]
+
+
+def test_many_modes_of_a_beam_of_many_segments() -> None:
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, breakpoints=np.linspace(0, 1, 11)[1:-1])
+    found = bd.natural_modes(bd.Scene(beam), 0.0, 12)
+    assert found.error.max() < 1e-9 and found.frequency[0] * 2 * np.pi == pytest.approx(3.5160152685)
+
+
+def test_tolerance_holds_at_every_speed_of_a_locus() -> None:
+    speeds = np.linspace(-150, 150, 31)
+    locus = bd.frequency_locus(HARVESTER, speeds, tolerance=1e-4)
+    exact = bd.frequency_locus(HARVESTER, speeds, method=bd.Ritz(40))
+    assert (np.abs(locus.frequency / exact.frequency - 1) <= locus.error).all()
+    assert locus.error.max() <= 1e-4 and not locus.warnings
+
+
+def test_tolerance_of_the_critical_speed() -> None:
+    rough, exact = (bd.critical_point(HARVESTER, tolerance=tol) for tol in (1e-3, None))
+    assert abs(rough.speed / exact.speed - 1) <= rough.error <= 1e-3 and not rough.warnings
+    assert bd.critical_speed(HARVESTER, tolerance=1e-3) == rough.speed
+    with pytest.warns(UserWarning, match="is not reached"):
+        bd.critical_speed(HARVESTER, bd.Ritz(4), tolerance=1e-9)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1e-3, 0.5, 1e-15, math.nan, "small"])
+def test_tolerance_out_of_range(tolerance) -> None:
+    for analysis in (bd.natural_modes, bd.critical_point):
+        with pytest.raises(ValueError, match="tolerance"):
+            analysis(HARVESTER, tolerance=tolerance)
+    with pytest.raises(ValueError, match="tolerance"):
+        bd.frequency_locus(HARVESTER, [0.0, 1.0], tolerance=tolerance)
+
+
 @pytest.mark.parametrize(
     "call, words",
     [

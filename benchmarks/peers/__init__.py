@@ -1,0 +1,1 @@
+"""Other programs on the same cases: accuracy and time.  Run: python -m benchmarks.peers"""

@@ -1,0 +1,42 @@
+"""Run all that is installed, print the tables, write docs/peers.md and docs/peers.png."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from benchmarks.peers import calculix, exudyn, ours, pybmodes, stock, tables
+from benchmarks.peers.measure import Point
+
+PEERS: tuple[tables.Peer, ...] = (calculix, pybmodes, exudyn, stock)
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def measured() -> list[Point]:
+    """Ours, then every program that is installed."""
+    points = list(ours.points())
+    for peer in PEERS:
+        if peer.version() is not None:
+            points += peer.points()
+    return points
+
+
+def main() -> None:
+    points, console = measured(), Console(width=140)
+    for head, body in (
+        (tables.HEAD, tables.rows(points, PEERS)),
+        (tables.TARGET_HEAD, tables.target_rows(points, PEERS)),
+    ):
+        table = Table(*head)
+        for row in body:
+            table.add_row(*map(escape, row))
+        console.print(table)
+    (DOCS / "peers.md").write_text(tables.markdown(points, ours, PEERS), encoding="utf-8")
+    tables.picture(points, DOCS / "peers.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,123 @@
+"""CalculiX: the inward harvester in solid elements.
+
+A static step under the centrifugal load, then a frequency step as a perturbation of it, which takes up
+the stress and the softening by rotation.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from benchmarks.peers import measure
+from benchmarks.peers.measure import Point, given, shortest
+
+NAME = "CalculiX"
+BETTER = "solid elements: bodies of any shape, shear, torsion, all directions at once, plasticity, contact"
+TARGET = ("40 elements, nonlinear static step", 3000.0)
+SETTINGS = ((40, True), (20, False), (10, False), (5, False), (3, False))  # elements, nonlinear static step
+# Nodes of a C3D20R element in steps of half an element along x, y, z, in the order of the manual.
+CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
+MIDDLES = (
+    *((1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2)),
+    *((1, 2, 2), (0, 1, 2), (0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)),
+)
+DECK = """*NODE
+{nodes}
+*ELEMENT, TYPE=C3D20R, ELSET=BEAM
+{elements}
+*NSET, NSET=ROOT
+{root}
+*BOUNDARY
+ROOT, 1, 3
+*MATERIAL, NAME=STEEL
+*ELASTIC
+{youngs_modulus:g}, 0
+*DENSITY
+{density:g}
+*SOLID SECTION, ELSET=BEAM, MATERIAL=STEEL
+*STEP{nonlinear}
+*STATIC
+*DLOAD
+BEAM, CENTRIF, {speed_squared:.12g}, {radius:.12g}, 0, 0, 0, 0, 1
+*END STEP
+*STEP, PERTURBATION
+*FREQUENCY
+1
+*END STEP
+"""
+
+
+def version() -> str | None:
+    if shutil.which("ccx") is None:
+        return None
+    shown = subprocess.run(["ccx", "-v"], capture_output=True, text=True).stdout
+    found = re.search(r"Version\s+(\S+)", shown)
+    return found[1] if found else "unknown"
+
+
+def points() -> Iterator[Point]:
+    """Time of a run, start of the process included, writing of the input not."""
+    exact = measure.harvester_frequencies()
+    for elements, nonlinear in SETTINGS:
+        solved = {speed: solve(deck(elements, speed, nonlinear)) for speed in exact}
+        time = sum(time for time, _ in solved.values()) / len(solved)
+        error = measure.largest_error({speed: found for speed, (_, found) in solved.items()}, exact)
+        yield Point(measure.HARVESTER, NAME, setting(elements, nonlinear), time, error)
+
+
+def setting(elements: int, nonlinear: bool) -> str:
+    return f"{elements} elements, {'nonlinear' if nonlinear else 'linear'} static step"
+
+
+def solve(text: str) -> tuple[float, float]:
+    """Shortest of several runs [s], and the first frequency [Hz]."""
+    with TemporaryDirectory() as folder:
+        Path(folder, "beam.inp").write_text(text)
+        command = ["ccx", "-i", "beam"]
+        time, _ = shortest(lambda: subprocess.run(command, cwd=folder, capture_output=True))
+        return time, first_frequency(Path(folder, "beam.dat").read_text())
+
+
+def first_frequency(text: str) -> float:
+    """First frequency of a .dat file [Hz]: mode, eigenvalue, rad/time, cycles/time, imaginary part."""
+    found = re.search(r"E I G E N V A L U E   O U T P U T.*?^\s+1\s+\S+\s+\S+\s+(\S+)", text, re.S | re.M)
+    if found is None:
+        raise ValueError("the .dat file has no frequency: the static step did not converge")
+    return float(found[1])
+
+
+def deck(elements: int, speed: float, nonlinear: bool) -> str:
+    """Input file: x along the beam from the root to the axis, y across the thickness, turning about z."""
+    data, mesh = given(), nodes(elements)
+    number = {place: n for n, place in enumerate(mesh, 1)}
+    return DECK.format(
+        nodes="\n".join(f"{number[p]}, {x:.12g}, {y:.12g}, {z:.12g}" for p, (x, y, z) in mesh.items()),
+        elements="\n".join(element(e, number) for e in range(elements)),
+        root="\n".join(f"{number[p]}," for p in mesh if p[0] == 0),
+        nonlinear=", NLGEOM" if nonlinear else "",
+        speed_squared=speed**2,
+        **{name: data[name] for name in ("youngs_modulus", "density", "radius")},
+    )
+
+
+def nodes(elements: int) -> dict[tuple[int, int, int], tuple[float, float, float]]:
+    """Coordinates [m] by place in steps of half an element: corners, and middles of edges."""
+    data = given()
+    step = data["length"] / (2 * elements), data["thickness"] / 2, data["width"] / 2
+    places = ((i, j, k) for i in range(2 * elements + 1) for j in range(3) for k in range(3))
+    return {
+        (i, j, k): (i * step[0], (j - 1) * step[1], (k - 1) * step[2])
+        for i, j, k in places
+        if i % 2 + j % 2 + k % 2 <= 1
+    }
+
+
+def element(index: int, number: dict[tuple[int, int, int], int]) -> str:
+    """An element's line, which the format wants in two."""
+    own = [str(number[2 * index + i, j, k]) for i, j, k in (*CORNERS, *MIDDLES)]
+    return f"{index + 1}, {', '.join(own[:10])},\n{', '.join(own[10:])}"

@@ -1,0 +1,228 @@
+"""Exudyn: Table 3's transient with plane ANCF cables.
+
+The carrier's centre is fixed and its acceleration acts as a load on the mass, which is the same motion
+and keeps coordinates small.  Prescribed motion is given as Exudyn's symbolic functions, which run in C++:
+twice as fast as functions of Python.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from importlib import metadata
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from benchmarks.peers import measure
+from benchmarks.peers.measure import Point, given, peak
+from benchmarks.peers.ours import largest_deflection
+
+NAME = "Exudyn"
+BETTER = "large deflections, motion past buckling, many bodies with joints and contact, any control"
+SPEED, DURATION = 55.0, 10.0  # rad/s, s: the spin-up
+RUNS = 2
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Number of cables, step [s], axial stiffness over that of the beam.
+
+    A soft axis lets Newton's iterations converge at once, at strains of about 1e-3.
+    """
+
+    cables: int
+    step: float
+    softening: float = 1.0
+
+    def __str__(self) -> str:
+        soft = "" if self.softening == 1 else f", axial stiffness x {self.softening:g}"
+        return f"{self.cables} cables, step {1e3 * self.step:g} ms{soft}"
+
+
+SETTINGS = (
+    Setting(8, 5e-4),
+    Setting(8, 5e-4, 1e-3),
+    Setting(2, 5e-4, 1e-3),
+    Setting(4, 2.5e-4, 1e-3),
+    Setting(4, 1e-4, 1e-3),
+    Setting(8, 1e-4),
+)
+TARGET = (str(SETTINGS[0]), 150.0)
+
+
+def version() -> str | None:
+    try:
+        return metadata.version("exudyn")
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def points() -> Iterator[Point]:
+    """Time of the solver alone: the model is made before, the deflection taken from the positions after."""
+    for setting in SETTINGS:
+        found = [run(setting) for _ in range(RUNS)]
+        error = abs(peak(*found[-1][1:]) / largest_deflection() - 1)
+        yield Point(measure.ROLLING, NAME, str(setting), min(time for time, *_ in found), error)
+
+
+def run(setting: Setting) -> tuple[float, np.ndarray, np.ndarray]:
+    """Time [s], and the tip deflection over time [s], [m]."""
+    import exudyn
+
+    exudyn.config.printToConsole = False
+    system, sensor, _alive = model(setting)
+    system.Assemble()
+    settings = solver(exudyn, setting)
+    start = perf_counter()
+    system.SolveDynamic(settings, showHints=False)
+    time = perf_counter() - start
+    t, x, y, _ = np.array(system.GetSensorStoredData(sensor)).T
+    return time, t, deflection(t, x, y)
+
+
+def solver(exudyn: Any, setting: Setting) -> Any:
+    """Generalised alpha with the default damping: without damping it is unstable here."""
+    settings = exudyn.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = setting.step
+    settings.linearSolver.solverType = exudyn.LinearSolverType.EXUdense
+    integration = settings.timeIntegration
+    integration.endTime = measure.T_END
+    integration.numberOfSteps = round(measure.T_END / setting.step)
+    integration.newton.absoluteTolerance = 1e-7  # N: below 1e-4 of the loads; rounding ends at 5e-9
+    integration.newton.relativeTolerance = 1e-6
+    integration.newton.useModifiedNewton = setting.softening < 1  # fails at the full axial stiffness
+    return settings
+
+
+# Motion: angle, speed and acceleration of the carrier, with the functions of numpy or of exudyn.symbolic ----
+
+
+def angle(m: Any, t: Any) -> Any:
+    x = t / DURATION
+    spin_up = SPEED * DURATION * (x * x / 2 + (m.cos(2 * math.pi * x) - 1) / (4 * math.pi**2))
+    return m.IfThenElse(t < DURATION, spin_up, SPEED * DURATION / 2 + SPEED * (t - DURATION))
+
+
+def speed(m: Any, t: Any) -> Any:
+    x = t / DURATION
+    spin_up = SPEED * (x - m.sin(2 * math.pi * x) / (2 * math.pi))
+    return m.IfThenElse(t < DURATION, spin_up, SPEED + 0 * t)
+
+
+def acceleration(m: Any, t: Any) -> Any:
+    spin_up = SPEED / DURATION * (1 - m.cos(2 * math.pi * t / DURATION))
+    return m.IfThenElse(t < DURATION, spin_up, 0 * t)
+
+
+def root(m: Any, t: Any) -> list[Any]:
+    """Displacements x, y [m] of the root and changes of its slope; the carrier turns about -z."""
+    r, c, s = given()["radius"], m.cos(angle(m, t)), m.sin(angle(m, t))
+    return [r * (1 - c), r * s, c - 1, -1 * s]
+
+
+def load(m: Any, t: Any) -> list[Any]:
+    """Minus the acceleration of the centre [m/s2]: it rolls along x and follows the road along y."""
+    data = given()
+    k = 2 * math.pi * data["rolling_radius"] / data["road_wavelength"]
+    road = data["road_velocity_amplitude"] * k * speed(m, t) * m.cos(k * angle(m, t))
+    return [-1 * data["rolling_radius"] * acceleration(m, t), -1 * road, 0 * t]
+
+
+def deflection(t: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Tip deflection across the beam's axis [m] by the position of the tip."""
+    turned = angle(Numpy, t)
+    return x * np.sin(turned) + y * np.cos(turned)
+
+
+class Numpy:
+    """The functions of the motion for arrays."""
+
+    sin, cos, IfThenElse = np.sin, np.cos, np.where
+
+
+# Model --------------------------------------------------------------------------------------------
+
+
+def model(setting: Setting) -> tuple[Any, int, list[Any]]:
+    """The system, the sensor of the tip's position, and what must stay alive while the system is used."""
+    import exudyn
+    from exudyn.beams import GenerateBeamElementsAlongLine
+    from exudyn.itemInterface import SensorNode
+
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    start = -given()["radius"]
+    end = start + given()["length"]
+    parts = GenerateBeamElementsAlongLine(
+        system, [start, 0, 0], [end, 0, 0], setting.cables, cable(setting.softening)
+    )
+    alive = [container, *clamp(system, parts["nodes"][0]), *loads(system, parts["elements"])]
+    position = exudyn.OutputVariableType.Position
+    tip = SensorNode(
+        nodeNumber=parts["nodes"][-1], storeInternal=True, writeToFile=False, outputVariableType=position
+    )
+    return system, system.AddSensor(tip), alive
+
+
+def cable(softening: float) -> Any:
+    from exudyn.itemInterface import Cable2D
+
+    data = given()
+    area = data["width"] * data["thickness"]
+    return Cable2D(
+        physicsMassPerLength=data["density"] * area,
+        physicsBendingStiffness=data["youngs_modulus"] * area * data["thickness"] ** 2 / 12,
+        physicsAxialStiffness=data["youngs_modulus"] * area * softening,
+    )
+
+
+def clamp(system: Any, node: int) -> Iterator[Any]:
+    """Prescribe the four coordinates of the root."""
+    from exudyn.itemInterface import CoordinateConstraint, MarkerNodeCoordinate, NodePointGround
+
+    ground = system.AddNode(NodePointGround())
+    fixed = system.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+    for k in range(4):
+        moved = system.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
+        constraint = system.AddObject(CoordinateConstraint(markerNumbers=[fixed, moved]))
+        name = "offsetUserFunction"
+        function = symbolic(system, offset(k), name, itemIndex=constraint)
+        system.SetObjectParameter(constraint, name, function)
+        yield function
+
+
+def offset(k: int) -> Callable[..., Any]:
+    """Exudyn's form of the motion of a coordinate of the root."""
+    import exudyn
+
+    def function(mbs, t, itemNumber, lOffset):
+        return root(exudyn.symbolic, t)[k]
+
+    return function
+
+
+def loads(system: Any, elements: list[int]) -> Iterator[Any]:
+    """Load every cable by minus the acceleration of the centre."""
+    import exudyn
+    from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass
+
+    def function(mbs, t, loadVector):
+        return load(exudyn.symbolic, t)
+
+    for item in elements:
+        marker = system.AddMarker(MarkerBodyMass(bodyNumber=item))
+        number = system.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=[0, 0, 0]))
+        name = "loadVectorUserFunction"
+        written = symbolic(system, function, name, itemTypeName="LoadMassProportional")
+        system.SetLoadParameter(number, name, written)
+        yield written
+
+
+def symbolic(system: Any, function: Callable[..., Any], name: str, **item: Any) -> Any:
+    from exudyn.advancedUtilities import CreateSymbolicUserFunction
+
+    return CreateSymbolicUserFunction(system, function, name, **item)

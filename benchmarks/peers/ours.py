@@ -1,0 +1,75 @@
+"""beamdyn on the same cases."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import lru_cache
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.peers import measure
+from benchmarks.peers.measure import ALONE, DEFAULT, OURS, Point, best_threads
+from tests.scenes import HARVESTER, ROLLING
+
+SIZES = (4, 5, 6, 8)
+BLADE_SCENE = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi, math.pi / 2))
+TRANSIENTS = ((3, 1e-1), (3, 1e-3), (5, 1e-2), (5, 1e-5))  # modes, tolerance
+
+
+def version() -> str:
+    return bd.__version__
+
+
+def points() -> Iterator[Point]:
+    yield from frequencies(measure.HARVESTER, HARVESTER, measure.harvester_frequencies(), 1001)
+    exact = {speed: f / (2 * math.pi) for speed, f in measure.blade_frequencies().items()}
+    yield from frequencies(measure.BLADE, BLADE_SCENE, exact, 1201)
+    for modes, tolerance in TRANSIENTS:
+        yield transient(modes, tolerance)
+
+
+def frequencies(case: str, scene: bd.Scene, exact: dict[float, float], count: int) -> Iterator[Point]:
+    """A locus up to the largest speed of those whose frequency is known, and these by themselves."""
+    speeds = np.linspace(0, max(exact), count)
+    for method in ("ritz", *map(bd.Ritz, SIZES)):
+        yield locus(case, scene, speeds, exact, method)
+    for method in ("ritz", *map(bd.Ritz, SIZES)):
+        yield alone(case, scene, exact, method)
+
+
+def locus(
+    case: str, scene: bd.Scene, speeds: np.ndarray, exact: dict[float, float], method: str | bd.Ritz
+) -> Point:
+    """Time per speed of a locus."""
+    time, found = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, method))
+    rows = [int(np.abs(speeds - speed).argmin()) for speed in exact]
+    error = measure.largest_error(dict(zip(exact, found.frequency[rows, 0], strict=True)), exact)
+    return Point(case, OURS, f"locus of {len(speeds)} speeds, {name(method)}", time / len(speeds), error)
+
+
+def alone(case: str, scene: bd.Scene, exact: dict[float, float], method: str | bd.Ritz) -> Point:
+    """Time of one speed by itself."""
+    time, found = best_threads(lambda: [bd.natural_modes(scene, speed, 1, method) for speed in exact])
+    error = measure.largest_error({m.speed: m.frequency[0] for m in found}, exact)
+    return Point(case, OURS, f"{ALONE}, {name(method)}", time / len(exact), error)
+
+
+def name(method: str | bd.Ritz) -> str:
+    return DEFAULT if isinstance(method, str) else f"{method.functions} functions"
+
+
+def transient(modes: int, tolerance: float) -> Point:
+    """Time and error of the largest deflection, found in the time."""
+    time, found = best_threads(
+        lambda: bd.simulate(ROLLING, measure.T_END, modes, tolerance).peak(*measure.WINDOW)
+    )
+    error = abs(found / largest_deflection() - 1)
+    return Point(measure.ROLLING, OURS, f"{modes} modes, tolerance {tolerance:g}", time, error)
+
+
+@lru_cache
+def largest_deflection() -> float:
+    """Largest deflection of the linear model [m]: 12 modes, tolerance 1e-9; 16 elements agree to 1e-6."""
+    return bd.simulate(ROLLING, measure.T_END, 12, 1e-9).peak(*measure.WINDOW)

@@ -1,0 +1,53 @@
+"""scipy's solve_ivp: Table 3's transient in three modes, right-hand side and Jacobian written by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import scipy
+from scipy.integrate import solve_ivp
+
+import beamdyn as bd
+from beamdyn.estimate import Model
+from beamdyn.modal import ModalSystem
+from benchmarks.peers import measure
+from benchmarks.peers.measure import Point, peak, shortest
+from benchmarks.peers.ours import largest_deflection
+from benchmarks.transient import lean
+from tests.scenes import ROLLING
+
+NAME = "solve_ivp"
+BETTER = "any equations, linear or not, given as a function; stops at events"
+TARGET = None
+MODES = 3
+SETTINGS = (("LSODA", 1e-6), ("Radau", 1e-5), ("DOP853", 1e-4))  # method, rtol
+SAMPLES = 50_000  # in the window
+
+
+def version() -> str | None:
+    return f"scipy {scipy.__version__}"
+
+
+def points() -> Iterator[Point]:
+    system, tip = equations()
+    rhs, jacobian = lean(system)
+    t = np.linspace(*measure.WINDOW, SAMPLES)
+    for method, rtol in SETTINGS:
+        extra = {} if method == "DOP853" else {"jac": jacobian}
+        time, solved = shortest(
+            lambda method=method, rtol=rtol, extra=extra: solve_ivp(
+                *(rhs, (0, measure.T_END), np.zeros(2 * MODES), method, t),
+                **(extra | {"rtol": rtol, "atol": 1e-4 * rtol}),
+            ),
+            1,
+        )
+        error = abs(peak(t, tip @ solved.y[:MODES]) / largest_deflection() - 1)
+        yield Point(measure.ROLLING, NAME, f"{method}, rtol {rtol:g}, {MODES} modes", time, error)
+
+
+def equations() -> tuple[ModalSystem, np.ndarray]:
+    """The modal equations, and the tip deflections of the modes."""
+    modal = Model(ROLLING, bd.Ritz(20)).modal(MODES)
+    assert ROLLING.motion is not None
+    return ModalSystem(modal.equations, ROLLING.motion), modal.tip

@@ -1,0 +1,170 @@
+"""The measurements as tables and as a picture."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from collections.abc import Iterator, Sequence
+from datetime import date
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from benchmarks.peers.measure import ALONE, CASES, DEFAULT, OURS, Point
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MISSING = "not installed"
+MARKERS = {OURS: "o", "CalculiX": "s", "pyBModes": "^", "Exudyn": "D", "solve_ivp": "X"}
+INTRODUCTION = """# Beside other programs
+
+Written by `python -m benchmarks.peers` on {day} (Python {python}, {machine}), which installs nothing;
+how to install the programs: [benchmarks/peers](../benchmarks/peers/README.md).
+Versions: {versions}.
+
+![Error against time](peers.png)
+"""
+NOTES = """## How it is measured
+
+- All in one run. The shortest of several runs counts; programs of Python run with the default number of
+  BLAS threads and with one, and the faster counts, ours like the others.
+- "beamdyn faster" is the peer's time over the shortest of beamdyn's that has an equal or smaller error in the same
+  case: per speed of a locus of a thousand speeds, and for one speed by itself. Below 1, the peer is faster.
+- Errors are relative to the linear Euler-Bernoulli beam. CalculiX also models shear and rotary inertia of the
+  solid, about 1e-5 here, and writes seven digits; Exudyn's cables deflect without limit of size. Part of what
+  stands as their error is this difference of models. Exudyn's result tends to ours as its step becomes smaller.
+- CalculiX's time is a whole run with the start of its process; pyBModes's a solution for one mode of a model
+  already read; Exudyn's its solver alone; beamdyn's the whole call, with its estimate of the error.
+"""
+
+
+class Peer(Protocol):
+    """A module for a program."""
+
+    NAME: str
+    BETTER: str
+    TARGET: tuple[str, float] | None
+
+    def version(self) -> str | None: ...
+
+    def points(self) -> Iterator[Point]: ...
+
+
+def ratio(point: Point, points: Sequence[Point], alone: bool = False, default: bool = False) -> float:
+    """The peer's time over our shortest with an equal or smaller error; nan if there is none."""
+    ours = [
+        p.time
+        for p in points
+        if (p.case, p.program) == (point.case, OURS)
+        and p.error <= point.error
+        and p.setting.startswith(ALONE) == alone
+        and (p.setting.endswith(DEFAULT) or not default)
+    ]
+    return point.time / min(ours) if ours else math.nan
+
+
+def versions(peers: Sequence[Peer]) -> str:
+    return ", ".join(f"{peer.NAME} {peer.version() or MISSING}" for peer in peers)
+
+
+def rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
+    """Case, program, setting, time, error, how much faster we are; then the programs that are missing."""
+    for case in CASES:
+        shown = case
+        for point in (p for p in points if p.case == case):
+            faster = ("", "") if point.program == OURS else ratios(point, points)
+            yield shown, point.program, point.setting, seconds(point.time), f"{point.error:.1e}", *faster
+            shown = ""
+    for peer in peers:
+        if peer.version() is None:
+            yield "", peer.NAME, MISSING, "", "", "", ""
+
+
+def ratios(point: Point, points: Sequence[Point]) -> tuple[str, str]:
+    return times(ratio(point, points)), times(ratio(point, points, alone=True))
+
+
+def target_rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
+    """How much faster we are at the setting of the target, and over all settings, for each program."""
+    for peer in peers:
+        found = {p.setting: p for p in points if p.program == peer.NAME}
+        if peer.TARGET is not None and found:
+            setting, target = peer.TARGET
+            point, all_ratios = found[setting], [ratio(p, points) for p in found.values()]
+            span = f"{times(min(all_ratios))} to {times(max(all_ratios))}"
+            by_default = times(ratio(point, points, default=True))
+            yield peer.NAME, setting, times(ratio(point, points)), f"{target:.0f}", by_default, span
+
+
+def times(value: float) -> str:
+    """A ratio as text."""
+    return "" if math.isnan(value) else f"{value:.0f}" if value >= 10 else f"{value:.1g}"
+
+
+def seconds(time: float) -> str:
+    for unit, size in (("s", 1.0), ("ms", 1e-3)):
+        if time >= size:
+            return f"{time / size:.3g} {unit}"
+    return f"{time / 1e-6:.3g} µs"
+
+
+HEAD = ("case", "program", "setting", "time", "error", "beamdyn faster by", "one by itself")
+TARGET_HEAD = (
+    "program",
+    "at this setting",
+    "beamdyn faster by",
+    "target",
+    "our default",
+    "over all settings",
+)
+
+
+def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
+    """The page of the documentation."""
+    first = INTRODUCTION.format(
+        day=date.today(),
+        python=platform.python_version(),
+        machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        versions=f"{OURS} {ours.version()}, {versions(peers)}",
+    )
+    better = "\n".join(f"- {peer.NAME}: {peer.BETTER}." for peer in peers)
+    parts = (
+        first,
+        grid(HEAD, rows(points, peers)),
+        grid(TARGET_HEAD, target_rows(points, peers)),
+        f"## Where they are better\n\n{better}\n",
+        NOTES,
+    )
+    return "\n".join(parts)
+
+
+def grid(head: Sequence[str], body: Iterator[tuple[str, ...]]) -> str:
+    lines = [head, ["---"] * len(head), *body]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def picture(points: Sequence[Point], path: Path) -> None:
+    """Error against time, a frame for each case."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(13.0, 4.2), layout="constrained")
+    for ax, case in zip(figure.subplots(1, len(CASES)), CASES, strict=True):
+        frame(ax, case, [p for p in points if p.case == case])
+    figure.savefig(path, dpi=120)
+
+
+def frame(ax: Axes, case: str, points: Sequence[Point]) -> None:
+    """Error against time; hollow where a locus is not used."""
+    for program, alone in dict.fromkeys((p.program, p.setting.startswith(ALONE)) for p in points):
+        own = [p for p in points if (p.program, p.setting.startswith(ALONE)) == (program, alone)]
+        label, fill = (f"{program}, {ALONE}", "none") if alone else (program, None)
+        ax.loglog(
+            *([p.time for p in own], [p.error for p in own], MARKERS[program]), label=label, fillstyle=fill
+        )
+    ax.set(title=case, xlabel="time per speed [s]" if "frequency" in case else "time of the run [s]")
+    ax.title.set_fontsize("medium")
+    ax.set_ylabel("relative error")
+    ax.grid(alpha=0.3)
+    if points:
+        ax.legend()

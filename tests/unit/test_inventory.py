@@ -1,0 +1,115 @@
+"""The list of terms: what is in a scene, and why."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import DONE, main
+from beamdyn.inventory import _MEANING, _all, _complete, _Facts  # pyright: ignore[reportPrivateUsage]
+from tests.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
+
+TIP = bd.TipMass(0.001, inertia=1e-6, axial_inertia=4e-7)
+COUPLED = replace(BLADE_SPIN_UP, stretch=True, damping_ratio=0.01)
+
+
+def turned(setting: float = 0.0, bending: float = 0.0) -> bd.Scene:
+    return replace(HARVESTER, mount=bd.Mount(0.215, setting, bending))
+
+
+SCENES = {
+    "harvester": HARVESTER,
+    "rolling": ROLLING,
+    "at rest": replace(HARVESTER, motion=bd.SteadyRotation(0.0)),
+    "gravity": replace(HARVESTER, gravity=9.81),
+    "outward": turned(math.pi),
+    "tangential": turned(math.pi / 2),
+    "nearly tangential": turned(math.pi / 2 - 1e-12),
+    "oblique": turned(0.3, 0.4),
+    "flapwise": turned(bending=math.pi / 2),
+    "tip body": replace(turned(bending=0.4), beam=replace(HARVESTER.beam, tip=TIP)),
+    "spin-up": BLADE_SPIN_UP,
+    "coupled": COUPLED,
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_reasons_agree_with_what_is_assembled(name: str) -> None:
+    """A term is there if and only if all that it is said to need is there."""
+    facts = _Facts(SCENES[name])
+    for entry in bd.terms(SCENES[name]):
+        assert entry.present == all(c.holds(facts) for c in _MEANING[entry.name][2]), entry
+        assert entry.reason and entry.reason != "its coefficient is zero"
+
+
+def test_every_term_of_the_equations_has_a_meaning() -> None:
+    assert {term.name for term in _all(_complete(HARVESTER))} == set(_MEANING)
+
+
+@pytest.mark.parametrize(
+    "scene, name, words",
+    [
+        (HARVESTER, "root acceleration", "no setting angle, so no static load"),
+        (HARVESTER, "damping", "no damping"),
+        (HARVESTER, "spin of the tip body", "no tip body"),
+        (HARVESTER, "stretch mass", "no stretch"),
+        (HARVESTER, "angular acceleration", "constant speed"),
+        (turned(bending=math.pi / 2), "spin softening", "bending angle is 90 deg"),
+        (turned(math.pi / 2), "tension by root acceleration", "setting angle is 90 deg"),
+        (BLADE_SPIN_UP, "tension by root acceleration", "on the axis"),
+        (SCENES["at rest"], "centrifugal stiffening", "does not turn"),
+    ],
+)
+def test_what_is_left_out(scene: bd.Scene, name: str, words: str) -> None:
+    entry = bd.terms(scene)[name]
+    assert not entry.present and entry.largest == 0 and words in entry.reason
+
+
+def test_translation_makes_the_tension_parametric() -> None:
+    steady, rolling = (bd.terms(s)["tension by root acceleration"] for s in (HARVESTER, ROLLING))
+    assert steady.present and "no parametric tension" in steady.reason
+    assert rolling.present and "translation" in rolling.reason
+
+
+def test_a_setting_angle_brings_a_static_load() -> None:
+    entry = bd.terms(turned(0.3))["root acceleration"]
+    assert entry.present and "rotation" in entry.reason
+    assert entry.largest == pytest.approx(0.215 * math.sin(0.3))
+
+
+def test_largest_coefficients_are_those_of_the_motion() -> None:
+    found = bd.terms(ROLLING)
+    assert found["centrifugal stiffening"].largest == pytest.approx(55.0**2)
+    assert found["angular acceleration"].largest == pytest.approx(11.0, rel=1e-3)  # 2 omega_s / T
+
+
+def test_lines() -> None:
+    heavy = bd.terms(replace(ROLLING, gravity=9.81))
+    assert [line.name for line in heavy.lines] == ["road +", "road -", "gravity"]
+    assert bd.terms(HARVESTER).lines == ()
+
+
+def test_a_motion_of_the_users_own() -> None:
+    motion = bd.UserMotion(lambda t: bd.SteadyRotation(5.0).at(t))
+    assert "angular acceleration" not in bd.terms(replace(HARVESTER, motion=motion)).present
+
+
+def test_table_and_dictionary() -> None:
+    found = bd.terms(COUPLED)
+    assert len(found) == len(list(found)) == 19
+    assert all(entry.name in str(found) for entry in found)
+    assert json.loads(json.dumps(found.to_dict()))["entries"][0]["name"] == "mass"
+    assert np.isfinite([entry.largest for entry in found]).all()
+
+
+def test_command(capsys, tmp_path) -> None:
+    path = tmp_path / "terms.json"
+    assert main(["terms", "examples/rolling_harvester.toml", "--json", str(path)]) == DONE
+    out = capsys.readouterr().out
+    assert "centrifugal stiffening" in out and "road + at 7.28319" in out
+    assert len(json.loads(path.read_text())["entries"]) == 19
