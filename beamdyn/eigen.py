@@ -22,6 +22,7 @@ _BACKWARD = 8 * _EPS  # of the stiffness, relative to the sum of its terms and t
 _FORWARD = 0.5 * _EPS  # of the eigensolution, relative to its largest eigenvalue; a fifth is seen at mode 100
 _SAFE = 0.1  # share of the stiffness at rest that must be left for a solution without a shift
 _DENSE = 64  # largest matrices whose eigenvectors are computed all, in one batched call
+_MANY = 40  # functions from which their number shows in the rounding: measured
 _REAL = 1e-8  # relative growth below which a coupled mode counts as stable: rounding of a double root
 
 
@@ -125,7 +126,8 @@ class Solver:
             left, share = cancelled / np.abs(squared), norm / np.abs(squared)
         size = np.abs(self.basis @ z)
         inertia = (size * (np.abs(self.pencil.M) @ size)).sum(axis=1)  # entry by entry; their sum is 1
-        return _BACKWARD * (left + np.sqrt(share) + 0.375 * share) + _EPS * inertia
+        grown = max(1.0, len(self.growth) / _MANY)  # rounding adds up over the functions
+        return grown * (_BACKWARD * (left + np.sqrt(share) + 0.375 * share) + _EPS * inertia)
 
     # Gyroscopic and damped problems ---------------------------------------------------------------
 

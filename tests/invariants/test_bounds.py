@@ -135,7 +135,7 @@ def test_the_flexibility_is_above_and_close(stiffness: tuple[float, ...]) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1000, 1300))
+@pytest.mark.parametrize("seed", range(1000, 1040))  # benchmarks/bounds.py draws many more
 def test_they_enclose_the_exact_frequencies_of_more_scenes(seed: int) -> None:
     case = draw(np.random.default_rng(seed))
     assert encloses(frequency_bounds(case.scene, case.gamma, 4), case.exact(4)).all()
