@@ -13,7 +13,7 @@ from benchmarks.peers import measure
 from benchmarks.peers.measure import ALONE, DEFAULT, OURS, Point, best_threads
 from tests.scenes import HARVESTER, ROLLING
 
-SIZES = (4, 5, 6, 8)
+TOLERANCES = (None, 1e-7, 1e-4)  # of frequencies
 BLADE_SCENE = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi, math.pi / 2))
 TRANSIENTS = ((3, 1e-1), (3, 1e-3), (5, 1e-2), (5, 1e-5))  # modes, tolerance
 
@@ -33,31 +33,33 @@ def points() -> Iterator[Point]:
 def frequencies(case: str, scene: bd.Scene, exact: dict[float, float], count: int) -> Iterator[Point]:
     """A locus up to the largest speed of those whose frequency is known, and these by themselves."""
     speeds = np.linspace(0, max(exact), count)
-    for method in ("ritz", *map(bd.Ritz, SIZES)):
-        yield locus(case, scene, speeds, exact, method)
-    for method in ("ritz", *map(bd.Ritz, SIZES)):
-        yield alone(case, scene, exact, method)
+    for tolerance in TOLERANCES:
+        yield locus(case, scene, speeds, exact, tolerance)
+    for tolerance in TOLERANCES:
+        yield alone(case, scene, exact, tolerance)
 
 
 def locus(
-    case: str, scene: bd.Scene, speeds: np.ndarray, exact: dict[float, float], method: str | bd.Ritz
+    case: str, scene: bd.Scene, speeds: np.ndarray, exact: dict[float, float], tolerance: float | None
 ) -> Point:
     """Time per speed of a locus."""
-    time, found = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, method))
+    time, found = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, tolerance=tolerance))
     rows = [int(np.abs(speeds - speed).argmin()) for speed in exact]
     error = measure.largest_error(dict(zip(exact, found.frequency[rows, 0], strict=True)), exact)
-    return Point(case, OURS, f"locus of {len(speeds)} speeds, {name(method)}", time / len(speeds), error)
+    return Point(case, OURS, f"locus of {len(speeds)} speeds, {name(tolerance)}", time / len(speeds), error)
 
 
-def alone(case: str, scene: bd.Scene, exact: dict[float, float], method: str | bd.Ritz) -> Point:
+def alone(case: str, scene: bd.Scene, exact: dict[float, float], tolerance: float | None) -> Point:
     """Time of one speed by itself."""
-    time, found = best_threads(lambda: [bd.natural_modes(scene, speed, 1, method) for speed in exact])
+    time, found = best_threads(
+        lambda: [bd.natural_modes(scene, speed, 1, tolerance=tolerance) for speed in exact]
+    )
     error = measure.largest_error({m.speed: m.frequency[0] for m in found}, exact)
-    return Point(case, OURS, f"{ALONE}, {name(method)}", time / len(exact), error)
+    return Point(case, OURS, f"{ALONE}, {name(tolerance)}", time / len(exact), error)
 
 
-def name(method: str | bd.Ritz) -> str:
-    return DEFAULT if isinstance(method, str) else f"{method.functions} functions"
+def name(tolerance: float | None) -> str:
+    return DEFAULT if tolerance is None else f"tolerance {tolerance:g}"
 
 
 def transient(modes: int, tolerance: float) -> Point:

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import meshio
@@ -242,7 +243,10 @@ BAD = {
     "no workers": ((*SWEEP, "--workers", "0"), ("workers = 0", "1 or more")),
     "foreign store": ((*SWEEP, "--store", str(ROOT)), ("store", "something else")),
     "file as store": ((*SWEEP, "--store", SCENE), ("store", "is a file")),
-    "no scheduler": ((*SWEEP, "--scheduler", "nowhere"), ("--scheduler", "nowhere")),
+    "no scheduler": (
+        (*SWEEP, "--scheduler", "nowhere"),
+        ("--scheduler", "nowhere" if find_spec("distributed") else "beamdyn[dask]"),
+    ),
 }
 
 
