@@ -49,12 +49,12 @@ from numpy.polynomial import legendre
 from beamdyn import __version__
 from beamdyn.beam import Beam, TipMass
 from beamdyn.common.checks import count, real
+from beamdyn.common.results import Provenance, Result
 from beamdyn.eigen import Solver
 from beamdyn.equations import SteadyPencil, root_motion
 from beamdyn.motion import MotionSample
 from beamdyn.operators import Space, tension
 from beamdyn.profile import Profile
-from beamdyn.results import Provenance, Result
 from beamdyn.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.scene import Scene
 

@@ -2,55 +2,25 @@
 
 from __future__ import annotations
 
-import difflib
 import math
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from numpy.polynomial import Polynomial
-from pydantic import (
-    BeforeValidator,
-    Discriminator,
-    Field,
-    GetCoreSchemaHandler,
-    Tag,
-    ValidationError,
-    model_validator,
-)
-from pydantic_core import CoreSchema, ErrorDetails, core_schema
+from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
+from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.beam import Beam, TipMass
-from beamdyn.common.inputs import Quantity, Section, describe
-from beamdyn.common.units import quantity, show
+from beamdyn.common.config import ConfigError, CoreSection, parse, read, validated
+from beamdyn.common.inputs import Quantity, Section
+from beamdyn.common.units import quantity
 from beamdyn.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.profile import Table
 from beamdyn.scene import Mount, Scene
 
-
-class ConfigError(ValueError):
-    """A scene that cannot be read.
-
-    Parameters
-    ----------
-    source : str
-        Name of the file, or what stands for it.
-    mistakes : sequence of str
-        One sentence each: the key's path, the value, what is wrong and the remedy.
-    """
-
-    def __init__(self, source: str, mistakes: Sequence[str]) -> None:
-        self.source, self.mistakes = source, tuple(mistakes)
-        one = len(mistakes) == 1
-        head = f"{source}: " if one else f"{source}: {len(mistakes)} mistakes\n  "
-        super().__init__(head + "\n  ".join(mistakes))
-
-    def __reduce__(self) -> tuple[type, tuple[str, tuple[str, ...]]]:
-        return type(self), (self.source, self.mistakes)
+__all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from_dict"]
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
@@ -70,15 +40,7 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     ConfigError
         If there is no such file or it does not describe a scene; the message lists all mistakes.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise ConfigError(str(path), ["there is no such file; check the name and the folder"]) from None
-    except OSError as error:
-        raise ConfigError(str(path), [f"it cannot be read ({error.strerror}); give a TOML file"]) from None
-    except ValueError:  # not UTF-8, or a name that no file can have
-        raise ConfigError(str(path), ["it is not text in UTF-8; give a TOML file"]) from None
-    return parse_scene(text, str(path))
+    return parse_scene(read(path), str(path))
 
 
 def parse_scene(text: str, source: str = "scene") -> Scene:
@@ -96,12 +58,7 @@ def parse_scene(text: str, source: str = "scene") -> Scene:
     ConfigError
         If it does not describe a scene; the message lists all mistakes.
     """
-    try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        remedy = 'a quantity stands in quotes: length = "50 mm"'
-        raise ConfigError(source, [f"not valid TOML: {error}; {remedy}"]) from None
-    return scene_from_dict(data, source)
+    return scene_from_dict(parse(text, source), source)
 
 
 def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -119,11 +76,7 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     ConfigError
         If it does not describe a scene; the message lists all mistakes.
     """
-    try:
-        return SceneInput.model_validate(dict(data)).core
-    except ValidationError as error:
-        mistakes = [_sentence(e) for e in error.errors(include_url=False)]
-        raise ConfigError(source, list(dict.fromkeys(mistakes))) from None
+    return validated(SceneInput, data, source).core
 
 
 # Kinds of values ----------------------------------------------------------------------------------
@@ -194,21 +147,6 @@ def _kind_of_variation(given: Any) -> str | None:
 
 
 # Tables of the file -------------------------------------------------------------------------------
-
-
-class CoreSection(Section):
-    """A table that stands for a core object; what the core refuses is a mistake in the table."""
-
-    @cached_property
-    def core(self) -> Any:
-        """The core object."""
-        raise NotImplementedError
-
-    @model_validator(mode="after")
-    def _core_accepts(self) -> CoreSection:
-        with np.errstate(all="ignore"):  # a warning of numpy would be no answer to a mistyped exponent
-            self.core  # noqa: B018
-        return self
 
 
 class TipInput(CoreSection):
@@ -508,67 +446,3 @@ class SceneInput(CoreSection):
     def core(self) -> Scene:
         """The scene."""
         return Scene(self.beam.core, self.mount.core, self.motion and self.motion.core, **dict(self.model))
-
-
-# Messages -----------------------------------------------------------------------------------------
-
-_WORDS = {
-    "bool_type": "give true or false",
-    "dict_type": "give a table",
-    "list_type": "give a list in brackets",
-    "model_type": "give a table with keys",
-    "too_short": "give at least one value",
-}
-
-
-def _sentence(error: ErrorDetails) -> str:
-    """What is wrong in one place: path, value, remedy."""
-    path, value = _path(error["loc"]), show(error["input"])
-    match error["type"]:
-        case "missing":
-            return f"{path}: missing; {_how_to_give(path)}"
-        case "extra_forbidden":
-            return f"{path}: unknown key; {_nearest(path)}"
-        case "value_error":
-            reason = str(error.get("ctx", {}).get("error"))
-            return f"{path} = {reason}" if reason.startswith(value) else f"{path or 'model'}: {reason}"
-        case "kind":
-            return f"{path}.kind = {show(error['input']['kind'])}: {error['msg']}"
-        case "literal_error":
-            return f"{path} = {value}: give {error.get('ctx', {}).get('expected')}"
-    return f"{path} = {value}: {_WORDS.get(error['type'], error['msg'])}"
-
-
-def _path(loc: tuple[int | str, ...]) -> str:
-    """The place as a TOML path; tags of alternatives, in angle brackets, are no keys."""
-    parts = [f"[{p}]" if isinstance(p, int) else f".{p}" for p in loc if not str(p).startswith("<")]
-    return "".join(parts).removeprefix(".")
-
-
-def _how_to_give(path: str) -> str:
-    inputs = describe(SceneInput)
-    if any(i.path.startswith(f"{path}.") for i in inputs):
-        return f"give a table [{path}]"
-    return next((f"give the {i.help}" for i in inputs if i.path == path), "give as many values as stations")
-
-
-def _nearest(path: str) -> str:
-    """The known key that resembles an unknown one most, or all that are known."""
-    parent, _, key = path.rpartition(".")
-    prefix = parent and f"{parent}."
-    known = [
-        i.path.removeprefix(prefix).partition(".")[0]
-        for i in describe(SceneInput)
-        if i.path.startswith(prefix)
-    ]
-    known = list(dict.fromkeys(known)) or ["polynomial", "stations", "values"]
-    if key in known and (kinds := _kinds_with(parent, key)):
-        return f"it goes with kind = {' or '.join(kinds)}"
-    near = difflib.get_close_matches(key, known, n=1)
-    return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
-
-
-def _kinds_with(table: str, key: str) -> list[str]:
-    """The kinds of a table that has alternatives, in quotes, of those that know a key."""
-    kinds = (i for i in describe(SceneInput) if i.path == f"{table}.kind")
-    return [show(i.choices[0]) for i in kinds if key in i.section.model_fields]

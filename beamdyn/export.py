@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.checks import ascending
+from beamdyn.common.pictures import output_path
 
 if TYPE_CHECKING:
     import meshio
@@ -171,41 +172,6 @@ def animate(
             line.set_ydata(1e3 * row)
             clock.set_text(f"t = {time:.4f} s")
             writer.grab_frame()
-
-
-def output_path(path: str | Path, suffixes: Sequence[str], force: bool = False) -> Path:
-    """A path that may be written, or an error that says why not.
-
-    Parameters
-    ----------
-    path : str or Path
-        File to write.
-    suffixes : sequence of str
-        Suffixes allowed, in lower case, with their dots.
-    force : bool
-        Overwrite a file that exists.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    ValueError
-        If the suffix is none of those allowed.
-    FileExistsError
-        If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
-    """
-    path = Path(path)
-    if path.suffix.lower() not in suffixes:
-        raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}")
-    if path.exists() and not force:
-        raise FileExistsError(f"{path} exists; choose another name, or overwrite it with force")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no directory {path.parent}; create it first")
-    return path
 
 
 def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> meshio.Mesh:

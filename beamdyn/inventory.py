@@ -13,10 +13,10 @@ import numpy as np
 
 from beamdyn import __version__
 from beamdyn.beam import TipMass
+from beamdyn.common.results import Provenance, Result
 from beamdyn.equations import Equations, Load, RootMotion, Term, equations, root_motion
 from beamdyn.motion import Line, Motion, MotionSample, SteadyRotation
 from beamdyn.operators import assemble
-from beamdyn.results import Provenance, Result
 from beamdyn.ritz import Ritz
 from beamdyn.scene import Mount, Scene
 

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from beamdyn.export import output_path
+from beamdyn.common.pictures import COLOURS
+from beamdyn.common.pictures import save_figure as save_figure  # it belongs to them
 
-# Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 _DASHES = ("-", "--", "-.", ":")
 _DENSE = 2000  # samples from which a line over time is drawn thin
 _MANY = 6  # entries from which the legend stands beside the data
-_SUFFIXES = (".png", ".svg", ".pdf")
 _SPEED = "angular speed [rad/s]"
 
 
@@ -297,38 +293,6 @@ def mark_critical(ax: Axes, speed: float) -> Axes:
         ax.axvspan(speed, right, color="0.93", zorder=0)
         ax.set_xlim(left, right)
     return _with_legend(ax)
-
-
-def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> Path:
-    """Write a picture as PNG, SVG or PDF.
-
-    Parameters
-    ----------
-    drawn : Axes or Figure
-        The picture, or axes in it.
-    path : str or Path
-        File to write; its suffix .png, .svg or .pdf chooses the format.
-    force : bool
-        Overwrite a file that exists.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    ValueError
-        If the suffix is unknown.
-    FileExistsError
-        If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
-    """
-    path = output_path(path, _SUFFIXES, force)
-    figure: Any = drawn if isinstance(drawn, Figure) else drawn.figure.figure  # past a subfigure
-    figure.savefig(path, dpi=150, bbox_inches="tight")
-    return path
 
 
 def _over_speed(

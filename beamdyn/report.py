@@ -1,19 +1,16 @@
-"""Reports for people: numbers with the digits they deserve, tables, and comparisons with published values."""
+"""Reports for people: each result as a table, with the digits that its error leaves."""
 
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rich import box
-from rich.console import Console, Group
-from rich.table import Table
+from rich.console import Group
 from rich.text import Text
+
+from beamdyn.common.tables import supported, table
 
 if TYPE_CHECKING:
     from beamdyn.resonance import Crossings
@@ -22,196 +19,6 @@ if TYPE_CHECKING:
     from beamdyn.steady import SteadyResponse
     from beamdyn.sweeps import Sweep
     from beamdyn.transient import Transient
-
-_DIGITS = 10  # most that a table shows
-_PIPE_WIDTH = 120  # of tables that go to a file or another program
-
-
-def console() -> Console:
-    """Where reports are printed: standard output, without markup."""
-    width = None if sys.stdout.isatty() else _PIPE_WIDTH
-    return Console(width=width, markup=False, highlight=False, emoji=False)
-
-
-@contextmanager
-def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar with the remaining time on standard error, if that is a terminal: yields its progress."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    screen = Console(stderr=True)
-    with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
-        task = bar.add_task(what)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
-def supported(value: float, error: float, most: int = _DIGITS) -> str:
-    """A number with the digits that its error leaves: half a unit of the last one is not below the error.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    error : float
-        Its absolute error.
-    most : int
-        Most significant digits.
-
-    Returns
-    -------
-    str
-        "0 ± error" where no digit is sure, "unresolved" where the error is not known.
-    """
-    if not math.isfinite(value):
-        return "none" if math.isnan(value) else str(value)
-    if not math.isfinite(error):
-        return "unresolved"
-    if value == 0 and error == 0:
-        return "0"
-    if 2 * error >= abs(value):
-        return f"0 ± {abs(value) + error:.1g}"
-    lead = math.floor(math.log10(abs(value)))
-    decimals = most - 1 - lead
-    if error > 0:
-        decimals = min(decimals, math.floor(-math.log10(2 * error)))
-    if decimals + lead < 0:
-        return f"0 ± {abs(value) + error:.1g}"
-    return f"{value:.{decimals}f}" if lead > -4 and decimals >= 0 else f"{value:.{decimals + lead}e}"
-
-
-def table(
-    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)
-) -> Group:
-    """A table of text.
-
-    Parameters
-    ----------
-    title : str
-        Above it.
-    columns : sequence of str
-        Headings.
-    rows : iterable of sequences of str
-        Cells; an empty row draws a line.
-    left : sequence of int
-        Columns that are flush left, such as words; numbers are flush right.
-
-    Returns
-    -------
-    rich.console.Group
-        The title and the table.
-    """
-    made = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0))
-    for i, heading in enumerate(columns):
-        made.add_column(heading, justify="left" if i in left else "right", no_wrap=i not in left)
-    for row in rows:
-        if row:
-            made.add_row(*row)
-        else:
-            made.add_section()
-    return Group(Text(title, style="bold"), made)
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """A published value beside ours.
-
-    Parameters
-    ----------
-    what : str
-        What is compared.
-    source : str
-        Who published it.
-    published : float or pair of floats
-        The value, or the ends of the interval in which it is said to lie.
-    ours : float
-        Our value.
-    error : float
-        Its estimated absolute error.
-    decimals : int
-        Decimals printed by the source.
-    reason : str
-        Why the two are known to differ; empty where they should agree.
-    """
-
-    what: str
-    source: str
-    published: float | tuple[float, float]
-    ours: float
-    error: float
-    decimals: int
-    reason: str = ""
-
-    @property
-    def deviation(self) -> float:
-        """Ours less the published value; of an interval, less the nearest of it."""
-        ends = self.published if isinstance(self.published, tuple) else (self.published,) * 2
-        return self.ours - min(max(self.ours, ends[0]), ends[1])
-
-    @property
-    def bound(self) -> float:
-        """Largest deviation of values that agree: the source's rounding and our error."""
-        rounding = 0.0 if isinstance(self.published, tuple) else 0.5 * 10.0**-self.decimals
-        return rounding + self.error
-
-    @property
-    def agrees(self) -> bool:
-        """Whether the deviation is within the bound."""
-        return abs(self.deviation) <= self.bound
-
-    @property
-    def as_expected(self) -> bool:
-        """Whether they agree, or differ for a known reason."""
-        return self.agrees != bool(self.reason)
-
-    @property
-    def verdict(self) -> str:
-        """In words."""
-        if self.agrees:
-            return "agrees" if not self.reason else "agrees, which is unexpected"
-        return f"differs: {self.reason or 'unexpected'}"
-
-    def cells(self) -> list[str]:
-        """Its row of the table."""
-        return [
-            self.what,
-            self.source,
-            self._published(),
-            supported(self.ours, self.error, 12) if self.error else f"{self.ours:.{self.decimals}f}",
-            self._deviation(),
-            self.verdict,
-        ]
-
-    def _published(self) -> str:
-        ends = self.published if isinstance(self.published, tuple) else (self.published,)
-        return " to ".join(f"{end:.{self.decimals}f}" for end in ends)
-
-    def _deviation(self) -> str:
-        if isinstance(self.published, tuple) and self.deviation == 0:
-            return "inside"
-        text = supported(self.deviation, self.error, 2)
-        return text if self.deviation <= 0 or "±" in text else f"+{text}"
-
-
-def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """The table of comparisons, with a line where the first two words of `what` change."""
-    cells: list[list[str]] = []
-    for row in rows:
-        if cells and _topic(cells[-1][0]) != _topic(row.what):
-            cells.append([])
-        cells.append(row.cells())
-    return table(
-        title,
-        ("what", "published by", "published", "ours", "deviation", "verdict"),
-        cells,
-        (0, 1, 5),
-    )
-
-
-def _topic(what: str) -> list[str]:
-    return what.replace(",", "").split()[:2]
-
-
-# Analyses -------------------------------------------------------------------------------------------
 
 _SHOWN = 16  # rows of a locus, apart from those where a mode turns unstable
 

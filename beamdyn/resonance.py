@@ -13,13 +13,13 @@ from scipy.optimize import brentq, minimize_scalar
 
 from beamdyn import __version__
 from beamdyn.common.checks import count, positive
+from beamdyn.common.results import Provenance, Result
 from beamdyn.eigen import Solver
 from beamdyn.equations import Equations
 from beamdyn.estimate import Model, choose, estimated
 from beamdyn.harmonics import reach
 from beamdyn.motion import Line, Motion
 from beamdyn.operators import Discretization
-from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.torus import excited_line, known_steady, torus_system
 from beamdyn.tracking import track

@@ -12,9 +12,9 @@ import numpy as np
 
 from beamdyn import __version__
 from beamdyn.common.checks import ascending, count, real, within
+from beamdyn.common.results import Provenance, Result
 from beamdyn.estimate import TOLERANCES, Estimated, Model, missed, solved
 from beamdyn.operators import Discretization, tension
-from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.tracking import track
 

@@ -13,11 +13,11 @@ from scipy.optimize import brentq
 
 from beamdyn import __version__
 from beamdyn.common.checks import positive, within
+from beamdyn.common.results import Provenance, Result
 from beamdyn.eigen import Solver
 from beamdyn.equations import SteadyPencil
 from beamdyn.estimate import TARGET, TOLERANCES, Model, choose, missed
 from beamdyn.operators import Discretization
-from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION, static_load
 

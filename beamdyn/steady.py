@@ -11,11 +11,11 @@ import numpy as np
 
 from beamdyn import __version__
 from beamdyn.common.checks import ascending, count, positive
+from beamdyn.common.results import Provenance, Result
 from beamdyn.estimate import choose
 from beamdyn.harmonics import Pair, TorusSystem, balance, growth, largest, reach
 from beamdyn.motion import Line, Motion
 from beamdyn.operators import Discretization
-from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
 from beamdyn.torus import excited_line, known_steady, torus_system

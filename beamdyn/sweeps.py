@@ -16,13 +16,13 @@ import scipy
 from beamdyn import __version__
 from beamdyn.batch import histories
 from beamdyn.common.checks import ascending, count, positive, real, within
+from beamdyn.common.results import Provenance, Result
 from beamdyn.common.store import Store, fingerprint
 from beamdyn.common.workers import Workers, one_blas_thread
 from beamdyn.estimate import Model, choose
 from beamdyn.modal import ModalSystem
 from beamdyn.motion import Motion, check_picklable
 from beamdyn.operators import Discretization
-from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
 from beamdyn.stepping import TOLERANCES, Trajectory, largest_deflection

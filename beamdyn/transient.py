@@ -14,13 +14,13 @@ from scipy.integrate import OdeSolver, solve_ivp
 
 from beamdyn import __version__
 from beamdyn.common.checks import ascending, count, positive, real, within
+from beamdyn.common.results import Provenance, Result
 from beamdyn.common.workers import one_blas_thread
 from beamdyn.estimate import ModalEquations, Model, choose
 from beamdyn.integrators import GaussCollocation
 from beamdyn.modal import ModalSystem
 from beamdyn.motion import Motion
 from beamdyn.operators import Discretization
-from beamdyn.results import Provenance, Result
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
 from beamdyn.stepping import SAMPLES, TOLERANCES, Path, integrate, largest_deflection, tip_deflection

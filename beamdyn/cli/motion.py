@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from beamdyn.cli.outputs import NO_FILES, Outputs, write
-from beamdyn.cli.program import Interrupted, NoAnswer, app, warn
+from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import Method, SceneFile, Text, parse_positive, parse_speeds, parse_window
+from beamdyn.common.outputs import NO_FILES, Outputs, write
+from beamdyn.common.program import Interrupted, NoAnswer
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,7 +69,8 @@ def simulate(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.report import console, transient_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import transient_table
     from beamdyn.transient import simulate
 
     outputs.check(series=series, animation=animation)
@@ -110,7 +112,8 @@ def resonances(
         Files to write.
     """
     from beamdyn import load_scene, resonance_speeds
-    from beamdyn.report import console, crossings_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import crossings_table
 
     outputs.check()
     top = parse_positive("--top-speed", top_speed, "rad/s")
@@ -149,7 +152,8 @@ def steady(
         Files to write.
     """
     from beamdyn import load_scene, steady_response
-    from beamdyn.report import console, steady_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import steady_table
 
     outputs.check()
     asked = parse_speeds(speeds)
@@ -199,7 +203,8 @@ def sweep(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.report import console, sweep_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import sweep_table
     from beamdyn.sweeps import sweep
 
     outputs.check()
@@ -277,7 +282,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
     """A bar with the remaining time; where the sweep is interrupted, say what is done."""
-    from beamdyn.report import progress_bar
+    from beamdyn.common.tables import progress_bar
     from beamdyn.sweeps import SweepInterrupted
 
     finished = 0

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from beamdyn.cli.outputs import Flag
-from beamdyn.cli.program import NoAnswer, app
+from beamdyn.cli.program import app
+from beamdyn.common.outputs import Flag
+from beamdyn.common.program import NoAnswer
 
 
 @app.command
@@ -19,7 +20,7 @@ def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False)
     tables
         Compare with the tables of rotating beams of other sources too; takes some ten seconds.
     """
-    from beamdyn.report import console
+    from beamdyn.common.tables import console
     from beamdyn.reproduce import report
 
     if output.exists() and not output.is_dir():

@@ -7,9 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.outputs import NO_FILES, Flag, Outputs, write
-from beamdyn.cli.program import NoAnswer, app, warn
+from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import Method, SceneFile, Text, asked_speed, parse_positive, parse_speeds
+from beamdyn.common.outputs import NO_FILES, Flag, Outputs, write
+from beamdyn.common.program import NoAnswer
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +50,8 @@ def modes(
         Files to write.
     """
     from beamdyn import load_scene, natural_modes
-    from beamdyn.report import console, modes_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import modes_table
 
     outputs.check(shapes=shapes)
     loaded = load_scene(scene)
@@ -91,7 +93,8 @@ def locus(
         Files to write.
     """
     from beamdyn import frequency_locus, load_scene
-    from beamdyn.report import console, locus_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import locus_table
 
     outputs.check()
     asked = parse_speeds(speeds)
@@ -119,7 +122,7 @@ def critical(
         Overwrite a file that exists.
     """
     from beamdyn import critical_point, load_scene
-    from beamdyn.report import console, supported
+    from beamdyn.common.tables import console, supported
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
@@ -158,7 +161,8 @@ def limits(
     from math import isnan
 
     from beamdyn import load_scene, setting_angle_limits
-    from beamdyn.report import console, limits_table
+    from beamdyn.common.tables import console
+    from beamdyn.report import limits_table
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
@@ -185,8 +189,8 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
         Overwrite a file that exists.
     """
     from beamdyn import load_scene
+    from beamdyn.common.tables import console, table
     from beamdyn.inventory import terms
-    from beamdyn.report import console, table
 
     outputs = Outputs(json=json, force=force)
     outputs.check()

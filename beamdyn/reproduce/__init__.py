@@ -8,9 +8,10 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from rich.console import Console
 
-from beamdyn.plots import save_figure
+from beamdyn.common.comparison import Comparison, comparison_table
+from beamdyn.common.pictures import save_figure
+from beamdyn.common.tables import progress_bar
 from beamdyn.published import load
-from beamdyn.report import Comparison, comparison_table, progress_bar
 from beamdyn.reproduce import frequencies, motion, others
 from beamdyn.reproduce.others import Summary
 from beamdyn.sweeps import Sweep

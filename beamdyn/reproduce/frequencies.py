@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from beamdyn.common.comparison import Comparison
 from beamdyn.plots import mark_points, plot_loci_by_angle, plot_locus
 from beamdyn.published import load
-from beamdyn.report import Comparison
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
 from beamdyn.ritz import Ritz
 from beamdyn.scene import Scene

@@ -10,9 +10,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from beamdyn.plots import COLOURS
+from beamdyn.common.comparison import Comparison
+from beamdyn.common.pictures import COLOURS
 from beamdyn.published import load
-from beamdyn.report import Comparison, sweep_peaks
+from beamdyn.report import sweep_peaks
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, rolling_scene
 from beamdyn.resonance import Crossings, resonance_speeds
 from beamdyn.scene import Scene

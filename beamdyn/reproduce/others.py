@@ -11,8 +11,8 @@ from numpy.polynomial import Polynomial
 from rich.console import Group
 
 from beamdyn.beam import Beam, TipMass
+from beamdyn.common.tables import table
 from beamdyn.published import load
-from beamdyn.report import table
 from beamdyn.reproduce.common import decimals
 from beamdyn.scene import Mount, Scene
 from beamdyn.spectrum import natural_modes

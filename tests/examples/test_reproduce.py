@@ -8,8 +8,9 @@ import pytest
 
 from beamdyn import reproduce
 from beamdyn.cli import DONE, NO_ANSWER, main
+from beamdyn.common.comparison import Comparison, comparison_table
+from beamdyn.common.tables import console
 from beamdyn.published import load
-from beamdyn.report import Comparison, comparison_table, console
 from beamdyn.reproduce import frequencies, motion, others
 
 

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from beamdyn.results import Result
+    from beamdyn.common.results import Result
 
 Flag = Annotated[bool, Parameter(negative="")]
 
@@ -68,7 +68,7 @@ def write(
 ) -> None:
     """Write what was asked for; `rows` are those of the CSV file, `draw` makes the picture."""
     if outputs.json is not None:
-        from beamdyn.results import to_json
+        from beamdyn.common.results import to_json
 
         outputs.json.write_text(to_json(found.to_dict()), encoding="utf-8")
     if outputs.csv is not None:
@@ -81,7 +81,7 @@ def write(
 def _save(draw: Callable[[Axes], object], path: Path, force: bool) -> None:
     from matplotlib.figure import Figure
 
-    from beamdyn.plots import save_figure
+    from beamdyn.common.pictures import save_figure
 
     figure = Figure(figsize=(7.5, 4.8), layout="constrained")
     draw(figure.subplots())

@@ -1,0 +1,79 @@
+"""What the commands share: exit codes, and what is said when something is wrong."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Sequence
+
+from cyclopts import App, CycloptsError
+
+DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+EXIT_CODES = (
+    "Exit codes: 0 done; 1 the model has no answer (the message says why and where); "
+    "2 bad input; 130 interrupted."
+)
+
+
+class NoAnswer(Exception):
+    """The model has no answer; the message says which part and where."""
+
+
+class Interrupted(Exception):
+    """Ctrl-C; the message says what is done and how to go on."""
+
+
+def run(app: App, arguments: Sequence[str] | None = None) -> int:
+    """Run a command of a program.
+
+    Parameters
+    ----------
+    app : App
+        The program.
+    arguments : sequence of str, optional
+        As on the command line, without the program's name; those of the process if not given.
+
+    Returns
+    -------
+    int
+        Exit code: 0 done, 1 the model has no answer, 2 bad input, 130 interrupted.
+    """
+    name = app.name[0]
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    try:
+        app(given, exit_on_error=False, print_error=False, result_action="return_value")
+    except (NoAnswer, ArithmeticError) as error:
+        return _complain(name, f"no answer: {error}", NO_ANSWER)
+    except MemoryError as error:
+        return _complain(
+            name, f"not enough memory: {error}; ask for a shorter run or for fewer modes", BAD_INPUT
+        )
+    except Interrupted as error:
+        return _complain(name, f"interrupted: {error}", INTERRUPTED)
+    except KeyboardInterrupt:
+        return _complain(name, "interrupted", INTERRUPTED)
+    except CycloptsError as error:
+        return _complain(name, f"{error} See {name} --help.", BAD_INPUT)
+    except (ValueError, OSError) as error:
+        return _refused(name, error)
+    return DONE
+
+
+def _refused(name: str, error: Exception) -> int:
+    """Tell bad input from a linear system that numpy, by a kind of ValueError, gives up."""
+    from numpy.linalg import LinAlgError
+
+    if isinstance(error, LinAlgError):
+        return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
+    return _complain(name, f"{error}", BAD_INPUT)
+
+
+def _complain(name: str, sentence: str, code: int) -> int:
+    print(f"{name}: {sentence}", file=sys.stderr)
+    return code
+
+
+def warn(name: str, warnings: Iterable[str]) -> None:
+    """Print a program's warnings on standard error."""
+    for warning in warnings:
+        print(f"{name}: warning: {warning}", file=sys.stderr)

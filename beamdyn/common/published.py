@@ -1,0 +1,39 @@
+"""The numbers that papers print, one TOML file a paper, as package data."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib.resources import files
+from typing import Any
+
+
+def load(package: str, name: str) -> dict[str, Any]:
+    """Contents of the file ``<name>.toml`` in a package.
+
+    Parameters
+    ----------
+    package : str
+        The package, e.g. ``"beamdyn.published"``.
+    name : str
+        Of the file, without its ending, e.g. ``"lee_yoo_2019"``.
+
+    Returns
+    -------
+    dict
+        The file's tables; quantities are tables with ``value``, ``unit`` and mostly ``source``.
+
+    Raises
+    ------
+    ValueError
+        If there is no such file; the message lists those there are.
+    """
+    known = available(package)
+    if name not in known:
+        raise ValueError(f"no published data {name!r}; there are {', '.join(known)}")
+    return tomllib.loads(files(package).joinpath(f"{name}.toml").read_text(encoding="utf-8"))
+
+
+def available(package: str) -> list[str]:
+    """Names that `load` accepts, sorted."""
+    names = (file.name for file in files(package).iterdir())
+    return sorted(name.removesuffix(".toml") for name in names if name.endswith(".toml"))
