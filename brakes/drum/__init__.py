@@ -1,0 +1,34 @@
+"""Drum brakes with pivoted long shoes: torque, forces, shoe factor and self-locking.
+
+Axes of a shoe (Vardanyan et al. 2019): the drum's centre O is the origin, the shoe lies on the +x
+side, its pin at (b, -c), the actuating force P acts along +x at y = +a. Angles alpha run from -y
+(towards the pin) through +x: a point of the drum is r (sin alpha, -cos alpha). A shoe on the other
+side is mirrored: give it as if it lay on the +x side; its vectors are in its own axes. The shoe leads
+where the drum's surface moves towards the pin, on the +x side in a drum that turns clockwise.
+"""
+
+from brakes.drum.assembly import (
+    BrakeResult,
+    DrumBrake,
+    brake_torque,
+    duplex,
+    simplex,
+    stop_energy,
+    temperature_rise,
+    wheel_cylinder_force,
+)
+from brakes.drum.shoe import Shoe, ShoeResult, shoe_torque
+
+__all__ = [
+    "BrakeResult",
+    "DrumBrake",
+    "Shoe",
+    "ShoeResult",
+    "brake_torque",
+    "duplex",
+    "shoe_torque",
+    "simplex",
+    "stop_energy",
+    "temperature_rise",
+    "wheel_cylinder_force",
+]

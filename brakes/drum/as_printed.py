@@ -1,0 +1,211 @@
+"""What the paper prints: its Table 1 from its own wrong expressions, and what each error costs.
+
+Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). The errata are described
+in ``brakes/published/vardanyan_2019.toml``; here are their numbers, for the paper's data at its longest
+arc, 80 degrees, unless said. For mechanics that holds use `brakes.drum.shoe_torque`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from brakes.drum.assembly import brake_torque, simplex
+from brakes.drum.shoe import Shoe, shoe_torque
+from brakes.published import load
+
+_MU, _P, _A, _C, _B1, _B2 = 0.35, 1000.0, 0.115, 0.110, 0.020, 0.025  # -, N, m
+_R, _START = 0.138, np.radians(30.0)
+_WIDTH = 0.05  # [m] the paper gives none, and no number here depends on it
+
+
+@dataclass(frozen=True)
+class Table1:
+    """Columns of the paper's Table 1, shape (8,): angles in [rad], rho in [m], torques in [N m]."""
+
+    arc: np.ndarray
+    effective_arm: np.ndarray
+    first_torque: np.ndarray
+    second_torque: np.ndarray
+
+    @property
+    def difference(self) -> float:
+        """Largest difference of the torques, the paper's Delta M [N m]."""
+        return float(np.max(self.second_torque - self.first_torque))
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """An error in the paper and its consequence: the printed expression's value and the right one."""
+
+    name: str
+    where: str
+    printed: str
+    right: str
+    quantity: str
+    unit: str
+    printed_value: float
+    right_value: float
+
+    @property
+    def consequence(self) -> str:
+        """The two numbers in a sentence."""
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.quantity}: {self.printed_value:.5g} in place of {self.right_value:.5g}{unit}"
+
+
+def table_1(arc: np.ndarray | None = None) -> Table1:
+    """Table 1 as printed.
+
+    Parameters
+    ----------
+    arc : ndarray, optional
+        Arcs alpha0 of the lining [rad]; those of the paper, 10 to 80 degrees, unless given.
+
+    Returns
+    -------
+    Table1
+        Columns in SI units.
+    """
+    arc = np.radians(np.arange(10.0, 90.0, 10.0)) if arc is None else np.asarray(arc, dtype=float)
+    rho = table_arm(arc)
+    return Table1(arc, rho, _torque(rho, _B1), _torque(rho, -_B2))
+
+
+def table_arm(arc: np.ndarray | float) -> np.ndarray:
+    """Effective arm [m] behind Table 1; (12) as printed gives 11.9 % less. 0.87 is cos 30 deg, rounded."""
+    return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
+
+
+def printed_arm(arc: np.ndarray | float) -> np.ndarray:
+    """Effective arm [m] by (12) as printed."""
+    span = (np.pi - 2 * _START + np.sin(_START)) / 2
+    return _R * np.cos(_START) * (np.cos(_START) - np.cos(_START + np.asarray(arc))) / span
+
+
+def _torque(rho: np.ndarray | float, b: float) -> np.ndarray:
+    """(15), with b as in the table and not as printed; (16) with -b."""
+    return _MU * _P * (_C + _A) * np.asarray(rho) / (_C + _MU * b - _MU * np.asarray(rho))
+
+
+def errata() -> tuple[Erratum, ...]:
+    """The paper's errors, in its order, each with its consequence computed."""
+    return tuple(
+        Erratum(**known, **_CONSEQUENCES[known["name"]]()) for known in load("vardanyan_2019")["erratum"]
+    )
+
+
+# Consequences ---------------------------------------------------------------------------------------
+
+
+def _shoe(b: float, degrees: float = 80.0) -> Shoe:
+    return Shoe(_R, _WIDTH, (_START, _START + np.radians(degrees)), (b, -_C), _A)
+
+
+def _right(b: float, leading: bool, degrees: float = 80.0) -> float:
+    return float(shoe_torque(_shoe(b, degrees), friction=_MU, force=_P, leading=leading).torque)
+
+
+def _sums(degrees: float = 80.0) -> tuple[float, float, float]:
+    """K, S, C of an arc from alpha1."""
+    a1, a2 = _START, _START + np.radians(degrees)
+    K = np.cos(a1) - np.cos(a2)
+    S = (a2 - a1) / 2 - (np.sin(2 * a2) - np.sin(2 * a1)) / 4
+    return K, S, (np.sin(a2) ** 2 - np.sin(a1) ** 2) / 2
+
+
+def _entry(quantity: str, unit: str, printed: float, right: float) -> dict[str, str | float]:
+    return {"quantity": quantity, "unit": unit, "printed_value": float(printed), "right_value": float(right)}
+
+
+def _projections() -> dict:
+    K, S, _ = _sums()
+    return _entry("x component of the normal force over A pmax", "", K, S)
+
+
+def _mixed_shoes() -> dict:
+    _, S, C = _sums()
+    return _entry("y component of the force on the leading shoe over A pmax", "", C + _MU * S, C - _MU * S)
+
+
+def _missing_half() -> dict:
+    _, _, C = _sums()
+    return _entry("part of N from friction over A pmax", "", 2 * _MU * C, _MU * C)
+
+
+def _quarter() -> dict:
+    _, S, C = _sums()
+    return _entry("T over A pmax, the other terms as printed", "", _MU * S + 2 * C, _MU * S + C)
+
+
+def _double_angle() -> dict:
+    half = np.pi / 2 - _START
+    printed, right = half + np.sin(_START) / 2, half + np.sin(2 * _START) / 2
+    return _entry("N over A pmax on the symmetric arc of 120 deg", "", printed, right)
+
+
+def _ratio() -> dict:
+    _, S, C = _sums()
+    return _entry("T / N of the components of a trailing shoe", "", _MU, (C + _MU * S) / (S - _MU * C))
+
+
+def _effective_arm() -> dict:
+    K, S, C = _sums()
+    right = _R * K / np.hypot(S, C)
+    return _entry("effective arm", "mm", 1e3 * float(printed_arm(np.radians(80.0))), 1e3 * right)
+
+
+def _bound() -> dict:
+    K, S, C = _sums(10.0)
+    printed = table_arm(np.radians(10.0)) / _R
+    return _entry("effective arm over r at 10 deg", "", float(printed), K / np.hypot(S, C))
+
+
+def _trend() -> dict:
+    table = table_1()
+    total = table.first_torque + table.second_torque
+    right = [_right(_B1, True, arc) + _right(_B2, False, arc) for arc in (10.0, 80.0)]
+    return _entry("total torque at 80 deg over that at 10 deg", "", total[-1] / total[0], right[1] / right[0])
+
+
+def _sign() -> dict:
+    rho = table_arm(np.radians(80.0))
+    return _entry("MT1 with the arm of the table", "N m", float(_torque(rho, -_B1)), float(_torque(rho, _B1)))
+
+
+def _second_shoe() -> dict:
+    rho = table_arm(np.radians(80.0))
+    return _entry("torque of the second shoe", "N m", float(_torque(rho, -_B2)), _right(_B2, False))
+
+
+def _sum() -> dict:
+    rho = float(table_arm(np.radians(80.0)))
+    near = _C + _MU * rho
+    printed = 2 * _MU * _P * rho * (_C + _A) * near / (near**2 - (_MU * _B1) ** 2)
+    brake = brake_torque(simplex(_shoe(_B1)), friction=_MU, force=_P)
+    return _entry("total torque for b1 = b2 = 20 mm", "N m", printed, float(brake.torque))
+
+
+def _self_locking() -> dict:
+    rho = float(table_arm(np.radians(80.0)))
+    right = shoe_torque(_shoe(_B1), friction=_MU, force=_P).locking_friction
+    return _entry("friction at self-locking, b = 20 mm", "", -_C / (rho - _B1), float(right))
+
+
+_CONSEQUENCES: dict[str, Callable[[], dict]] = {
+    "projections": _projections,
+    "mixed_shoes": _mixed_shoes,
+    "missing_half": _missing_half,
+    "quarter": _quarter,
+    "double_angle": _double_angle,
+    "ratio": _ratio,
+    "effective_arm": _effective_arm,
+    "bound": _bound,
+    "trend": _trend,
+    "sign": _sign,
+    "second_shoe": _second_shoe,
+    "sum": _sum,
+    "self_locking": _self_locking,
+}

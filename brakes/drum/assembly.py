@@ -1,0 +1,264 @@
+"""Drum brakes of several shoes: simplex (leading and trailing), duplex (all leading), each shoe its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from brakes.arrays import Numbers, not_negative, numbers, positive, refuse, together
+from brakes.drum.shoe import Shoe, ShoeResult, lock_message, only_one, solve
+
+
+@dataclass(frozen=True)
+class DrumBrake:
+    """Shoes of one drum, each pressed by the same force.
+
+    Parameters
+    ----------
+    shoes : tuple of Shoe
+        The shoes, each described as if it lay on the +x side.
+    leading : tuple of bool
+        Which of them lead when the drum turns forward.
+
+    Raises
+    ------
+    ValueError
+        If there is no shoe, the tuples differ in length, or the drum radii differ.
+    """
+
+    shoes: tuple[Shoe, ...]
+    leading: tuple[bool, ...]
+
+    def __post_init__(self) -> None:
+        if not self.shoes or len(self.shoes) != len(self.leading):
+            raise ValueError(
+                f"{len(self.shoes)} shoes and {len(self.leading)} entries of leading: give one entry a shoe, "
+                "at least one shoe"
+            )
+        radii = [shoe.drum_radius for shoe in self.shoes]
+        if any(not np.all(np.asarray(radius) == radii[0]) for radius in radii):
+            raise ValueError("drum_radius differs between the shoes: they share one drum; give one radius")
+
+
+def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
+    """A leading and a trailing shoe; the same shoe twice unless a second is given."""
+    return DrumBrake((leading, trailing or leading), (True, False))
+
+
+def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
+    """Two shoes that lead forward and trail in reverse; the same shoe twice unless a second is given."""
+    return DrumBrake((first, second or first), (True, True))
+
+
+@dataclass(frozen=True)
+class BrakeResult:
+    """Forces in a brake.
+
+    Attributes
+    ----------
+    shoes : tuple of ShoeResult
+        The shoes, in the brake's order.
+    force, torque : ndarray
+        Actuating force on each shoe [N], torque of the brake [N m]; nan where it locks.
+    peak_pressure : ndarray
+        Largest pressure on any lining [Pa].
+    c_star, c_star_slope : ndarray
+        Sum of the shoe factors, torque / (force radius), and its derivative to the friction.
+    locking_friction, margin, locked : ndarray
+        Of the shoe that locks first.
+    """
+
+    brake: DrumBrake
+    reverse: bool
+    shoes: tuple[ShoeResult, ...]
+    friction: Numbers
+    force: Numbers
+    torque: Numbers
+    peak_pressure: Numbers
+    c_star: Numbers
+    c_star_slope: Numbers
+    locking_friction: Numbers
+    margin: Numbers
+    locked: Numbers
+
+    @property
+    def status(self) -> Any:
+        """``"slides"`` or ``"locked"``; an array of these for many cases."""
+        return np.where(self.locked, "locked", "slides")[()]
+
+    @property
+    def message(self) -> str:
+        """What the status means, in one sentence."""
+        return lock_message(self.locked, self.friction, self.locking_friction)
+
+
+def brake_torque(
+    brake: DrumBrake,
+    *,
+    friction: Numbers,
+    force: Numbers | None = None,
+    peak_pressure: Numbers | None = None,
+    torque: Numbers | None = None,
+    reverse: bool = False,
+) -> BrakeResult:
+    """Forces in a brake whose shoes are pressed by the same force.
+
+    Parameters
+    ----------
+    brake : DrumBrake
+        The brake.
+    friction : float or ndarray
+        Coefficient of friction.
+    force, peak_pressure, torque : float or ndarray, optional
+        Exactly one of: force on each shoe [N], largest pressure on any lining [Pa], torque [N m].
+    reverse : bool
+        Whether the drum turns backward: leading shoes trail, and trailing shoes lead.
+
+    Returns
+    -------
+    BrakeResult
+        Complete result.
+
+    Raises
+    ------
+    ValueError
+        As for `shoe_torque`.
+    """
+    name, value = only_one({"force": force, "peak_pressure": peak_pressure, "torque": torque})
+    units = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
+    value = positive(name, value, units[name])
+    mu = not_negative("friction", friction)
+    together(friction=mu, **{name: value})
+    unit = _results(brake, mu, 1.0, reverse)
+    if name == "torque":
+        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
+        limit = _least([shoe.locking_friction for shoe in unit])
+        bound = "a shoe locks: no torque can be demanded of the brake"
+        refuse(mu >= limit, "friction", mu, "", bound, "give a force to see which one, or less friction")
+        value = value / sum(shoe.torque for shoe in unit)
+    elif name == "peak_pressure":  # the shoe with the largest pressure for the force sets it
+        value = value / _largest([shoe.peak_pressure for shoe in unit])
+    return _assembled(brake, reverse, mu, _results(brake, mu, value, reverse))
+
+
+def _results(brake: DrumBrake, mu: Numbers, force: Numbers, reverse: bool) -> tuple[ShoeResult, ...]:
+    return tuple(
+        solve(shoe, mu, leading is not reverse, "force", force)
+        for shoe, leading in zip(brake.shoes, brake.leading, strict=True)
+    )
+
+
+def _assembled(brake: DrumBrake, reverse: bool, mu: Numbers, shoes: tuple[ShoeResult, ...]) -> BrakeResult:
+    limit = _least([shoe.locking_friction for shoe in shoes])
+    return BrakeResult(
+        brake=brake,
+        reverse=reverse,
+        shoes=shoes,
+        friction=mu,
+        force=shoes[0].force,
+        torque=sum(shoe.torque for shoe in shoes),
+        peak_pressure=_largest([shoe.peak_pressure for shoe in shoes]),
+        c_star=sum(shoe.c_star for shoe in shoes),
+        c_star_slope=sum(shoe.c_star_slope for shoe in shoes),
+        locking_friction=limit,
+        margin=1 - mu / limit,
+        locked=mu >= limit,
+    )
+
+
+def _least(limits: list[Numbers]) -> Numbers:
+    return np.minimum.reduce(np.broadcast_arrays(*limits))[()]
+
+
+def _largest(values: list[Numbers]) -> Numbers:
+    return np.maximum.reduce(np.broadcast_arrays(*values))[()]
+
+
+def wheel_cylinder_force(bore: Numbers, line_pressure: Numbers) -> Numbers:
+    """Force of a wheel cylinder's piston [N] from its bore [m] and the line pressure [Pa]."""
+    return np.pi / 4 * positive("bore", bore, "m") ** 2 * not_negative("line_pressure", line_pressure, "Pa")
+
+
+def stop_energy(
+    mass: Numbers,
+    speed: Numbers,
+    final_speed: Numbers = 0.0,
+    *,
+    descent: Numbers = 0.0,
+    inertia: Numbers = 0.0,
+    rolling_radius: Numbers | None = None,
+    g: float = 9.806,
+) -> Numbers:
+    """Energy that the brakes take up in a stop [J].
+
+    Parameters
+    ----------
+    mass : float or ndarray
+        Mass of the vehicle [kg].
+    speed, final_speed : float or ndarray
+        Speed before and after [m/s].
+    descent : float or ndarray
+        Height lost during the stop [m]; negative uphill.
+    inertia : float or ndarray
+        Moment of inertia of all that turns with the wheels [kg m2]; needs `rolling_radius` [m].
+    rolling_radius : float or ndarray, optional
+        Radius of the wheels [m].
+    g : float
+        Gravity [m/s2].
+
+    Returns
+    -------
+    float or ndarray
+        Energy [J].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of bounds, the final speed exceeds the first, or the radius is missing.
+    """
+    m, v1, v2 = (
+        positive("mass", mass, "kg"),
+        positive("speed", speed, "m/s"),
+        numbers("final_speed", final_speed),
+    )
+    refuse((np.asarray(v2) < 0) | (v2 >= v1), "final_speed", v2, "m/s", "give 0 or more, below speed")
+    rotating = not_negative("inertia", inertia, "kg m2")
+    if np.any(rotating) and rolling_radius is None:
+        raise ValueError("inertia is given without rolling_radius: give the wheels' radius in m")
+    rolling = 1.0 if rolling_radius is None else positive("rolling_radius", rolling_radius, "m")
+    kinetic = (m + rotating / rolling**2) * (v1**2 - v2**2) / 2
+    return kinetic + m * g * numbers("descent", descent, "m")
+
+
+def temperature_rise(
+    energy: Numbers, drum_mass: Numbers, specific_heat: Numbers = 500.0, share: Numbers = 1.0
+) -> Numbers:
+    """Mean rise of a drum's temperature in one stop [K], no heat lost meanwhile.
+
+    Parameters
+    ----------
+    energy : float or ndarray
+        Energy of the stop [J].
+    drum_mass : float or ndarray
+        Mass that is heated, of all drums that share the energy [kg].
+    specific_heat : float or ndarray
+        Of the drum [J/(kg K)]; 500 for cast iron.
+    share : float or ndarray
+        Part of the energy that goes into the drum, from 0 to 1.
+
+    Returns
+    -------
+    float or ndarray
+        Rise [K].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of bounds.
+    """
+    part = not_negative("share", share)
+    refuse(np.asarray(part) > 1, "share", part, "", "give a part of the energy, from 0 to 1")
+    heated = positive("drum_mass", drum_mass, "kg") * positive("specific_heat", specific_heat, "J/(kg K)")
+    return not_negative("energy", energy, "J") * part / heated

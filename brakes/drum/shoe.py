@@ -1,0 +1,351 @@
+"""A pivoted long shoe: from actuating force, peak pressure or torque to all forces on it.
+
+The pressure is proportional to the radial displacement, p = p0 sin(alpha - delta). It vanishes on the
+axis of the paper (delta = 0), or on the line from the centre to the pin, as a shoe that turns about
+its pin has it and as textbooks have it (Shigley; delta = atan(b/c), theta = alpha - delta). In axes
+turned by delta the same formulas hold for both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from brakes.arrays import (
+    Numbers,
+    first_where,
+    not_negative,
+    numbers,
+    one_of,
+    pair,
+    positive,
+    refuse,
+    together,
+)
+
+_ROUNDING = 1e-9  # [rad] an arc that starts on the pin line may miss it by rounding
+
+
+@dataclass(frozen=True)
+class Shoe:
+    """A shoe on a fixed pin, inside a drum. Every length and angle may be an array, one value a case.
+
+    Parameters
+    ----------
+    drum_radius : float or ndarray
+        Inner radius r of the drum [m].
+    face_width : float or ndarray
+        Width of the lining along the drum's axis [m].
+    lining : tuple
+        Angles alpha1 < alpha2 of the lining's ends, from -y towards +x [rad].
+    pivot : tuple
+        Pin (b, -c) [m], below the drum's centre; b may have either sign. Beyond the drum's radius (beside
+        the drum) the moment of the friction about the pin may turn round: then the shoes swap roles.
+    force_arm : float or ndarray
+        Height a of the actuating force above the drum's centre [m].
+    pressure_zero : {"axis", "pivot"}
+        Line on which the pressure vanishes: the -y axis (the paper's), or that from the centre to the
+        pin (the textbooks').
+
+    Raises
+    ------
+    ValueError
+        If a length is not positive, the pin not below the centre or far from the drum, the force not
+        above the pin, or the arc empty, over the pin, or past the pressure's second zero.
+    """
+
+    drum_radius: Numbers
+    face_width: Numbers
+    lining: tuple[Numbers, Numbers]
+    pivot: tuple[Numbers, Numbers]
+    force_arm: Numbers
+    pressure_zero: Literal["axis", "pivot"] = "axis"
+
+    def __post_init__(self) -> None:
+        one_of("pressure_zero", self.pressure_zero, ("axis", "pivot"))
+        cleaned = {
+            "drum_radius": positive("drum_radius", self.drum_radius, "m"),
+            "face_width": positive("face_width", self.face_width, "m"),
+            "lining": pair("lining", self.lining, "rad"),
+            "pivot": pair("pivot", self.pivot, "m"),
+            "force_arm": numbers("force_arm", self.force_arm, "m"),
+        }
+        for name, value in cleaned.items():
+            object.__setattr__(self, name, value)
+        (a1, a2), (b, y) = self.lining, self.pivot
+        together(drum_radius=self.drum_radius, face_width=self.face_width, force_arm=self.force_arm,
+                 lining_start=a1, lining_end=a2, pivot_x=b, pivot_y=y)  # fmt: skip
+        self._check_pin()
+        self._check_arc()
+
+    def _check_pin(self) -> None:
+        b, y = self.pivot
+        refuse(np.asarray(y) >= 0, "pivot[1]", y, "m", "the pin lies below the centre", "give (b, -c), c > 0")
+        far = np.hypot(b, y)
+        name, bound = "distance of the pivot from the centre", "more than two drum radii"
+        refuse(far > 2 * np.asarray(self.drum_radius), name, far, "m", bound, "give m")
+        arm = self.force_arm - np.asarray(y)
+        refuse(arm <= 0, "force_arm", self.force_arm, "m", "the force must act above the pin (at -c)")
+
+    def _check_arc(self) -> None:
+        a1, a2 = self.lining
+        refuse(np.asarray(a2) - a1 <= 0, "lining[1]", a2, "rad", "the arc is empty: it must exceed lining[0]")
+        pin, start = self.pin_angle, np.asarray(a1)
+        advice = "start it beyond; angles are in rad, from -y"
+        bad = start < pin - _ROUNDING
+        bound = f"the lining overlaps the pin, at {first_where(bad, pin):.6g} rad"
+        refuse(bad, "lining[0]", a1, "rad", bound, advice)
+        bad = start < self.phase - _ROUNDING
+        refuse(bad, "lining[0]", a1, "rad", "the pressure would be negative below 0", advice)
+        end = np.pi + np.minimum(self.phase, pin)
+        bad = np.asarray(a2) > end + _ROUNDING
+        bound = f"past {first_where(bad, end):.6g} rad the lining leaves the drum"
+        refuse(bad, "lining[1]", a2, "rad", bound, "end it before; give rad")
+
+    @property
+    def pin_angle(self) -> Numbers:
+        """Angle of the pin from -y [rad]: positive for b > 0."""
+        b, y = self.pivot
+        return np.arctan2(b, -np.asarray(y))
+
+    @property
+    def phase(self) -> Numbers:
+        """Angle delta at which the pressure vanishes [rad]."""
+        return self.pin_angle if self.pressure_zero == "pivot" else 0.0 * np.asarray(self.pin_angle)
+
+    @property
+    def moment_arm(self) -> Numbers:
+        """Arm a + c of the actuating force about the pin [m]."""
+        return self.force_arm - np.asarray(self.pivot[1])
+
+
+@dataclass(frozen=True)
+class _Integrals:
+    """Integrals over the arc, in the axes of the pressure.
+
+    K, S, C are those of sin, sin^2, sin cos; n and d the arms [m] of the normal and, for friction 1,
+    of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).
+    """
+
+    K: Numbers
+    S: Numbers
+    C: Numbers
+    n: Numbers
+    d: Numbers
+    peak: Numbers  # largest value of the sine
+
+
+def _integrals(shoe: Shoe) -> _Integrals:
+    a1, a2 = (np.asarray(end) - shoe.phase for end in shoe.lining)
+    m, h = (a1 + a2) / 2, (a2 - a1) / 2
+    K = 2 * np.sin(m) * np.sin(h)
+    S = h - np.cos(2 * m) * np.sin(2 * h) / 2
+    C = np.sin(2 * m) * np.sin(2 * h) / 2
+    b, c = _turned(shoe)
+    inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
+    peak = np.where(inside, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
+    return _Integrals(K, S, C, c * S - b * C, shoe.drum_radius * K - b * S - c * C, peak)
+
+
+def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
+    """The pin's b and c in the axes of the pressure."""
+    far, angle = np.hypot(*shoe.pivot), shoe.pin_angle - shoe.phase
+    return far * np.sin(angle), far * np.cos(angle)
+
+
+@dataclass(frozen=True)
+class ShoeResult:
+    """Forces on a shoe; vectors are in its axes, their components last.
+
+    Past self-locking the formulas do not hold: forces, torque and factors are then nan, `locked` is
+    true, and `message` says so.
+
+    Attributes
+    ----------
+    force, torque, peak_pressure : ndarray
+        Actuating force [N], torque on the drum [N m], largest pressure on the lining [Pa].
+    friction : ndarray
+        Coefficient of friction.
+    normal, tangential, pin_reaction : ndarray, shape (..., 2)
+        Resultants of pressure and friction on the shoe, and the pin's force on it [N].
+    effective_arm : ndarray
+        Torque over the size of the friction resultant, rho [m]; never less than the drum's radius.
+    closure : ndarray
+        Moment about the drum's centre left over, relative to P (a + c): rounding only.
+    c_star, c_star_slope : ndarray
+        Shoe factor C* = torque / (force radius), and its derivative to the friction.
+    locking_friction : ndarray
+        Friction at which the shoe locks; inf if it never does.
+    margin : ndarray
+        1 - friction / locking_friction: 0 at locking, negative past it.
+    locked : ndarray of bool
+        Whether the friction is at or past locking.
+    """
+
+    shoe: Shoe
+    leading: bool
+    friction: Numbers
+    force: Numbers
+    torque: Numbers
+    peak_pressure: Numbers
+    normal: np.ndarray
+    tangential: np.ndarray
+    pin_reaction: np.ndarray
+    effective_arm: Numbers
+    closure: Numbers
+    c_star: Numbers
+    c_star_slope: Numbers
+    locking_friction: Numbers
+    margin: Numbers
+    locked: Numbers
+
+    @property
+    def status(self) -> Any:
+        """``"slides"`` or ``"locked"``; an array of these for many cases."""
+        return np.where(self.locked, "locked", "slides")[()]
+
+    @property
+    def message(self) -> str:
+        """What the status means, in one sentence."""
+        return lock_message(self.locked, self.friction, self.locking_friction)
+
+    def pressure(self, alpha: Numbers) -> np.ndarray:
+        """Pressure at angles alpha [Pa], 0 off the lining; of one case."""
+        alpha = np.asarray(alpha, dtype=float)
+        a1, a2 = self.shoe.lining
+        on = (alpha >= a1) & (alpha <= a2)
+        p0 = self.peak_pressure / _integrals(self.shoe).peak
+        return np.where(on, p0 * np.sin(alpha - self.shoe.phase), 0.0)
+
+
+def shoe_torque(
+    shoe: Shoe,
+    *,
+    friction: Numbers,
+    force: Numbers | None = None,
+    peak_pressure: Numbers | None = None,
+    torque: Numbers | None = None,
+    leading: bool = True,
+) -> ShoeResult:
+    """All forces on a shoe, from its actuating force, its peak pressure or its torque.
+
+    Parameters
+    ----------
+    shoe : Shoe
+        The shoe.
+    friction : float or ndarray
+        Coefficient of friction mu.
+    force, peak_pressure, torque : float or ndarray, optional
+        Exactly one of: actuating force P [N], largest pressure on the lining [Pa], torque [N m].
+    leading : bool
+        Whether the drum turns towards the pin on this shoe; a drum that turns back swaps them.
+
+    Returns
+    -------
+    ShoeResult
+        Complete result; arrays broadcast over all inputs.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of the three is given, a value is out of bounds, or a torque is demanded
+        with friction 0, or at or past self-locking.
+
+    Notes
+    -----
+    With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
+    sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
+    d = r K - b S - c C; torque = mu A p0 r K.
+    """
+    mu = not_negative("friction", friction)
+    given = {"force": force, "peak_pressure": peak_pressure, "torque": torque}
+    name, value = only_one(given)
+    value = positive(name, value, {"force": "N", "peak_pressure": "Pa", "torque": "N m"}[name])
+    together(friction=mu, **{name: value}, shoe=_integrals(shoe).n)
+    if name == "torque":
+        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
+    return solve(shoe, mu, leading, name, value)
+
+
+def solve(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers) -> ShoeResult:
+    """The work of `shoe_torque`, on checked values; a force of nan gives nan."""
+    i, s, r = _integrals(shoe), -1.0 if leading else 1.0, shoe.drum_radius
+    arm, area = shoe.moment_arm, shoe.face_width * np.asarray(r)
+    mu, value, n, d = np.broadcast_arrays(mu, value, i.n, i.d)
+    with np.errstate(divide="ignore"):
+        limit = np.where(s * d < 0, n / np.abs(d), np.inf)
+    locked = mu >= limit
+    if name == "torque":
+        remedy = "give a force to see whether the shoe locks, or less friction"
+        refuse(locked, "friction", mu, "", "the shoe locks: no torque can be demanded of it", remedy)
+    bracket = np.where(locked, np.nan, n + s * mu * d)
+    if name == "force":
+        load = value * arm / bracket  # A p0
+    elif name == "torque":
+        load = value / (mu * r * i.K)
+    else:
+        load = np.where(locked, np.nan, area * value / i.peak)
+    force = value if name == "force" else load * bracket / arm
+    normal = _turn(load[..., None] * _vector(-i.S, i.C), shoe.phase)
+    tangential = _turn((s * mu * load)[..., None] * _vector(i.C, i.S), shoe.phase)
+    pin = -(normal + tangential)
+    pin[..., 0] -= force
+    torque = mu * load * r * i.K
+    return ShoeResult(
+        shoe=shoe,
+        leading=leading,
+        friction=mu[()],
+        force=force[()],
+        torque=torque[()],
+        peak_pressure=(load * i.peak / area)[()],
+        normal=normal,
+        tangential=tangential,
+        pin_reaction=pin,
+        effective_arm=(r * i.K / np.hypot(i.S, i.C))[()],
+        closure=_closure(shoe, force, s * torque, pin)[()],
+        c_star=(mu * arm * i.K / bracket)[()],
+        c_star_slope=(arm * i.K * n / bracket**2)[()],
+        locking_friction=limit[()],
+        margin=(1 - mu / limit)[()],
+        locked=locked[()],
+    )
+
+
+def _closure(shoe: Shoe, force: np.ndarray, moment: np.ndarray, pin: np.ndarray) -> np.ndarray:
+    """Moments about the centre, which the solution did not use, relative to P (a + c)."""
+    b, y = shoe.pivot
+    left = moment - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
+    return np.abs(left) / (np.abs(force) * shoe.moment_arm)
+
+
+def _vector(x: Numbers, y: Numbers) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(x, y), axis=-1)
+
+
+def _turn(v: np.ndarray, angle: Numbers) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return _vector(c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1])
+
+
+def only_one(given: dict[str, Any]) -> tuple[str, Any]:
+    """Name and value of the only one of several inputs that is given, or a ValueError."""
+    present = {name: value for name, value in given.items() if value is not None}
+    if len(present) != 1:
+        got = " and ".join(present) or "none"
+        raise ValueError(f"give exactly one of {', '.join(given)}; got {got}")
+    return next(iter(present.items()))
+
+
+def lock_message(locked: Numbers, friction: Numbers, limit: Numbers) -> str:
+    """One sentence on sliding or locking."""
+    locked = np.asarray(locked)
+    if not locked.any():
+        return "slides: the friction is below self-locking"
+    where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
+    mu, least = (float(np.broadcast_to(x, locked.shape)[locked].flat[0]) for x in (friction, limit))
+    return (
+        f"locked{where}: friction {mu:.4g} is at or past self-locking, {least:.4g}; the shoe grips by "
+        "itself, and no torque follows from the force"
+    )

@@ -1,0 +1,293 @@
+"""Geometry of a duo-servo brake and where its shoes end, in closed form (Yoo et al. 1997, section 3).
+
+Axes: x to the right, y up, the drum's centre at the origin; the drum turns counter-clockwise, the right
+shoe leads; the left side mirrors the right one at rest. In stage 1 each shoe turns about its adjuster
+pin until the contact point of its lining reaches the drum. In stage 2 everything turns with the drum by
+psi, until the right piston reaches its bottom. A piston's place is where its face cuts the x axis.
+
+Table 7 gives the clearance in metres, without saying so. The paper prints no coordinates: those of
+`BENDIX_12_5` are a fit that reproduces Tables 5-7 within their rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from brakes.arrays import Numbers, first_where, numbers, pair, positive, refuse, together
+from brakes.forklift.levers import Levers
+
+
+@dataclass(frozen=True)
+class DuoServo:
+    """The right side of a duo-servo brake at rest; any value may be an array, one value a design.
+
+    Parameters
+    ----------
+    drum_radius : float or ndarray
+        r [m].
+    tip : tuple
+        Pin between shoe and piston (x, y) [m], in the upper right.
+    adjuster : tuple
+        Pin between shoe and adjuster (x, y) [m], in the lower right.
+    face_tilt : float or ndarray
+        Tilt of the piston's face [rad]: its normal is (cos, -sin) of it; alpha1 = alpha2.
+    contact_angle : float or ndarray
+        Where the lining touches, from +x upward [rad]; at rest at the radius r - clearance.
+    piston_bottom : float or ndarray
+        How far the piston can be pushed in from its place at rest [m].
+    piston_stroke : float or ndarray, optional
+        How far it can come out from there [m]; not checked unless given.
+
+    Raises
+    ------
+    ValueError
+        If a length is not positive, or a pin is not inside the drum on its side.
+    """
+
+    drum_radius: Numbers
+    tip: tuple[Numbers, Numbers]
+    adjuster: tuple[Numbers, Numbers]
+    face_tilt: Numbers
+    contact_angle: Numbers
+    piston_bottom: Numbers
+    piston_stroke: Numbers | None = None
+
+    def __post_init__(self) -> None:
+        cleaned = {
+            "drum_radius": positive("drum_radius", self.drum_radius, "m"),
+            "tip": pair("tip", self.tip, "m"),
+            "adjuster": pair("adjuster", self.adjuster, "m"),
+            "face_tilt": numbers("face_tilt", self.face_tilt, "rad"),
+            "contact_angle": numbers("contact_angle", self.contact_angle, "rad"),
+            "piston_bottom": positive("piston_bottom", self.piston_bottom, "m"),
+        }
+        if self.piston_stroke is not None:
+            cleaned["piston_stroke"] = positive("piston_stroke", self.piston_stroke, "m")
+        for name, value in cleaned.items():
+            object.__setattr__(self, name, value)
+        self._check_pins()
+        for name in ("face_tilt", "contact_angle"):
+            bad = np.abs(np.asarray(getattr(self, name))) >= np.pi / 2
+            refuse(bad, name, getattr(self, name), "rad", "it must be less than a right angle", "give rad")
+
+    def _check_pins(self) -> None:
+        (x, y), (ax, ay) = self.tip, self.adjuster
+        together(tip_x=x, tip_y=y, adjuster_x=ax, adjuster_y=ay, drum_radius=self.drum_radius,
+                 face_tilt=self.face_tilt, contact_angle=self.contact_angle)  # fmt: skip
+        for name, u, v, sense in (("tip", x, y, 1), ("adjuster", ax, ay, -1)):
+            side = "above" if sense > 0 else "below"
+            refuse(np.asarray(u) <= 0, f"{name}[0]", u, "m", "the right side is described: give x > 0")
+            refuse(sense * np.asarray(v) <= 0, f"{name}[1]", v, "m", f"it lies {side} the drum's centre")
+            far = np.hypot(u, v)
+            bound = "it must lie inside the drum (drum_radius)"
+            refuse(far >= self.drum_radius, f"distance of {name} from the centre", far, "m", bound)
+
+    def motion(self, clearance: Numbers) -> ShoeMotion:
+        """Where the shoes go.
+
+        Parameters
+        ----------
+        clearance : float or ndarray
+            Between lining and drum at rest, c_L [m].
+
+        Returns
+        -------
+        ShoeMotion
+            Turns, travels, interference, and the lever arms at the end.
+
+        Raises
+        ------
+        ValueError
+            If the clearance is not positive, or larger than the drum allows.
+        """
+        c = positive("clearance", clearance, "m")
+        together(clearance=c, geometry=self.drum_radius * np.asarray(self.tip[0]) * self.adjuster[0])
+        advice = "give m; take less clearance"
+        bad = c >= np.asarray(self.drum_radius)
+        bound = f"larger than the drum allows, its radius is {first_where(bad, self.drum_radius):g} m"
+        refuse(bad, "clearance", c, "m", bound, advice)
+        turn = self._seating_turn(c)
+        bound = "larger than the drum allows: the lining cannot reach it"
+        refuse(np.isnan(turn), "clearance", c, "m", bound, advice)
+        tip = self._after_seating(turn, *self.tip)
+        outside = np.hypot(*tip) >= self.drum_radius
+        bound = "larger than the drum allows: the shoe's tip would leave it before the lining touches"
+        refuse(outside, "clearance", c, "m", bound, advice)
+        psi = self._drum_turn(*tip)
+        bound = "larger than the drum allows: the piston does not reach its bottom"
+        refuse(np.isnan(psi), "clearance", c, "m", bound, advice)
+        return self._moved(c, turn, psi, tip)
+
+    def levers(self, clearance: Numbers | None = None) -> Levers:
+        """Lever arms at the end of the shoes' motion.
+
+        Parameters
+        ----------
+        clearance : float or ndarray
+            c_L [m].
+
+        Returns
+        -------
+        Levers
+            For `internal_forces`.
+
+        Raises
+        ------
+        ValueError
+            If the clearance is missing, or as for `motion`.
+        """
+        if clearance is None:
+            raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
+        return self.motion(clearance).levers
+
+    def piston(self, x: Numbers, y: Numbers) -> Numbers:
+        """Place of a piston whose face passes through a point of the right side [m]."""
+        return x - y * np.tan(self.face_tilt)
+
+    def _seating_turn(self, c: Numbers) -> np.ndarray:
+        """Clockwise turn about the adjuster pin that brings the contact point to the drum; nan: none does."""
+        r, (hx, hy) = self.drum_radius, self.adjuster
+        vx, vy = (r - c) * np.cos(self.contact_angle) - hx, (r - c) * np.sin(self.contact_angle) - hy
+        along, across = hx * vx + hy * vy, hx * vy - hy * vx
+        wanted = (r**2 - hx**2 - hy**2 - vx**2 - vy**2) / 2  # = along cos(turn) + across sin(turn)
+        return np.arctan2(across, along) - _arccos(wanted / np.hypot(along, across))
+
+    def _after_seating(self, turn: np.ndarray, x: Numbers, y: Numbers) -> tuple[np.ndarray, np.ndarray]:
+        hx, hy = self.adjuster
+        dx, dy = _turned(x - hx, y - hy, -turn)
+        return hx + dx, hy + dy
+
+    def _drum_turn(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Turn psi that pushes the right piston to its bottom; nan: none does."""
+        bottom = self.piston(*self.tip) - self.piston_bottom
+        angle = _arccos(bottom * np.cos(self.face_tilt) / np.hypot(x, y))
+        return angle - self.face_tilt - np.arctan2(y, x)
+
+    def _moved(
+        self, c: Numbers, turn: np.ndarray, psi: np.ndarray, tip: tuple[np.ndarray, np.ndarray]
+    ) -> ShoeMotion:
+        (x, y), rest = tip, self.piston(*self.tip)
+        right, left = _turned(x, y, psi), _turned(-x, y, psi)
+        deep, where = self._penetration(c, turn)
+        return ShoeMotion(
+            geometry=self,
+            clearance=c,
+            seating_turn=turn[()],
+            drum_turn=psi[()],
+            seating_travel=(self.piston(x, y) - rest)[()],
+            right_travel=(self.piston(*right) - rest)[()],
+            left_travel=(self.piston(-left[0], left[1]) - rest)[()],
+            right_tip=np.stack(right, axis=-1),
+            left_tip=np.stack(left, axis=-1),
+            tip_gap=(self.drum_radius - np.hypot(x, y))[()],
+            lining_penetration=deep[()],
+            penetration_angle=where[()],
+            levers=self._levers(right, left, psi),
+        )
+
+    def _levers(
+        self, right: tuple[np.ndarray, np.ndarray], left: tuple[np.ndarray, np.ndarray], psi: np.ndarray
+    ) -> Levers:
+        s, c = np.sin(self.face_tilt), np.cos(self.face_tilt)
+        return Levers(
+            drum_radius=self.drum_radius,
+            a1=right[0] * s + right[1] * c,
+            a2=-left[0] * s + left[1] * c,
+            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum: gamma = psi
+            b2=-np.asarray(self.adjuster[1]),
+            alpha1=self.face_tilt,
+            alpha2=self.face_tilt,
+            gamma=psi,
+        )
+
+    def _penetration(self, c: Numbers, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """How far a lining concentric at rest, from pin to pin, enters the drum, and where on it."""
+        ox, oy = self._after_seating(turn, 0.0, 0.0)  # centre of the lining's circle
+        ends = np.arctan2(self.adjuster[1], self.adjuster[0]), np.arctan2(self.tip[1], self.tip[0])
+        where = np.clip(np.arctan2(oy, ox) + turn, *ends)
+        radius, angle = self.drum_radius - c, where - turn
+        far = np.hypot(ox + radius * np.cos(angle), oy + radius * np.sin(angle))
+        return far - self.drum_radius, where
+
+
+@dataclass(frozen=True)
+class ShoeMotion:
+    """Where the shoes go; arrays have one value a case.
+
+    Attributes
+    ----------
+    seating_turn : ndarray
+        Stage 1: turn of each shoe about its adjuster pin [rad].
+    drum_turn : ndarray
+        Stage 2: turn psi of the drum and the shoes [rad].
+    seating_travel : ndarray
+        Travel of each piston in stage 1, outward [m].
+    right_travel, left_travel : ndarray
+        Travel of the pistons from rest to the end, outward [m].
+    right_tip, left_tip : ndarray, shape (..., 2)
+        Tip pins at the end [m].
+    tip_gap : ndarray
+        From the tips to the drum's radius, least of the motion [m].
+    lining_penetration, penetration_angle : ndarray
+        Depth by which a lining concentric at rest, that reaches from pin to pin, enters the drum [m]
+        (negative: a gap), and where on the lining, from +x at rest [rad].
+    levers : Levers
+        Lever arms and directions at the end.
+    """
+
+    geometry: DuoServo
+    clearance: Numbers
+    seating_turn: Numbers
+    drum_turn: Numbers
+    seating_travel: Numbers
+    right_travel: Numbers
+    left_travel: Numbers
+    right_tip: np.ndarray
+    left_tip: np.ndarray
+    tip_gap: Numbers
+    lining_penetration: Numbers
+    penetration_angle: Numbers
+    levers: Levers
+
+    @property
+    def interference(self) -> tuple[str, ...]:
+        """What gets in the way, in sentences; the worst of many cases."""
+        found = []
+        deep, where = np.asarray(self.lining_penetration), np.asarray(self.penetration_angle)
+        if (deep > 1e-9).any():
+            k = np.unravel_index(deep.argmax(), deep.shape)
+            found.append(
+                f"the lining enters the drum by {1e3 * deep[k]:.3g} mm near {np.degrees(where[k]):.0f} deg: "
+                "it touches there before it does at the contact point"
+            )
+        stroke = self.geometry.piston_stroke
+        if stroke is not None and np.any(self.left_travel > stroke):
+            found.append(
+                f"the left piston comes out {1e3 * np.max(self.left_travel):.4g} mm, "
+                f"past its stroke of {1e3 * np.min(stroke):.4g} mm"
+            )
+        return tuple(found)
+
+
+BENDIX_12_5 = DuoServo(
+    drum_radius=0.15875,
+    tip=(0.06155, 0.10229),
+    adjuster=(0.05304, -0.12211),
+    face_tilt=float(np.radians(19.7)),
+    contact_angle=float(np.radians(56.5)),
+    piston_bottom=0.00153,
+)
+"""Bendix duo-servo, 12.5 in: a fit to the published forces, not a drawing."""
+
+
+def _turned(x: Numbers, y: Numbers, angle: Numbers) -> tuple[np.ndarray, np.ndarray]:
+    c, s = np.cos(angle), np.sin(angle)
+    return c * x - s * y, s * x + c * y
+
+
+def _arccos(value: Numbers) -> np.ndarray:
+    """Arc cosine; nan where there is none."""
+    value = np.asarray(value)
+    return np.arccos(np.where(np.abs(value) <= 1, value, np.nan))

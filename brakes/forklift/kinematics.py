@@ -1,0 +1,250 @@
+"""The two stages of a duo-servo brake as mechanisms, followed position by position.
+
+Stage 1, each side: shoe, dummy, piston (9 unknowns). The shoe is pinned at the adjuster (2) and to the
+dummy at its tip (2), the dummy slides on the piston's face (2), the piston in the cylinder (2): one
+degree of freedom, followed until the contact point reaches the drum.
+
+Stage 2: drum, two shoes, adjuster, two dummies, two pistons (24 unknowns). The drum is pinned (2), the
+right shoe welded to it (3), the left one pinned at the drum's centre with its lining seated (2); the
+adjuster's pins (4), 6 a side as above: 23 independent rows, followed until the right piston reaches its
+bottom. Both shoes welded make a row redundant; pinned at their contact points only they leave mobility 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beamdyn.common.checks import count, positive
+from brakes.forklift.duo_servo import DuoServo
+from brakes.planar import (
+    GROUND,
+    CablePair,
+    Force,
+    Mechanism,
+    Moment,
+    Pin,
+    Position,
+    RotationLock,
+    Slot,
+    stroke,
+)
+from brakes.planar.joints import Joint
+
+_RANK = 1e-9  # singular values below this part of the largest count as zero
+_ORIGIN = (0.0, 0.0)
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Positions of one stage, S of them.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+        The mechanism, drawn at the start of the stage.
+    position : Position
+        Its positions.
+    travel : dict of ndarray, shape (S,)
+        Piston travels ``"right"``, ``"left"`` from the start of the stage, outward [m].
+    turn : ndarray, shape (S,)
+        Turn of the shoe clockwise (stage 1), or of the drum counter-clockwise (stage 2) [rad].
+    rank : ndarray of int, shape (S,)
+        Rank of the constraints.
+    least_singular_value : ndarray, shape (S,)
+        Smallest singular value of the constraints over the largest: how far from losing rank.
+    """
+
+    mechanism: Mechanism = field(repr=False)
+    position: Position = field(repr=False)
+    travel: dict[str, np.ndarray]
+    turn: np.ndarray
+    rank: np.ndarray
+    least_singular_value: np.ndarray
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens on the way: its stage, the turn [rad] there, and a sentence."""
+
+    name: str
+    stage: int
+    turn: float
+    message: str
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Both stages of a brake's motion.
+
+    Attributes
+    ----------
+    right, left : Stage
+        Stage 1 of the sides.
+    drum : Stage
+        Stage 2.
+    events : tuple of Event
+        The linings reach the drum; the piston reaches its bottom.
+    interference : tuple of str
+        What gets in the way.
+    """
+
+    geometry: DuoServo
+    clearance: float
+    right: Stage
+    left: Stage
+    drum: Stage
+    events: tuple[Event, ...]
+    interference: tuple[str, ...]
+
+
+def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
+    """Follow the brake's parts through both stages.
+
+    Parameters
+    ----------
+    geometry : DuoServo
+        One brake; no arrays.
+    clearance : float
+        Between lining and drum at rest [m].
+    positions : int
+        Positions of each stage.
+
+    Returns
+    -------
+    Kinematics
+        Positions, rank, events, interference.
+
+    Raises
+    ------
+    ValueError
+        If the clearance is not positive, or larger than the drum allows.
+    """
+    c, n = positive("clearance", clearance, "m"), count("positions", positions, 2)
+    interference = geometry.motion(c).interference
+    right, left = (_stage_1(geometry, c, side, n) for side in ("right", "left"))
+    tips = tuple(_tip(geometry, stage, side) for stage, side in ((right, "right"), (left, "left")))
+    drum = _stage_2(geometry, tips, float(right.travel["right"][-1]), n)
+    return Kinematics(geometry, c, right, left, drum, _events(right, left, drum), interference)
+
+
+def stage_1(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
+    """Mechanism of stage 1 of one side, ``"right"`` or ``"left"``, with loads that measure and drive it."""
+    drawn = geometry.tip, geometry.adjuster, _contact(geometry, clearance)
+    tip, adjuster, contact = (_on(side, p) for p in drawn)
+    names = f"{side} shoe", f"{side} dummy", f"{side} piston"
+    return Mechanism(
+        bodies=names,
+        joints=(Pin(f"{side} adjuster pin", names[0], GROUND, adjuster), *_piston_side(geometry, side, tip)),
+        loads=(_measure(side, tip), CablePair("clearance", names[0], GROUND, contact, _ORIGIN, 0.0)),
+    )
+
+
+def stage_2(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
+    """Mechanism of stage 2, drawn with the linings seated."""
+    sides = {"right": right_tip, "left": left_tip}
+    parts = [f"{side} {part}" for side in sides for part in ("shoe", "dummy", "piston")]
+    joints: list[Joint] = [
+        Pin("drum bearing", "drum", GROUND, _ORIGIN),
+        Pin("weld", "right shoe", "drum", _contact(geometry, 0.0)),
+        RotationLock("weld angle", "right shoe", "drum"),
+        Pin("seated lining", "left shoe", GROUND, _ORIGIN),
+    ]
+    for side, tip in sides.items():
+        joints.append(Pin(f"{side} adjuster pin", f"{side} shoe", "adjuster", _on(side, geometry.adjuster)))
+        joints += _piston_side(geometry, side, tip)
+    loads = (*(_measure(side, tip) for side, tip in sides.items()), Moment("drum", "drum", 0.0))
+    return Mechanism(("drum", "adjuster", *parts), tuple(joints), loads)
+
+
+def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]:
+    """Tip pin, sliding on the tilted face, sliding in the cylinder: 6 rows."""
+    tilt, dummy, piston = geometry.face_tilt, f"{side} dummy", f"{side} piston"
+    face = _on(side, (np.sin(tilt), np.cos(tilt)))
+    return (
+        Pin(f"{side} tip", f"{side} shoe", dummy, tip),
+        Slot(f"{side} face", dummy, piston, tip, face),
+        RotationLock(f"{side} face angle", dummy, piston),
+        Slot(f"{side} cylinder", piston, GROUND, tip, (1.0, 0.0)),
+        RotationLock(f"{side} cylinder angle", piston, GROUND),
+    )
+
+
+def _measure(side: str, tip: Point) -> Force:
+    """Outward travel of a piston."""
+    return Force(side, f"{side} piston", tip, _on(side, (1.0, 0.0)), 0.0)
+
+
+def _on(side: str, p: Point) -> Point:
+    return (float(p[0]), float(p[1])) if side == "right" else (-float(p[0]), float(p[1]))
+
+
+def _contact(geometry: DuoServo, c: float) -> Point:
+    radius, angle = geometry.drum_radius - c, geometry.contact_angle
+    return radius * np.cos(angle), radius * np.sin(angle)
+
+
+def _stage_1(geometry: DuoServo, c: float, side: str, n: int) -> Stage:
+    mechanism = stage_1(geometry, c, side)
+    path = stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
+    turn = path.position.angle(f"{side} shoe") * (-1 if side == "right" else 1)
+    return Stage(mechanism, path.position, {side: path.travel[side]}, turn, *constraint_rank(path.position))
+
+
+def _stage_2(geometry: DuoServo, tips: tuple[Point, ...], seated: float, n: int) -> Stage:
+    mechanism = stage_2(geometry, *tips)
+    path = stroke(mechanism, "right", np.linspace(0.0, -seated - geometry.piston_bottom, n))
+    travel = {side: path.travel[side] for side in ("right", "left")}
+    return Stage(mechanism, path.position, travel, path.travel["drum"], *constraint_rank(path.position))
+
+
+def _tip(geometry: DuoServo, stage: Stage, side: str) -> Point:
+    x, y = stage.position.point(f"{side} shoe", _on(side, geometry.tip))[-1]
+    return float(x), float(y)
+
+
+def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
+    """Rank of the constraints, and their smallest singular value over the largest, at each position.
+
+    Parameters
+    ----------
+    position : Position
+        One position, or S of them.
+
+    Returns
+    -------
+    rank : ndarray of int, shape (S,)
+        Independent rows; fewer than there are where some are redundant.
+    least : ndarray, shape (S,)
+        Smallest singular value over the largest.
+    """
+    system = position.mechanism.system
+    rows = system.rows(position.batch).gradient[:, : system.constraints]
+    values = np.linalg.svd(rows, compute_uv=False)
+    relative = values / values[:, :1]
+    return (relative > _RANK).sum(axis=1), relative[:, -1]
+
+
+def _events(right: Stage, left: Stage, drum: Stage) -> tuple[Event, ...]:
+    seated = tuple(
+        Event(
+            "lining reaches the drum",
+            1,
+            float(stage.turn[-1]),
+            f"the {side} lining reaches the drum after {np.degrees(stage.turn[-1]):.4f} deg, "
+            f"the piston {1e3 * stage.travel[side][-1]:.3f} mm out",
+        )
+        for side, stage in (("right", right), ("left", left))
+    )
+    out = left.travel["left"][-1] + drum.travel["left"][-1]
+    bottom = Event(
+        "piston bottoms",
+        2,
+        float(drum.turn[-1]),
+        f"the right piston reaches its bottom after the drum turns {np.degrees(drum.turn[-1]):.4f} deg; "
+        f"the left piston is {1e3 * out:.3f} mm out",
+    )
+    return (*seated, bottom)

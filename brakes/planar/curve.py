@@ -1,0 +1,186 @@
+"""The curve of positions of a mechanism with one free motion, followed by arc length."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from brakes.planar.diagnosis import OutOfReachError
+from brakes.planar.linear import decompose
+from brakes.planar.system import System
+
+_SMALL_STEP = 1e-9  # Newton squares it: the next step would be below rounding
+_CLOSED = 1e-14  # gap over length that rounding leaves
+_TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
+_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # steps along the curve, in lengths of the mechanism
+_NODES = 20_000
+
+
+class Node(NamedTuple):
+    """A point of the curve.
+
+    y, tangent : (3 n,), coordinates and unit tangent.
+    value, rate : (loads,), coordinates of the loads, and their derivatives along the curve.
+    regularity : determinant of constraints and tangent, 0 where motions branch (1 if they are not square).
+    """
+
+    y: np.ndarray
+    tangent: np.ndarray
+    value: np.ndarray
+    rate: np.ndarray
+    regularity: float
+
+    def reversed(self) -> Node:
+        """The same point of the curve run the other way."""
+        return Node(self.y, -self.tangent, self.value, -self.rate, -self.regularity)
+
+
+def node_at(system: System, y: np.ndarray, before: np.ndarray) -> Node:
+    """The node at y; its tangent is the least singular vector of the joints, in the sense of `before`."""
+    rows = system.rows(y[None])
+    joints, loads = rows.gradient[0, : system.constraints], list(system.loads.values())
+    tangent = np.linalg.svd(joints)[2][-1]
+    tangent = tangent if tangent @ before > 0 else -tangent
+    square = len(joints) + 1 == len(y)
+    regularity = float(np.linalg.det(np.vstack((joints, tangent)))) if square else 1.0
+    return Node(y, tangent, rows.value[0, loads], rows.gradient[0, loads] @ tangent, regularity)
+
+
+def march(system: System, node: Node) -> Iterator[Node]:
+    """Follow the curve by pseudo-arclength (tangent predictor, Newton, step halving), and yield its nodes."""
+    step = _FIRST
+    for _ in range(_NODES):
+        while (following := _advance(system, node, step)) is None:
+            step /= 2
+            if step < _LEAST:
+                raise OutOfReachError("the curve of positions ends: two joints meet, or motions branch there")
+        yield following
+        step = min(_LARGEST, step * min(2.0, 0.7 * _TURN / max(_angle(node, following), 1e-3)))
+        node = following
+
+
+def _angle(a: Node, b: Node) -> float:
+    return float(np.arccos(min(1.0, a.tangent @ b.tangent)))
+
+
+def _advance(system: System, node: Node, step: float) -> Node | None:
+    """The node a step along the tangent further, or None if the step is too long."""
+    ahead = node.y + step * node.tangent
+    try:
+        y = close(system, ahead[None], node.tangent[None])[0]
+    except np.linalg.LinAlgError:
+        return None
+    following = node_at(system, y, node.tangent)
+    near = np.linalg.norm(y - ahead) < step * _TURN and _angle(node, following) < _TURN
+    return following if near else None
+
+
+def close(system: System, y: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+    """Close the joints of positions (S, 3 n), each within the plane normal to its tangent (S, 3 n)."""
+    return newton(system, y, lambda v, g, moved: (((moved - y) * tangent).sum(axis=1), tangent))
+
+
+Equation = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+def newton(system: System, y: np.ndarray, equation: Equation) -> np.ndarray:
+    """Newton's method on the joints and one more equation, for all positions (S, 3 n) at once.
+
+    The equation takes the values (S, loads) and gradients (S, loads, 3 n) of the loads, and y; it gives a
+    residual (S,) and its gradient (S, 3 n).
+    """
+    m, loads = system.constraints, list(system.loads.values())
+    for tries in range(20):
+        rows = system.rows(y)
+        residual, gradient = equation(rows.value[:, loads], rows.gradient[:, loads], y)
+        residual = np.concatenate((rows.value[:, :m], residual[:, None]), axis=1)
+        if tries > 6 and np.abs(residual).max() < _CLOSED:  # slow: motions branch here
+            return y
+        step = _step(np.concatenate((rows.gradient[:, :m], gradient[:, None]), axis=1), residual, system)
+        y = y - step
+        size = np.abs(step).max()
+        if size < _SMALL_STEP:
+            return y
+        if not size < 10.0:
+            break
+    raise np.linalg.LinAlgError("Newton's method does not converge")
+
+
+def _step(gradient: np.ndarray, residual: np.ndarray, system: System) -> np.ndarray:
+    """Newton step: by elimination where the matrix is square and regular, else of least length."""
+    if gradient.shape[1] == gradient.shape[2]:
+        try:
+            return np.linalg.solve(gradient, residual[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            pass
+    return decompose(gradient, system.rounding).solve(residual)
+
+
+def zero(system: System, a: Node, b: Node, function: Callable[[Node], float]) -> Node:
+    """The node between two at which a function of opposite signs there vanishes (regula falsi, Illinois)."""
+    low, high = 0.0, float((b.y - a.y) @ a.tangent)
+    f_low, f_high, node = function(a), function(b), b
+    for _ in range(60):
+        middle = (low * f_high - high * f_low) / (f_high - f_low)
+        try:
+            y = close(system, (a.y + middle * a.tangent)[None], a.tangent[None])[0]
+        except np.linalg.LinAlgError:  # as near to a branch point as Newton's method gets
+            break
+        node = node_at(system, y, a.tangent)
+        f = function(node)
+        if abs(f) < 1e-15 or abs(high - low) < 1e-15:
+            break
+        low, f_low = (high, f_high) if f * f_high < 0 else (low, f_low / 2)
+        high, f_high = middle, f
+    return node
+
+
+def at_values(system: System, nodes: list[Node], k: int, wanted: np.ndarray) -> np.ndarray:
+    """Coordinates (S, 3 n) at which coordinate k of the loads, growing along the nodes, has given values."""
+    if len(nodes) == 1:
+        return np.tile(nodes[0].y, (len(wanted), 1))
+    value, slope = (np.array([getattr(node, key)[k] for node in nodes]) for key in ("value", "rate"))
+    piece = np.clip(np.searchsorted(value, wanted, side="right") - 1, 0, len(nodes) - 2)
+    chord = _chords(nodes)[piece]
+    ends = value[piece], value[piece + 1], slope[piece] * chord, slope[piece + 1] * chord
+    low, high = np.zeros(len(wanted)), np.ones(len(wanted))
+    for _ in range(30):
+        middle = (low + high) / 2
+        below = _cubic(middle, *ends) < wanted
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    start, _ = _between(nodes, piece, low)
+    return newton(system, start, lambda v, g, _: (v[:, k] - wanted, g[:, k]))
+
+
+def at_arc_lengths(system: System, nodes: list[Node], wanted: np.ndarray) -> np.ndarray:
+    """Coordinates (S, 3 n) at given lengths along the curve from the first node."""
+    half = np.array([_angle(a, b) / 2 for a, b in pairwise(nodes)])
+    arc = np.concatenate(
+        ([0.0], np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))
+    )  # circles between the nodes
+    piece = np.clip(np.searchsorted(arc, wanted, side="right") - 1, 0, len(nodes) - 2)
+    return close(system, *_between(nodes, piece, (wanted - arc[piece]) / np.diff(arc)[piece]))
+
+
+def _chords(nodes: list[Node]) -> np.ndarray:
+    return np.linalg.norm(np.diff([node.y for node in nodes], axis=0), axis=1)
+
+
+def _between(nodes: list[Node], piece: np.ndarray, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates and tangents at parts of pieces between nodes, cubic and linear."""
+    y, tangent = np.array([node.y for node in nodes]), np.array([node.tangent for node in nodes])
+    chord, x = _chords(nodes)[piece, None], part[:, None]
+    ends = y[piece], y[piece + 1], tangent[piece] * chord, tangent[piece + 1] * chord
+    along = (1 - x) * tangent[piece] + x * tangent[piece + 1]
+    return _cubic(x, *ends), along / np.linalg.norm(along, axis=1, keepdims=True)
+
+
+def _cubic(
+    x: np.ndarray, a: np.ndarray, b: np.ndarray, slope_a: np.ndarray, slope_b: np.ndarray
+) -> np.ndarray:
+    """Cubic on 0 <= x <= 1 with given values and slopes at its ends."""
+    bend, twist = 3 * (b - a) - 2 * slope_a - slope_b, 2 * (a - b) + slope_a + slope_b
+    return a + x * (slope_a + x * (bend + x * twist))

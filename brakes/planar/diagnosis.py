@@ -1,0 +1,105 @@
+"""Words for what is loose, undetermined, or out of reach."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from brakes.planar.system import System
+
+_STILL = 1e-8  # part of a motion that counts as rounding
+
+
+class AssemblyError(ValueError):
+    """The joints of a mechanism cannot be brought together."""
+
+
+class OutOfReachError(ValueError):
+    """A driver does not reach a value: it turns back before it."""
+
+
+def moving_bodies(motions: np.ndarray) -> np.ndarray:
+    """Which bodies move in motions of shape (3 n, k): shape (n,)."""
+    size = np.linalg.norm(motions.reshape(len(motions) // 3, 3, motions.shape[1]), axis=(1, 2))
+    return size > _STILL * max(size.max(initial=0.0), 1e-300)
+
+
+def names_of_moving(system: System, motions: np.ndarray) -> tuple[str, ...]:
+    """Names of the bodies that move in motions of shape (3 n, k)."""
+    return tuple(name for name, moves in zip(system.bodies, moving_bodies(motions), strict=False) if moves)
+
+
+def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
+    """How bodies move in motions (3 n, k): those without relative motion together."""
+    twists = _twists(system, y, motions)
+    groups: list[tuple[list[str], np.ndarray]] = []
+    for name, twist, moves in zip(system.bodies, twists, moving_bodies(motions), strict=False):
+        if moves:
+            _join(groups, name, twist)
+    return ", ".join(f"{listed(names)} {_motion(system, names, twist)}" for names, twist in groups)
+
+
+def refuse_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
+    """Why a mechanism whose free motions are (3 n, k), k other than 1, has no stroke."""
+    k = free.shape[1]
+    if not k:
+        return "the mechanism does not move: mobility 0; a stroke needs 1: remove a joint"
+    return (
+        f"the mechanism has mobility {k}; a stroke needs 1: {describe(system, y, free)}; "
+        f"add {k - 1} joint{'s' if k > 2 else ''} (a rotation lock, a bar, a contact)"
+    )
+
+
+def unheld(system: System, y: np.ndarray, motions: np.ndarray) -> str:
+    """What is loose, and the remedy."""
+    return f"{describe(system, y, motions)}; add a joint, or give a load that moves it an unknown amplitude"
+
+
+def self_stress(names: tuple[str, ...]) -> str:
+    """What equilibrium does not determine, and the remedy."""
+    return (
+        f"statically indeterminate: equilibrium alone does not give {listed(names)}; "
+        "remove a joint among them, or give a load of unknown amplitude its magnitude"
+    )
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names as a list in a sentence."""
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+def _twists(system: System, y: np.ndarray, motions: np.ndarray) -> np.ndarray:
+    """Velocity (complex) of each body's point at the origin, and its rate of turning: (n, 2, k) complex."""
+    parts = motions.reshape(len(motions) // 3, 3, motions.shape[1])
+    pose = y.reshape(-1, 3)
+    centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
+    rate = parts[:, 2] / system.radius[:-1, None]
+    return np.stack((parts[:, 0] + 1j * parts[:, 1] - 1j * rate * centre[:, None], rate), axis=1)
+
+
+def _join(groups: list[tuple[list[str], np.ndarray]], name: str, twist: np.ndarray) -> None:
+    """Add a body to the group that has its twist, or to a new one."""
+    for names, other in groups:
+        if np.abs(twist - other).max() < 1e-7 * np.abs(other).max():
+            names.append(name)
+            return
+    groups.append(([name], twist))
+
+
+def _motion(system: System, names: list[str], twist: np.ndarray) -> str:
+    """The motions (2, k) of a group in words: one has a centre or a direction."""
+    real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
+    left, size, _ = np.linalg.svd(real, full_matrices=False)
+    ways = int((size > 1e-7 * size[0]).sum())
+    one, together = len(names) == 1, "" if len(names) == 1 else " together"
+    if ways > 1:
+        return f"{'moves' if one else 'move'}{together} in {ways} independent ways"
+    vx, vy, rate = left[:, 0]
+    if abs(rate) < 1e-7:
+        vx, vy = np.array((vx, vy)) * np.sign(vx if abs(vx) > 1e-9 else vy)
+        return f"{'slides' if one else 'slide'}{together} along ({vx:.3g}, {vy:.3g})"
+    centre = system.origin + system.length * (1j * (vx + 1j * vy) / rate)
+    x, y = (0.0 if abs(v) < 1e-9 * system.length else v for v in (centre.real, centre.imag))
+    return f"{'turns' if one else 'turn'}{together} about ({x:.6g}, {y:.6g}) m"

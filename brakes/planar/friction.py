@@ -1,0 +1,148 @@
+"""Equilibrium at the onset of motion, with friction in pivots, slots and contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from brakes.planar.kinematics import assemble
+from brakes.planar.linear import decompose, times
+from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.statics import Balance, Equilibrium, balance_of, forces_on_bodies, result_of, solve
+from brakes.planar.system import System
+
+_RISE = (0.25, 0.5, 0.75, 1.0)  # friction is raised to its full size in steps
+_SETTLED = 1e-9  # part of the forces that Newton's last step may have; its inverse is beyond any real force
+_TINY = np.finfo(float).tiny
+_STILL = 1e-9  # sliding velocity, over the largest, that counts as none
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Equilibrium with friction in either direction of motion, and without.
+
+    Parameters
+    ----------
+    squeeze, release : Equilibrium
+        While the driver's coordinate grows, and while it diminishes.  Where friction holds the mechanism
+        whatever the unknown load, the status is "self-locking" and the forces are nan.
+    without : Equilibrium
+        Without friction.
+    """
+
+    squeeze: Equilibrium
+    release: Equilibrium
+    without: Equilibrium
+
+
+def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | None = None) -> Friction:
+    """Reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
+
+    A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
+    force mu |reaction|, each against the relative velocity of a motion by the driver.  Newton's method;
+    friction grows from zero, so that a branch which ends in self-locking is seen.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The mechanism, of mobility 1 and determined without friction.
+    driver : str
+        The load whose growing coordinate is the squeeze.
+    position : Position, optional
+        Where it is, if not at the assembled drawing.
+
+    Returns
+    -------
+    Friction
+
+    Raises
+    ------
+    ValueError
+        If the mobility is not 1, or equilibrium without friction is not determined.
+    """
+    mechanism.load(driver)
+    position = assemble(mechanism) if position is None else position.of(mechanism)
+    without = solve(mechanism, position)
+    if without.status != "determined" or (without.mobility != 1).any():
+        raise ValueError(
+            f"friction needs mobility 1 and a determined equilibrium; here the mobility is "
+            f"{np.max(without.mobility)}, and {without.message}"
+        )
+    balance = balance_of(mechanism, position)
+    sliding = _sliding(mechanism.system, balance, driver)
+    squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
+    return Friction(squeeze, release, without)
+
+
+def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
+    """Signs of the sliding velocities (S, F) while the driver's coordinate grows."""
+    gradient = balance.rows.gradient
+    motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
+    rate = times(gradient, motion)
+    driven = rate[:, [system.loads[driver]]]
+    own = rate[:, list(system.rubbing.values())]
+    if (np.abs(driven) < _STILL).any():
+        raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
+    return np.where(np.abs(own) > _STILL, np.sign(own * driven), 0.0)
+
+
+def _branch(
+    mechanism: Mechanism, position: Position, balance: Balance, without: Equilibrium, sliding: np.ndarray
+) -> Equilibrium:
+    """Equilibrium with friction against given sliding signs."""
+    system = mechanism.system
+    start = np.atleast_2d(without.multiplier / system.unit)
+    multiplier, locked = _newton(system, balance, start, sliding)
+    loads = [row for row in balance.unknown if row >= system.constraints]
+    locked |= (multiplier[:, loads] * start[:, loads] < 0).any(axis=1)
+    multiplier[locked] = start[locked]  # any finite numbers: they are not shown
+    forces = decompose(balance.matrix, system.rounding)
+    result = result_of(mechanism, position, balance, forces, multiplier, locked)
+    if not locked.any():
+        return result
+    names = " and ".join(map(repr, system.rubbing))
+    message = (
+        f"self-locking at {locked.sum()} of {len(locked)} positions: with the friction of {names} no load of "
+        "the given direction moves the mechanism this way; reduce friction or the radius of the pivots"
+    )
+    return replace(result, status="self-locking", message=message)
+
+
+def _newton(
+    system: System, balance: Balance, start: np.ndarray, sliding: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Multipliers (S, R) with friction, and where there are none (S,)."""
+    multiplier, full = start.copy(), -sliding * system.coefficient
+    sign = np.linalg.slogdet(balance.matrix).sign
+    locked = np.zeros(len(start), bool)
+    for part in _RISE:
+        size = np.inf
+        for _ in range(40):
+            residual, slope = _friction(system, balance, multiplier, part * full)
+            locked |= np.linalg.slogdet(slope).sign != sign  # past a singular matrix: another branch
+            slope[locked] = np.eye(slope.shape[1])
+            step = np.linalg.solve(slope, residual[..., None])[..., 0]
+            step[locked] = 0.0
+            multiplier[:, balance.unknown] -= step
+            size = np.abs(step).max(axis=1) / np.maximum(np.abs(multiplier).max(axis=1), _TINY)
+            if size.max() < 1e-13:
+                break
+        locked |= size > _SETTLED
+    locked |= np.abs(multiplier).max(axis=1) > np.abs(start).max(axis=1) / _SETTLED
+    _friction(system, balance, multiplier, full)
+    return multiplier, locked
+
+
+def _friction(
+    system: System, balance: Balance, multiplier: np.ndarray, law: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Set the friction rows; residual of equilibrium and its derivative by the unknowns."""
+    slope = balance.matrix.copy()
+    for k, (name, row) in enumerate(system.rubbing.items()):
+        own = system.joints[name]
+        size = np.linalg.norm(multiplier[:, own], axis=1, keepdims=True)
+        multiplier[:, row] = law[:, k] * size[:, 0]
+        direction = law[:, [k]] * multiplier[:, own] / np.maximum(size, _TINY)
+        slope[:, :, own] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
+    return forces_on_bodies(balance, multiplier), slope

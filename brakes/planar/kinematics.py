@@ -1,0 +1,309 @@
+"""Positions of a mechanism: assembly, strokes, velocity ratios and toggle positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beamdyn.common.checks import count, positive, real_array
+from brakes.planar.curve import Node, at_arc_lengths, at_values, march, node_at, zero
+from brakes.planar.diagnosis import AssemblyError, OutOfReachError, listed, moving_bodies, refuse_mobility
+from brakes.planar.linear import decompose, times
+from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.system import System
+
+_CLOSED = 1e-11  # gap over length at which joints count as closed
+
+
+@dataclass(frozen=True)
+class Toggle:
+    """A position at which the motion of a load's coordinate reverses, or at which motions branch.
+
+    Parameters
+    ----------
+    load : str or None
+        The load whose coordinate has an extreme value: its force there holds any other load.  None: the
+        joints let the mechanism leave its motion for another one (bars in line).
+    value : float
+        Value of the driver [m or rad].
+    position : Position
+        The position.
+    still : tuple of str
+        Bodies that stand still there while others move.
+    message : str
+        The same as a sentence.
+    """
+
+    load: str | None
+    value: float
+    position: Position = field(repr=False)
+    still: tuple[str, ...]
+    message: str
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Positions of a mechanism over the values of a driver.
+
+    Parameters
+    ----------
+    driver : str
+        The load whose coordinate drives.
+    values : ndarray, shape (S,)
+        Its coordinate from the assembled position [m or rad].
+    position : Position
+        The S positions.
+    travel : dict of ndarray, shape (S,)
+        Coordinate of each load from the assembled position [m or rad]; nan for a force that follows.
+    ratio : dict of ndarray, shape (S,)
+        Its velocity over that of the driver, from the null space of the constraints; nan where the driver
+        stands still or motions branch.
+    mobility : ndarray of int, shape (S,)
+        Independent motions at each position; above 1 at a branch point.
+    toggles : tuple of Toggle
+        Toggle positions passed between the least and the greatest value.
+    closure : float
+        Largest gap that is left in a joint, over the length of the mechanism.
+    """
+
+    driver: str
+    values: np.ndarray
+    position: Position = field(repr=False)
+    travel: dict[str, np.ndarray] = field(repr=False)
+    ratio: dict[str, np.ndarray] = field(repr=False)
+    mobility: np.ndarray = field(repr=False)
+    toggles: tuple[Toggle, ...]
+    closure: float
+
+
+def assemble(mechanism: Mechanism) -> Position:
+    """Bring the joints together, by the least motion from the drawing (Newton, with shortened steps).
+
+    Raises
+    ------
+    AssemblyError
+        If they cannot be: by how much, and which joint is furthest apart.
+    """
+    system = mechanism.system
+    m = system.constraints
+    y = np.zeros((1, system.size))
+    rows = system.rows(y)
+    for _ in range(100):
+        gap = np.linalg.norm(rows.value[:, :m])
+        if gap < _CLOSED * 1e-3:
+            return Position(mechanism, y[0])
+        step = decompose(rows.gradient[:, :m], system.rounding).solve(rows.value[:, :m])
+        step *= min(1.0, 0.5 / max(np.abs(step).max(), 0.5))
+        for _ in range(30):
+            trial = system.rows(y - step)
+            if np.linalg.norm(trial.value[:, :m]) < gap:
+                break
+            step /= 2
+        else:
+            break
+        y, rows = y - step, trial
+    if np.abs(rows.value[:, :m]).max(initial=0.0) > max(_CLOSED, 100 * system.rounding):
+        raise AssemblyError(_gaps(system, rows.value[0]))
+    return Position(mechanism, y[0])
+
+
+def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarray) -> Stroke:
+    """Positions at which a driver has given values.
+
+    The curve of positions is followed from the assembled one by arc length (tangent predictor, Newton, step
+    halving); the values are then found on it all at once, to rounding.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The mechanism, of mobility 1.
+    driver : str
+        The load whose coordinate drives: a cable pair shortens, a moment turns its body, a force shifts its
+        point along its direction.  A load of magnitude 0 will do.
+    values : sequence of S floats
+        Coordinates of the driver from the assembled position [m or rad], in any order.
+
+    Returns
+    -------
+    Stroke
+
+    Raises
+    ------
+    AssemblyError
+        If the joints cannot be brought together.
+    OutOfReachError
+        If the driver turns back before a value: where.
+    ValueError
+        If the mobility is not 1, or the driver does not move.
+    """
+    if getattr(mechanism.load(driver), "follows", False):
+        raise ValueError(f"driver {driver!r} follows its body and has no coordinate: drive another load")
+    system, start, k = _start(mechanism, driver)
+    wanted = real_array("values", values) / _units(system)[k]
+    if not wanted.size:
+        raise ValueError("values is empty: give at least one value of the driver")
+    up = _reach(system, start, k, wanted.max(initial=0.0), driver)
+    down = _reach(system, start.reversed(), k, wanted.min(initial=0.0), driver)
+    nodes = [node.reversed() for node in reversed(down[1:])] + up
+    try:
+        y = at_values(system, nodes, k, wanted + start.value[k])
+    except np.linalg.LinAlgError:
+        raise OutOfReachError(
+            f"no position is found at one of the values of {driver!r}: it turns back or motions branch "
+            "there; end the stroke before it, or follow the motion with trace"
+        ) from None
+    if len(nodes) > 1:  # the march ends past the values
+        span = start.value[k] + np.array((min(0.0, wanted.min()), max(0.0, wanted.max())))
+        low, high = at_values(system, nodes, k, span)
+        nodes[0], nodes[-1] = node_at(system, low, nodes[0].tangent), node_at(system, high, nodes[-1].tangent)
+    return _finish(mechanism, driver, start, nodes, y)
+
+
+def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -> Stroke:
+    """Positions at equal distances along the curve of positions, past turning points of the driver.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The mechanism, of mobility 1.
+    driver : str
+        The load whose coordinate grows at first.
+    length : float
+        Length of the curve: root of the summed squares of all coordinates' changes, a rotation times the
+        greatest distance of the body's points from their centre [m].
+    points : int
+        Number of positions, the assembled one first.
+
+    Returns
+    -------
+    Stroke
+    """
+    system, start, _ = _start(mechanism, driver)
+    s = np.linspace(0.0, positive("length", length, "m") / system.length, count("points", points, 2))
+    nodes, chords = [start], 0.0
+    for node in march(system, start):
+        chords += float(np.linalg.norm(node.y - nodes[-1].y))
+        nodes.append(node)
+        if chords > s[-1]:
+            break
+    y = at_arc_lengths(system, nodes, s)
+    nodes[-1] = node_at(system, y[-1], nodes[-1].tangent)
+    return _finish(mechanism, driver, start, nodes, y)
+
+
+def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
+    """The system, the assembled position with the driver growing, and the driver's place among the loads."""
+    mechanism.load(driver)
+    system = mechanism.system
+    y = assemble(mechanism).batch
+    k = list(system.loads).index(driver)
+    constraints = decompose(system.rows(y).gradient[:, : system.constraints], system.rounding)
+    free = constraints.null()
+    if free.shape[1] != 1:
+        raise ValueError(refuse_mobility(system, y, free))
+    node = node_at(system, y[0], free[:, 0])
+    if abs(node.rate[k]) < 1e-9:
+        raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
+    return system, node if node.rate[k] > 0 else node.reversed(), k
+
+
+def _reach(system: System, start: Node, k: int, value: float, driver: str) -> list[Node]:
+    """Nodes from the first to where coordinate k has moved by a value."""
+    nodes, target, sense = [start], start.value[k] + value, np.sign(value)
+    for node in march(system, start) if value else ():
+        if node.rate[k] * sense <= 0:
+            turning = zero(system, nodes[-1], node, lambda n: n.rate[k])
+            if (target - turning.value[k]) * sense > 0:
+                raise OutOfReachError(
+                    _turns_back(system, driver, value, turning.value[k] - start.value[k], k)
+                )
+            node = turning
+        nodes.append(node)
+        if (node.value[k] - target) * sense >= 0:
+            return nodes
+    if value:
+        raise OutOfReachError(
+            f"driver {driver!r} stops before {value * _units(system)[k]:g}; give a smaller value"
+        )
+    return nodes
+
+
+def _finish(mechanism: Mechanism, driver: str, start: Node, nodes: list[Node], y: np.ndarray) -> Stroke:
+    system = mechanism.system
+    rows, m = system.rows(y), system.constraints
+    constraints = decompose(rows.gradient[:, :m], system.rounding)
+    tangent = constraints.vt[:, -1]
+    names, k = list(system.loads), list(system.loads).index(driver)
+    index = list(system.loads.values())
+    rate = times(rows.gradient[:, index], tangent)
+    single = (constraints.rank == system.size - 1)[:, None] & (rate[:, [k]] != 0)
+    ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
+    unit = _units(system)
+    follows = [getattr(load, "follows", False) for load in mechanism.loads]
+    travel = np.where(follows, np.nan, (rows.value[:, index] - start.value) * unit)
+    return Stroke(
+        driver=driver,
+        values=travel[:, k].copy(),
+        position=Position(mechanism, y),
+        travel=dict(zip(names, travel.T, strict=True)),
+        ratio=dict(zip(names, (ratio * unit / unit[k]).T, strict=True)),
+        mobility=system.size - constraints.rank,
+        toggles=_toggles(mechanism, nodes, start, k),
+        closure=float(np.abs(rows.value[:, :m]).max(initial=0.0)),
+    )
+
+
+def _toggles(mechanism: Mechanism, nodes: list[Node], start: Node, k: int) -> tuple[Toggle, ...]:
+    """Positions between the nodes at which a load's coordinate reverses, or motions branch."""
+    system, found = mechanism.system, []
+    for j, load in enumerate(system.loads):
+        for node in _zeros(system, nodes, lambda n, j=j: n.rate[j]):
+            found.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, load))
+    for node in _zeros(system, nodes, lambda n: n.regularity):
+        found.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, None))
+    return tuple(found)
+
+
+def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float]) -> list[Node]:
+    """Where a function of the nodes changes its sign."""
+    f = np.array([function(node) for node in nodes])
+    noise = 1e-9 * np.abs(f).max()
+    crossed = np.flatnonzero((f[:-1] * f[1:] < 0) & (np.abs(np.diff(f)) > noise))
+    return [zero(system, nodes[i], nodes[i + 1], function) for i in crossed]
+
+
+def _toggle(mechanism: Mechanism, node: Node, moved: float, k: int, load: str | None) -> Toggle:
+    value = float(moved * _units(mechanism.system)[k])
+    position = Position(mechanism, node.y)
+    if load is None:
+        message = f"motions branch at driver value {value:g}: the mechanism may leave the drawn one there"
+        return Toggle(None, value, position, (), message)
+    moving = moving_bodies(node.tangent[:, None])
+    still = tuple(name for name, moves in zip(mechanism.bodies, moving, strict=True) if not moves)
+    message = f"toggle position of {load!r} at driver value {value:g}: its motion reverses"
+    message += f"; {listed(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
+    return Toggle(load, value, position, still, message)
+
+
+def _turns_back(system: System, driver: str, value: float, reached: float, k: int) -> str:
+    unit = _units(system)[k]
+    return (
+        f"driver {driver!r} cannot reach {value * unit:g}: it turns back at {reached * unit:.9g} "
+        "(toggle position); stay below it, drive another load, or follow the motion past it with trace"
+    )
+
+
+def _units(system: System) -> np.ndarray:
+    """Unit of each load's coordinate: L for a length, 1 for an angle."""
+    return system.length / system.unit[list(system.loads.values())]
+
+
+def _gaps(system: System, value: np.ndarray) -> str:
+    gap = {name: float(np.linalg.norm(value[rows]) * system.length) for name, rows in system.joints.items()}
+    worst = max(gap, key=lambda name: gap[name])
+    return (
+        f"the joints cannot be brought together: {worst!r} stays {gap[worst]:.6g} m apart; "
+        "check its points and the lengths of the bars and cables in its loop"
+    )

@@ -1,0 +1,271 @@
+"""Equilibrium of a mechanism: reactions and amplitudes, or what is loose and what is undetermined."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from brakes.planar.diagnosis import names_of_moving, self_stress, unheld
+from brakes.planar.joints import Cable, Contact, RotationLock
+from brakes.planar.kinematics import assemble
+from brakes.planar.linear import Decomposition, decompose, times
+from brakes.planar.loads import CablePair, Spring, TorsionSpring
+from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.system import Rows, System
+
+_BALANCED = 1e-9  # part of the forces that may be left over
+_UNDETERMINED = 1e-7  # share in a self-stress from which a reaction counts as undetermined
+_WEAK = 1e-5  # singular value below which the answer hangs on the last digits of the drawing
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Forces of a mechanism in equilibrium; what is not determined is nan.
+
+    Arrays have the shape () of one position or (S,) of several, and a last axis (x, y) for vectors.
+
+    Parameters
+    ----------
+    position : Position
+        The position or positions.
+    status : {"determined", "undetermined", "loose", "no equilibrium", "self-locking"}
+        The worst of the positions.  "loose": in balance, but nothing holds it there.
+    message : str
+        The status as a sentence, with the names of bodies and joints.
+    reactions : dict of ndarray
+        Force of each joint on the body named first [N].
+    magnitudes : dict of ndarray
+        Its size: tension of a bar or cable, push of a contact, couple of a rotation lock on the body named
+        first [N m], component of a slot's force to the left of its direction; of a pin the absolute value.
+    amplitudes : dict of ndarray
+        Magnitude of each load, given or found [N, N m].
+    friction : dict of ndarray
+        Friction couple [N m] or force [N] of each joint that has some, on the body named first.
+    mobility, indeterminacy, uncontrolled : ndarray of int
+        Independent motions; independent self-stresses; motions that no joint or unknown load opposes.
+    movable, loose : tuple of str
+        Bodies that the joints let move, and those that move uncontrolled, at any of the positions.
+    undetermined : tuple of str
+        Reactions and amplitudes that equilibrium does not determine.
+    virtual_work : ndarray
+        Largest work of all loads on a free motion, over the largest force; with mobility 0 the closure of
+        forces and moments on the whole.  It does not use the reactions.
+    residual : ndarray
+        Largest force or moment left over on a body, over the largest force.
+    kept, dropped : ndarray
+        Smallest singular value that counts and largest that does not, over the largest: how sure the
+        ranks are.
+    warnings : tuple of str
+        Contacts that pull, cables that push, answers that hang on the last digits of the drawing.
+    multiplier : ndarray, shape (..., R)
+        Size of every row of joints, loads and friction [N, N m].
+    """
+
+    position: Position = field(repr=False)
+    status: str
+    message: str
+    reactions: dict[str, np.ndarray]
+    magnitudes: dict[str, np.ndarray] = field(repr=False)
+    amplitudes: dict[str, np.ndarray]
+    friction: dict[str, np.ndarray] = field(repr=False)
+    mobility: np.ndarray
+    indeterminacy: np.ndarray
+    uncontrolled: np.ndarray
+    movable: tuple[str, ...]
+    loose: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    virtual_work: np.ndarray
+    residual: np.ndarray
+    kept: np.ndarray = field(repr=False)
+    dropped: np.ndarray = field(repr=False)
+    warnings: tuple[str, ...]
+    multiplier: np.ndarray = field(repr=False)
+
+
+class Balance(NamedTuple):
+    """Terms of equilibrium at S positions, in scaled units.
+
+    rows : values and gradients of joints, loads and friction.
+    unknown : indices of the rows whose multipliers are unknown.
+    given : (S, R), multipliers of the known loads, 0 for all others.
+    matrix : (S, 3 n, unknowns), [J^T G].
+    """
+
+    rows: Rows
+    unknown: np.ndarray
+    given: np.ndarray
+    matrix: np.ndarray
+
+
+def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium:
+    """Reactions and unknown amplitudes at one position or many.
+
+    Solves [J^T G][lambda; s] = -Q by singular values, 3 rows a body: J the gradient of the joints, G that of
+    the loads of unknown amplitude, Q the known loads.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The mechanism.
+    position : Position, optional
+        Where it is, if not at the assembled drawing; that of a mechanism with the same bodies and joints but
+        other loads will do.
+
+    Returns
+    -------
+    Equilibrium
+
+    Raises
+    ------
+    AssemblyError
+        If no position is given and the joints cannot be brought together.
+    """
+    position = assemble(mechanism) if position is None else position.of(mechanism)
+    balance = balance_of(mechanism, position)
+    forces = decompose(balance.matrix, mechanism.system.rounding)
+    multiplier = balance.given.copy()
+    multiplier[:, balance.unknown] = forces.solve(-forces_on_bodies(balance, balance.given))
+    return result_of(mechanism, position, balance, forces, multiplier)
+
+
+def balance_of(mechanism: Mechanism, position: Position) -> Balance:
+    """The terms of equilibrium at positions."""
+    system = mechanism.system
+    rows = system.rows(position.batch)
+    given = np.zeros(rows.value.shape)
+    unknown = list(range(system.constraints))
+    for load, row in zip(mechanism.loads, system.loads.values(), strict=True):
+        if isinstance(load, Spring | TorsionSpring):
+            per_row = system.length if isinstance(load, Spring) else 1 / system.length
+            given[:, row] = -load.stiffness * per_row * rows.value[:, row]
+        elif load.magnitude is None:
+            unknown.append(row)
+        else:
+            given[:, row] = load.magnitude / system.unit[row]
+    index = np.array(unknown, int)
+    return Balance(rows, index, given, rows.gradient[:, index].swapaxes(1, 2))
+
+
+def forces_on_bodies(balance: Balance, multiplier: np.ndarray) -> np.ndarray:
+    """Generalised forces of multipliers (S, R) on the bodies, (S, 3 n)."""
+    return times(balance.rows.gradient.swapaxes(1, 2), multiplier)
+
+
+def result_of(
+    mechanism: Mechanism,
+    position: Position,
+    balance: Balance,
+    forces: Decomposition,
+    multiplier: np.ndarray,
+    locked: np.ndarray | bool = False,
+) -> Equilibrium:
+    """The result for multipliers (S, R) of all rows, in scaled units, without those that are locked (S,)."""
+    system = mechanism.system
+    constraints = decompose(balance.rows.gradient[:, : system.constraints], system.rounding)
+    scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
+    residual = np.abs(forces_on_bodies(balance, multiplier)).max(axis=1) / scale
+    unbalanced = (residual > max(_BALANCED, 1e3 * system.rounding)) & ~np.asarray(locked)
+    stressed = np.zeros(multiplier.shape, bool)
+    stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
+    shown = np.where(stressed | (unbalanced | locked)[:, None], np.nan, multiplier)
+    undetermined = _names(system, np.any(stressed[~unbalanced], axis=0))
+    worst = int(unbalanced.argmax()) if unbalanced.any() else int(forces.rank.argmin())
+    loose = forces.left_null(worst)
+    status, message = _verdict(system, position.batch[worst], loose, undetermined, bool(unbalanced.any()))
+    reactions, magnitudes, amplitudes, friction = _forces(mechanism, balance.rows, shown)
+
+    def shaped(array: np.ndarray) -> np.ndarray:
+        return array.reshape((*position.coordinates.shape[:-1], *array.shape[1:]))
+
+    return Equilibrium(
+        position=position,
+        status=status,
+        message=message,
+        reactions={name: shaped(force) for name, force in reactions.items()},
+        magnitudes={name: shaped(size) for name, size in magnitudes.items()},
+        amplitudes={name: shaped(size) for name, size in amplitudes.items()},
+        friction={name: shaped(size) for name, size in friction.items()},
+        mobility=shaped(system.size - constraints.rank),
+        indeterminacy=shaped(len(balance.unknown) - forces.rank),
+        uncontrolled=shaped(system.size - forces.rank),
+        movable=names_of_moving(system, constraints.null(int(constraints.rank.argmin()))),
+        loose=names_of_moving(system, loose),
+        undetermined=undetermined,
+        virtual_work=shaped(_virtual_work(system, balance, constraints, multiplier) / scale),
+        residual=shaped(residual),
+        kept=shaped(forces.kept),
+        dropped=shaped(forces.dropped),
+        warnings=_warnings(mechanism, magnitudes | amplitudes, forces),
+        multiplier=shaped(shown * system.unit),
+    )
+
+
+def _verdict(
+    system: System, y: np.ndarray, loose: np.ndarray, undetermined: tuple[str, ...], unbalanced: bool
+) -> tuple[str, str]:
+    """Status and message."""
+    if unbalanced:
+        return "no equilibrium", f"the loads are not in balance: {unheld(system, y, loose)}"
+    words = [self_stress(undetermined)] if undetermined else []
+    if loose.shape[1]:
+        words.append(f"the loads are in balance, but nothing keeps them so: {unheld(system, y, loose)}")
+    status = "undetermined" if undetermined else "loose" if words else "determined"
+    return status, "; ".join(words) or "every reaction and amplitude is determined"
+
+
+def _names(system: System, rows: np.ndarray) -> tuple[str, ...]:
+    """Names of the joints and loads that have one of the rows marked."""
+    joints = [name for name, own in system.joints.items() if rows[own].any()]
+    return (*joints, *(name for name, row in system.loads.items() if rows[row]))
+
+
+def _virtual_work(
+    system: System, balance: Balance, constraints: Decomposition, multiplier: np.ndarray
+) -> np.ndarray:
+    """Work of loads and friction on free motions (S,); if there are none, closure on the ground."""
+    loads = multiplier.copy()
+    loads[:, : system.constraints] = 0.0
+    work = np.abs(times(constraints.null_rows(), forces_on_bodies(balance, loads))).max(axis=1)
+    received = np.stack([np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]])
+    return np.where(constraints.rank == system.size, received.max(axis=0), work)
+
+
+def _forces(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> tuple[dict[str, np.ndarray], ...]:
+    """Reactions, their magnitudes, amplitudes and friction, by name."""
+    system, reactions, magnitudes = mechanism.system, {}, {}
+    physical = multiplier * system.unit
+    for joint in mechanism.joints:
+        own = system.joints[joint.name]
+        parts = physical[:, own]
+        magnitudes[joint.name] = parts[:, 0] if parts.shape[1] == 1 else np.hypot(*parts.T)
+        if not isinstance(joint, RotationLock):
+            first = system.bodies[joint.bodies[0] if isinstance(joint, Cable) else joint.body]
+            force = (rows.force[:, own, first] * multiplier[:, own]).sum(axis=1)
+            reactions[joint.name] = np.stack((force.real, force.imag), axis=-1)
+    amplitudes = {name: physical[:, row] for name, row in system.loads.items()}
+    friction = {name: physical[:, row] for name, row in system.rubbing.items()}
+    return reactions, magnitudes, amplitudes, friction
+
+
+def _warnings(mechanism: Mechanism, sizes: dict[str, np.ndarray], forces: Decomposition) -> tuple[str, ...]:
+    """Contacts that pull, cables that push, and equilibrium that is nearly lost."""
+    least = {name: float(np.fmin.reduce(size)) for name, size in sizes.items()}
+    largest = max((float(np.fmax.reduce(np.abs(size))) for size in sizes.values()), default=0.0)
+    found = []
+    for part in mechanism.parts:
+        if least[part.name] < -_BALANCED * largest:
+            pull = f"{part.name!r} would have to {{}} with {-least[part.name]:.6g} N: "
+            if isinstance(part, Contact):
+                found.append(
+                    f"contact {pull.format('pull')}it is open, or its normal is reversed; remove or turn it"
+                )
+            if isinstance(part, Cable | CablePair):
+                found.append(f"cable {pull.format('push')}it is slack; remove it, or reverse the loads")
+    if (weak := forces.kept.min()) < _WEAK:
+        found.append(
+            f"reactions hang on the last digits of the drawing (smallest singular value {weak:.1g}): "
+            "the position is close to a toggle position or to indeterminacy"
+        )
+    return tuple(found)

@@ -1,0 +1,190 @@
+"""Drum brakes in print: the paper's Table 1 from its own expressions, the right one, and textbooks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from brakes import drum
+from brakes.drum import as_printed
+from brakes.published import load
+
+PAPER = load("vardanyan_2019")
+BOOKS = load("drum_textbooks")
+INCH = 0.0254
+LBF = 4.4482216152605
+
+
+def printed(text: str, value: float) -> bool:
+    """Whether a value rounds to the printed digits; zeros that end a table's entry are left out there."""
+    decimals = len(text.partition(".")[2])
+    return f"{value:.{decimals}f}" == text
+
+
+def book(name: str, quantity: str, value: float) -> None:
+    """A value, in the book's unit, rounds to what the book prints."""
+    entry = BOOKS[name][quantity]
+    assert printed(entry["printed"], value), (quantity, entry["printed"], value)
+
+
+# The paper --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "column, unit", [("effective_arm", 1e-3), ("first_torque", 1.0), ("second_torque", 1.0)]
+)
+def test_table_1_to_every_printed_digit(column: str, unit: float) -> None:
+    found = getattr(as_printed.table_1(), column) / unit
+    cells = PAPER["table_1"][column]["printed"]
+    assert [cell for cell, value in zip(cells, found, strict=True) if not printed(cell, value)] == []
+
+
+def test_unrounded_rows_of_table_1() -> None:
+    """The rows that were computed independently, to all their digits."""
+    table = as_printed.table_1(np.radians([10.0, 40.0, 80.0]))
+    arm = [10.4515808764, 54.7775342358, 126.284610261]
+    first = [7.26175981648, 44.0951145002, 136.605223525]
+    second = [8.43370812764, 52.556568391, 174.31806661]
+    np.testing.assert_allclose(1e3 * table.effective_arm, arm, rtol=1e-11)  # twelve digits
+    np.testing.assert_allclose(table.first_torque, first, rtol=1e-11)
+    np.testing.assert_allclose(table.second_torque, second, rtol=1e-11)
+    assert printed(PAPER["table_1"]["difference"]["printed"], table.difference)
+
+
+def test_equation_12_is_not_what_the_table_holds() -> None:
+    arc = np.radians(80.0)
+    assert as_printed.printed_arm(arc) / as_printed.table_arm(arc) == pytest.approx(1 - 0.119, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    "arc, rho, first, second",
+    [
+        (10, 138.174222575, 318.066370761, 198.372156953),
+        (80, 148.722578565, 179.054116542, 89.2314995856),
+    ],
+)
+def test_corrected_table(arc: float, rho: float, first: float, second: float) -> None:
+    lining = tuple(np.radians((30, 30 + arc)))
+    leading = drum.shoe_torque(
+        drum.Shoe(0.138, 0.05, lining, (0.020, -0.110), 0.115), force=1e3, friction=0.35
+    )
+    trailing = drum.shoe_torque(
+        drum.Shoe(0.138, 0.05, lining, (0.025, -0.110), 0.115), force=1e3, friction=0.35, leading=False
+    )
+    found = [1e3 * leading.effective_arm, leading.torque, trailing.torque]
+    np.testing.assert_allclose(found, [rho, first, second], rtol=5e-12)  # twelve digits
+
+
+def test_every_erratum_has_a_consequence() -> None:
+    errata = as_printed.errata()
+    assert [erratum.name for erratum in errata] == [entry["name"] for entry in PAPER["erratum"]]
+    differ = [erratum.printed_value != pytest.approx(erratum.right_value, rel=0.05) for erratum in errata]
+    assert all(differ)
+
+
+def test_consequences_that_follow_from_the_tables() -> None:
+    by_name = {erratum.name: erratum for erratum in as_printed.errata()}
+    assert by_name["second_shoe"].printed_value == pytest.approx(174.31806661, rel=1e-11)
+    assert by_name["second_shoe"].right_value == pytest.approx(89.2314995856, rel=1e-11)
+    assert by_name["effective_arm"].right_value == pytest.approx(148.722578565, rel=1e-11)
+    ratio = 268.285616128 / 516.438527714
+    assert by_name["trend"].right_value == pytest.approx(ratio, rel=1e-11)
+    assert "89.231" in by_name["second_shoe"].consequence
+
+
+# Textbooks --------------------------------------------------------------------------------------------
+
+
+def from_pin_line(case: dict, scale: float, tilt: float = 0.0) -> drum.Shoe:
+    """A shoe whose book counts theta from the line centre-pin, which lies at `tilt` from -y."""
+    far = case["pin_distance"]["value"] * scale
+    pivot = far * np.sin(tilt), -far * np.cos(tilt)
+    arm = case["moment_arm"]["value"] * scale if "moment_arm" in case else 2 * far * np.cos(tilt)
+    lining = tuple(np.radians(case["theta"]["value"]) + tilt)
+    sizes = case["drum_radius"]["value"] * scale, case["face_width"]["value"] * scale
+    return drum.Shoe(*sizes, lining, pivot, arm + pivot[1], "pivot")
+
+
+def test_shigley_example_16_2() -> None:
+    case = BOOKS["shigley_16_2"] | {"pin_distance": {"value": float(np.hypot(112, 50))}}
+    shoe = from_pin_line(case, 1e-3)
+    brake = drum.brake_torque(drum.simplex(shoe), peak_pressure=1e6, friction=0.32)
+    leading, trailing = brake.shoes
+    moment = -leading.normal[0] * shoe.pivot[1]  # of the normal force, which passes through the centre
+    book("shigley_16_2", "force", brake.force / 1e3)
+    book("shigley_16_2", "leading_torque", leading.torque)
+    book("shigley_16_2", "trailing_torque", trailing.torque)
+    book("shigley_16_2", "trailing_pressure", trailing.peak_pressure / 1e3)
+    book("shigley_16_2", "friction_moment", abs(moment) - brake.force * 0.212)
+    assert abs(abs(moment) - 787.333527) < 5e-7  # the book has 788
+    assert abs(brake.force - 2279.06305) < 5e-6
+    assert abs(leading.torque - 365.825722) < 5e-7
+    assert abs(trailing.torque - 161.934892) < 5e-7
+    assert abs(trailing.peak_pressure - 442655.840) < 5e-4
+    assert abs(brake.locking_friction - 0.828303) < 5e-7
+
+
+def test_shigley_problem_16_1() -> None:
+    case = BOOKS["shigley_16_1"]
+    shoe = from_pin_line(case, 1e-3, np.radians(30))
+    brake = drum.brake_torque(drum.simplex(shoe), force=2200.0, friction=0.28)
+    leading, trailing = brake.shoes
+    book("shigley_16_1", "leading_pressure", leading.peak_pressure / 1e3)
+    assert abs(trailing.peak_pressure / 1e3 - 381.9) < 0.1  # the manual cuts 381.96
+    book("shigley_16_1", "leading_torque", leading.torque)
+    book("shigley_16_1", "trailing_torque", trailing.torque)
+    book("shigley_16_1", "total_torque", brake.torque)
+    assert abs(leading.peak_pressure - 734454.065) < 5e-4
+    assert abs(trailing.peak_pressure - 381959.347) < 5e-4
+
+
+def test_shigley_problem_16_1_pin_reactions() -> None:
+    shoe = from_pin_line(BOOKS["shigley_16_1"], 1e-3, np.radians(30))
+    leading, trailing = drum.brake_torque(drum.simplex(shoe), force=2200.0, friction=0.28).shoes
+    along, across = np.array([0.5, -np.cos(np.pi / 6)]), np.array([np.cos(np.pi / 6), 0.5])
+    # The manual works with four digits of pressures near 4000 N: 2 N.
+    assert abs(np.linalg.norm(leading.pin_reaction) - 4249) < 2
+    found = sorted(abs(trailing.pin_reaction @ axis) for axis in (along, across))
+    np.testing.assert_allclose(found, [570, 751], atol=1)
+    assert abs(np.linalg.norm(trailing.pin_reaction) - 943) < 1  # printed 959, from 597 in place of 570
+
+
+def test_shigley_problem_16_1_in_inches() -> None:
+    case = BOOKS["shigley_16_1_inch"]
+    shoe = from_pin_line(case, INCH, np.radians(30))
+    brake = drum.brake_torque(drum.simplex(shoe), force=500 * LBF, friction=0.28)
+    leading, trailing = brake.shoes
+    psi, torque = LBF / INCH**2, LBF * INCH
+    found = {
+        "leading_pressure": leading.peak_pressure / psi,
+        "trailing_pressure": trailing.peak_pressure / psi,
+        "leading_torque": leading.torque / torque,
+        "trailing_torque": trailing.torque / torque,
+        "total_torque": brake.torque / torque,
+        "leading_pin": np.linalg.norm(leading.pin_reaction) / LBF,
+        "trailing_pin": np.linalg.norm(trailing.pin_reaction) / LBF,
+    }
+    # The manual rounds 4.493 to 4.49 on the way, 0.07 %, and its results to three digits, 0.25 % at worst;
+    # the trailing pin's 215 is the size of differences of forces near 400, rounded to 1: 0.5 %.
+    error = {name: abs(value / float(case[name]["printed"]) - 1) for name, value in found.items()}
+    wrong = {name: e for name, e in error.items() if e > (0.005 if name == "trailing_pin" else 0.003)}
+    assert wrong == {}
+
+
+def test_shigley_problem_16_2() -> None:
+    case = BOOKS["shigley_16_1_inch"] | BOOKS["shigley_16_2_problem"]
+    shoe = from_pin_line(case, INCH, np.radians(30))
+    area = INCH**2
+    drawn = drum.shoe_torque(shoe, peak_pressure=1.0, friction=0.28)
+    pushed = drum.shoe_torque(shoe, peak_pressure=1.0, friction=0.28, leading=False)
+    mean = (drawn.force + pushed.force) / 2 * shoe.moment_arm / INCH**3
+    book("shigley_16_2_problem", "force", drawn.force / area)
+    book("shigley_16_2_problem", "normal_moment", mean)
+    book("shigley_16_2_problem", "friction_moment", mean - drawn.force * shoe.moment_arm / INCH**3)
+
+
+def test_bhandari_12_9() -> None:
+    case = BOOKS["bhandari_12_9"]
+    brake = drum.brake_torque(drum.simplex(from_pin_line(case, 1e-3)), peak_pressure=1e6, friction=0.3)
+    assert abs(brake.force - case["reference_force"]["value"]) < 5e-7
+    assert abs(1e3 * case["pairs"] * brake.torque - case["reference_torque"]["value"]) < 5e-7
