@@ -156,6 +156,11 @@ class SteadyPencil:
     K2: np.ndarray
     f2: np.ndarray
 
+    def block(self, place: slice) -> SteadyPencil:
+        """One field alone, without damping."""
+        M, K0, K2 = (A[place, place] for A in (self.M, self.K0, self.K2))
+        return SteadyPencil(M, np.zeros_like(M), np.zeros_like(M), K0, K2, self.f2[place])
+
     @property
     def conservative(self) -> bool:
         """Whether there is neither damping nor gyroscopic coupling."""

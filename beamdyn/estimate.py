@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.eigen import Eigen, Solver
-from beamdyn.equations import Equations, SteadyPencil, equations
-from beamdyn.operators import Discretization, Space, assemble
+from beamdyn.equations import Equations, equations
+from beamdyn.operators import Discretization, assemble
+from beamdyn.reduction import Kept, ModalEquations, reduced
 from beamdyn.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.scene import Scene
 
@@ -45,55 +46,13 @@ class Model:
         """The eigenproblem at steady speed."""
         return Solver(self.equations.steady())
 
-    def modal(self, modes: int) -> ModalEquations:
-        """The equations in the coordinates of the lowest modes at rest, of each field as many."""
-        op = self.equations.operators
-        pairs = {"bending": (op.bending.KB, op.bending.M)}
-        if op.stretch is not None:
-            pairs["stretch"] = (op.stretch.KS, op.stretch.M)
-        vectors = {name: rest_modes(K, M, modes) for name, (K, M) in pairs.items()}
-        vectors["bending"] *= np.sign(op.bending.space.end(0) @ vectors["bending"])
-        return ModalEquations(self.equations.reduced(vectors), vectors["bending"], op.bending.space)
+    def modal(self, kept: Kept | int) -> ModalEquations:
+        """The equations in the coordinates of the modes that are kept; of so many modes at rest."""
+        return reduced(self.equations, Kept(kept) if isinstance(kept, int) else kept)
 
     def coarser(self) -> Model:
         """The model that this one is compared with."""
         return Model(self.scene, self.discretization.coarser())
-
-
-@dataclass(frozen=True)
-class ModalEquations:
-    """Equations in modal coordinates of the beam at rest, with unit mass; the deflection comes first.
-
-    Parameters
-    ----------
-    equations : Equations
-        The reduced equations.
-    vectors : ndarray, shape (n, m)
-        Mass-normalised bending modes in the functions of `space`, tip positive.
-    space : Space
-        The functions.
-    """
-
-    equations: Equations
-    vectors: np.ndarray
-    space: Space
-
-    @cached_property
-    def tip(self) -> np.ndarray:
-        """Tip deflection of the modes [kg^-1/2], shape (m,)."""
-        return self.vectors.T @ self.space.end(0)
-
-    def shape(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Derivatives of the modes with respect to x/L at fractions xi of the length: shape (m, len(xi))."""
-        return self.vectors.T @ self.space.evaluate(np.asarray(xi, dtype=float), order)
-
-
-def rest_modes(K: np.ndarray, M: np.ndarray, modes: int) -> np.ndarray:
-    """Mass-normalised lowest modes of (K, M): shape (n, modes)."""
-    n = len(K)
-    zero = np.zeros((n, n))
-    solver = Solver(SteadyPencil(M, zero, zero, K, zero, np.zeros(n)))
-    return solver.solve(np.zeros(1), min(modes, n)).vector[0]
 
 
 @dataclass(frozen=True)
@@ -238,6 +197,12 @@ def _ladder(method: str, scene: Scene, modes: int, cheapest: bool) -> Iterator[D
     while step is not None:
         yield step
         step = step.finer()
+
+
+def roomy(discretization: str | Discretization, modes: int) -> str | Discretization:
+    """The discretization, or one of our choice if it has no room for so many modes."""
+    fits = isinstance(discretization, str) or discretization.fits(modes)
+    return discretization if fits else "ritz"
 
 
 def _roomy(discretization: Discretization, modes: int) -> Discretization:

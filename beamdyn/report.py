@@ -114,12 +114,13 @@ def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str
 
 
 def _time_error(run: Transient) -> str:
+    left_out = f"by the modes left out {1e3 * run.mode_error:.1g} mm."
     if math.isnan(run.time_error):
-        return "The error in time is not estimated: this integrator bounds that of each step only."
-    return (
-        f"Estimated error by the steps in time: {1e3 * run.time_error:.1g} mm; "
-        "that of modes left out is seen by asking for more."
-    )
+        return (
+            "The error in time is not estimated: this integrator bounds that of each step only. "
+            f"Estimated error {left_out}"
+        )
+    return f"Estimated error by the steps in time {1e3 * run.time_error:.1g} mm, {left_out}"
 
 
 def crossings_table(found: Crossings) -> Group:

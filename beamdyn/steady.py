@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from beamdyn import __version__
 from beamdyn.common.checks import ascending, count, positive
-from beamdyn.common.results import Provenance, Result
-from beamdyn.estimate import choose
+from beamdyn.common.results import Provenance, Result, plain
+from beamdyn.estimate import Model, choose, roomy
 from beamdyn.harmonics import Pair, TorusSystem, balance, growth, largest, reach
 from beamdyn.motion import Line, Motion
 from beamdyn.operators import Discretization
+from beamdyn.reduction import FEWEST, Kept
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
 from beamdyn.torus import excited_line, known_steady, torus_system
@@ -27,6 +29,8 @@ _GRAVITY = 9.81  # past this acceleration [m/s2] a wheel leaves the road
 _INTERACTIONS = 2  # with the turning coefficients, kept for the stability
 _MOST = 5  # interactions kept for the response, at most
 _ENTRIES = 10**7  # of the matrices solved at once
+_BELOW = 0.99  # of the critical speed: where the fastest modes are taken at most
+_MOST_MODES = 13  # at each of two speeds, that "auto" tries
 _EXACT = 1e-15  # error where no harmonic is neglected
 
 
@@ -49,8 +53,7 @@ class SteadyResponse(Result):
     growth_rate : ndarray, shape (S,)
         Largest rate of growth of free motion [1/s].
     error : ndarray, shape (S,)
-        Estimated error by the neglected harmonics, relative to the bound; that of neglected modes is
-        seen by asking for more.
+        Estimated error by the neglected harmonics, relative to the bound.
     lines : tuple of Line, length l
         The lines of the response.
     line_frequency : ndarray, shape (S, l)
@@ -63,6 +66,10 @@ class SteadyResponse(Result):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Notes
+    -----
+    The error by the modes left out is `mode_error`, which takes a second solution when first asked for.
     """
 
     speeds: np.ndarray
@@ -78,7 +85,36 @@ class SteadyResponse(Result):
     harmonics: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
-    scene: Scene = field(repr=False)
+    task: Task = field(repr=False)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.task.scene
+
+    @cached_property
+    def richer(self) -> SteadyResponse | None:
+        """The same with half as many modes more, at least two; None if there is no richer model."""
+        return self.task.richer()
+
+    @cached_property
+    def mode_error(self) -> np.ndarray:
+        """Estimated error by the modes left out, relative to the bound: twice what `richer` adds, (S,).
+
+        Infinite where only one of the two has a steady response, or if there is no richer model.
+        """
+        if self.richer is None:
+            return np.full(len(self.speeds), np.inf)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            added = 2 * np.abs(self.richer.amplitude - self.amplitude) / self.bound
+        neither = np.isnan(self.amplitude) & np.isnan(self.richer.amplitude)
+        return np.where(
+            neither | (self.richer.amplitude == self.amplitude), 0.0, np.nan_to_num(added, nan=np.inf)
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, `mode_error` included."""
+        return {**super().to_dict(), "mode_error": plain(self.mode_error)}
 
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0) -> np.ndarray:
         """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...)."""
@@ -96,14 +132,14 @@ class SteadyResponse(Result):
 def steady_response(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],
-    modes: int = 3,
+    modes: int | str = "auto",
     harmonics: int | None = None,
     tolerance: float = 1e-5,
     method: str | Discretization = "ritz",
 ) -> SteadyResponse:
     """Steady response at given speeds by harmonic balance in the phases of rotation and road.
 
-    The speeds are solved as one batch in the coordinates of the beam's modes at rest.  The two
+    The speeds are solved as one batch in the coordinates of a few modes of the beam.  The two
     phases count as free, whether or not their rates are commensurate: the amplitude is the largest
     that the response reaches in time if they are not, and the largest over the phase between road
     and rotation if they are.  Stability is decided by the exponents of free motion on the same torus
@@ -115,14 +151,16 @@ def steady_response(
         The scene.
     speeds : sequence of float
         Speeds [rad/s], ascending.
-    modes : int
-        How many modes of the beam.
+    modes : int or "auto"
+        How many modes of the beam at rest.  "auto" keeps modes at the slowest and at the fastest speed, as
+        few as leave no more than the tolerance out.
     harmonics : int, optional
         Interactions of the response with the turning stiffness that are kept: 0 keeps the lines of
         the load, 1 also those that the stiffness makes of them, and so on.  As many as the tolerance
         asks for, up to 5, if not given.
     tolerance : float
-        Largest estimated error by neglected harmonics, relative to the bound.
+        Largest estimated error by neglected harmonics, and with ``modes="auto"`` by neglected modes,
+        each relative to the bound.
     method : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -135,43 +173,83 @@ def steady_response(
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
     """
-    start = perf_counter()
-    speeds, modes = ascending("speeds", speeds), count("modes", modes)
+    speeds = ascending("speeds", speeds)
+    kept = None if modes == "auto" else Kept(count("modes", modes))
     steps = None if harmonics is None else count("harmonics", harmonics, least=0)
-    tolerance = positive("tolerance", tolerance)
-    model = choose(scene, method, speeds, modes)
-    modal = model.modal(modes)
-    system = torus_system(modal.equations, scene.motion, speeds)
-    rate, status = _stability(system, speeds, model.solver.critical_speed)
-    kept, c, error = _tip_harmonics(system, modal.shape(np.ones(1))[:, 0], steps, tolerance)
-    stable = (status == "stable") & np.isfinite(c).all(axis=1)
-    c[~stable], error[~stable] = np.nan, np.nan
-    amplitude = np.full(len(speeds), np.nan)
-    motion = known_steady(scene.motion)
-    harmonic, line = _lines_of(c, kept, motion)
-    amplitude[stable] = largest(line[stable], harmonic)
-    road = np.array([motion.road_acceleration(v) for v in speeds])
-    return SteadyResponse(
-        speeds=speeds,
-        amplitude=amplitude,
-        bound=np.abs(line).sum(axis=1),
-        stable=stable,
-        status=status,
-        growth_rate=rate,
-        error=error,
-        lines=tuple(excited_line(motion, h) for h in map(tuple, harmonic.tolist())),
-        line_frequency=np.abs(system.rates @ harmonic.T) / (2 * np.pi),
-        line_amplitude=line,
-        harmonics=harmonic,
-        warnings=tuple(_warnings(scene, speeds, status, amplitude, error, tolerance, road)),
-        provenance=Provenance(
-            __version__,
-            f"{model.discretization}, {modes} modes, {len(kept)} harmonics",
-            "without the harmonics of the last interaction",
-            perf_counter() - start,
-        ),
-        scene=scene,
-    )
+    task = Task(scene, speeds, kept or Kept(FEWEST), steps, positive("tolerance", tolerance), method)
+    return task.run() if kept else task.cheapest()
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked: see `steady_response`."""
+
+    scene: Scene
+    speeds: np.ndarray
+    kept: Kept
+    harmonics: int | None
+    tolerance: float
+    method: str | Discretization
+
+    def run(self) -> SteadyResponse:
+        """The response."""
+        start = perf_counter()
+        scene, speeds, model = self.scene, self.speeds, self._model
+        modal = model.modal(self.kept)
+        system = torus_system(modal.equations, scene.motion, speeds)
+        rate, status = _stability(system, speeds, model.solver.critical_speed)
+        tip = modal.shape(np.ones(1))[:, 0]
+        used, c, error = _tip_harmonics(system, tip, self.harmonics, self.tolerance)
+        stable = (status == "stable") & np.isfinite(c).all(axis=1)
+        c[~stable], error[~stable] = np.nan, np.nan
+        amplitude = np.full(len(speeds), np.nan)
+        motion = known_steady(scene.motion)
+        harmonic, line = _lines_of(c, used, motion)
+        amplitude[stable] = largest(line[stable], harmonic)
+        road = np.array([motion.road_acceleration(v) for v in speeds])
+        return SteadyResponse(
+            speeds=speeds,
+            amplitude=amplitude,
+            bound=np.abs(line).sum(axis=1),
+            stable=stable,
+            status=status,
+            growth_rate=rate,
+            error=error,
+            lines=tuple(excited_line(motion, h) for h in map(tuple, harmonic.tolist())),
+            line_frequency=np.abs(system.rates @ harmonic.T) / (2 * np.pi),
+            line_amplitude=line,
+            harmonics=harmonic,
+            warnings=tuple(_warnings(scene, speeds, status, amplitude, error, self.tolerance, road)),
+            provenance=Provenance(
+                __version__,
+                f"{model.discretization}, {self.kept}, {len(used)} harmonics",
+                "without the harmonics of the last interaction",
+                perf_counter() - start,
+            ),
+            task=self,
+        )
+
+    def richer(self) -> SteadyResponse | None:
+        """The response with more modes; None if there is no richer model."""
+        kept = self.kept.more()
+        if kept is None or kept.modes is None:
+            return None
+        return replace(self, kept=kept, method=roomy(self.method, kept.modes)).run()
+
+    def cheapest(self) -> SteadyResponse:
+        """The response with the fewest modes that keeps the tolerance, or else with the most tried."""
+        speed = np.minimum(np.abs(self.speeds), _BELOW * self._model.solver.critical_speed)
+        ends = tuple(np.unique([speed.min(), speed.max()]).tolist())
+        found = replace(self, kept=Kept(FEWEST, ends)).run()
+        while (found.mode_error > self.tolerance).any() and (found.task.kept.modes or 0) < _MOST_MODES:
+            if found.richer is None:
+                break
+            found = found.richer
+        return found
+
+    @property
+    def _model(self) -> Model:
+        return choose(self.scene, self.method, self.speeds, self.kept.modes or 1)
 
 
 def _stability(system: TorusSystem, speeds: np.ndarray, critical: float) -> tuple[np.ndarray, np.ndarray]:

@@ -23,10 +23,11 @@ from beamdyn.estimate import Model, choose
 from beamdyn.modal import ModalSystem
 from beamdyn.motion import Motion, check_picklable
 from beamdyn.operators import Discretization
+from beamdyn.reduction import FEWEST, Kept, range_of_speed
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
 from beamdyn.stepping import TOLERANCES, Trajectory, largest_deflection
-from beamdyn.transient import simulate
+from beamdyn.transient import Task, Transient
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,6 +77,9 @@ class Sweep(Result):
         Largest tip deflection of the run [m]: of the samples, eight or more in each step.
     time_error : ndarray, shape (S,)
         Estimated error of the tip deflection by the steps in time [m].
+    mode_error : float
+        Estimated error by the modes left out, relative to the largest deflection: the largest of three
+        of the speeds.
     status : tuple of str, length S
         "done", or "failed" and why.
     window : tuple of float
@@ -92,6 +96,7 @@ class Sweep(Result):
     peaks: np.ndarray
     largest: np.ndarray
     time_error: np.ndarray
+    mode_error: float
     status: tuple[str, ...]
     window: tuple[float, float]
     t_end: float
@@ -111,7 +116,7 @@ def sweep(
     speeds: np.ndarray | Sequence[float],
     window: tuple[float, float] = (20.0, 30.0),
     t_end: float | None = None,
-    modes: int = 5,
+    modes: int | str = "auto",
     tolerance: float = 1e-5,
     workers: int = 1,
     executor: Executor | None = None,
@@ -135,10 +140,12 @@ def sweep(
         Beginning and end of the window [s].
     t_end : float, optional
         End of each run [s]; the window's end if not given.
-    modes : int
-        Number of modes of each field.
+    modes : int or "auto"
+        Number of modes of each field at rest.  "auto" keeps modes at the slowest and at the fastest speed, as
+        few as leave no more than the tolerance out at three of the speeds.
     tolerance : float
-        Error in time that is aimed at, relative to the largest deflection of a case.
+        Error in time that is aimed at, and with ``modes="auto"`` also the error by the modes left out, each
+        relative to the largest deflection of a case.
     workers : int
         Processes of our own; 1 computes in this one.
     executor : concurrent.futures.Executor, optional
@@ -166,18 +173,21 @@ def sweep(
     """
     began = perf_counter()
     cases = tuple(ascending("speeds", speeds).tolist())
-    request = _request(scene, window, t_end, modes, tolerance, discretization)
+    request = _request(scene, window, t_end, tolerance, discretization)
     workers, chunk = count("workers", workers), count("chunk", chunk)
     if executor is not None and workers > 1:
         raise ValueError(f"workers = {workers} and an executor are given: give one of them")
-    model = _checked(request, cases)
+    kept = None if modes == "auto" else Kept(count("modes", modes))
+    _check_speeds(request := replace(request, kept=kept or _fewest(request, cases)), cases)
     if store is not None or executor is not None or workers > 1:
         _check_sendable(request, importable=workers > 1)
+    tried = _tried(request, cases, Task.run if kept else Task.cheapest)
+    request = replace(request, kept=max((each.task.kept for each in tried), key=lambda kept: kept.modes or 0))
     run = _Run(request, _chunks(cases, chunk), None if store is None else Store(store, _KIND), progress)
     run.collect(executor, workers)
-    method = f"Gauss collocation in batches of {chunk}, {request.modes} modes of {model.discretization}"
+    method = f"Gauss collocation in batches of {chunk}, {request.kept} of {request.model().discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - began)
-    return _result(request, np.array(cases), run.cases(), provenance)
+    return _result(request, np.array(cases), run.cases(), _left_out(tried), provenance)
 
 
 def _chunks(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
@@ -194,9 +204,16 @@ class Request:
     scene: Scene
     window: tuple[float, float]
     t_end: float
-    modes: int
     tolerance: float
     discretization: str | Discretization
+    kept: Kept = field(default=Kept(FEWEST))
+
+    def task(self, motion: Motion) -> Task:
+        """One case alone."""
+        scene = replace(self.scene, motion=motion)
+        return Task(
+            scene, self.t_end, self.tolerance, "auto", self.discretization, "rest", None, {}, self.kept
+        )
 
     def motions(self, speeds: Sequence[float]) -> list[Motion]:
         """The motion at each speed."""
@@ -205,14 +222,14 @@ class Request:
 
     def model(self) -> Model:
         """The discretized scene."""
-        return choose(self.scene, self.discretization, np.zeros(1), self.modes, target=1e-3 * self.tolerance)
+        wanted, target = self.kept.modes or 1, 1e-3 * self.tolerance
+        return choose(self.scene, self.discretization, np.array(self.kept.speeds), wanted, target)
 
 
 def _request(
     scene: Scene,
     window: tuple[float, float],
     t_end: float | None,
-    modes: int,
     tolerance: float,
     discretization: str | Discretization,
 ) -> Request:
@@ -227,12 +244,11 @@ def _request(
             f"window = {start:g} ... {end:g} s: it must begin before it ends, "
             f"and lie in the run, 0 ... {last:g} s"
         )
-    modes, tolerance = count("modes", modes), within("tolerance", tolerance, *TOLERANCES)
-    return Request(scene, (start, end), last, modes, tolerance, discretization)
+    return Request(scene, (start, end), last, within("tolerance", tolerance, *TOLERANCES), discretization)
 
 
-def _checked(request: Request, speeds: tuple[float, ...]) -> Model:
-    """The model, if no case passes the critical speed and every motion lasts to the end."""
+def _check_speeds(request: Request, speeds: tuple[float, ...]) -> None:
+    """Refuse a case that passes the critical speed, or a motion that does not last to the end."""
     model, t = request.model(), np.linspace(0, request.t_end, 2001)
     critical = model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
@@ -242,7 +258,24 @@ def _checked(request: Request, speeds: tuple[float, ...]) -> Model:
             f"speeds: {len(past)} of {len(speeds)} ({_range(past)}) pass the critical speed "
             f"{critical:.6g} rad/s, where the beam buckles and linear theory has no answer; leave them out"
         )
-    return model
+
+
+def _fewest(request: Request, speeds: tuple[float, ...]) -> Kept:
+    """The fewest modes that are tried, at the slowest and at the fastest speed of all cases."""
+    ends = [range_of_speed(motion, request.t_end) for motion in request.motions((speeds[0], speeds[-1]))]
+    return Kept(FEWEST, tuple(np.unique([ends[0][0], ends[1][-1]]).tolist()))
+
+
+@one_blas_thread()
+def _tried(request: Request, speeds: tuple[float, ...], run: Callable[[Task], Transient]) -> list[Transient]:
+    """Runs at the fastest speed, in the middle, and halfway between: they tell what the modes leave out."""
+    some = sorted({speeds[k * (len(speeds) - 1) // 4] for k in (2, 3, 4)})
+    return [run(request.task(motion)) for motion in request.motions(some)]
+
+
+def _left_out(tried: Sequence[Transient]) -> float:
+    """Largest estimated error of some runs by the modes left out, over their largest deflection."""
+    return max((each.mode_error / each.largest for each in tried if each.largest), default=0.0)
 
 
 def _check_sendable(request: Request, importable: bool) -> None:
@@ -283,7 +316,7 @@ def solve(request: Request, speeds: tuple[float, ...]) -> list[Case]:
 
 
 def _together(request: Request, motions: Sequence[Motion]) -> list[Case]:
-    modal = request.model().modal(request.modes)
+    modal = request.model().modal(request.kept)
     systems = [ModalSystem(modal.equations, motion) for motion in motions]
     try:
         found = histories(systems, modal.tip, request.t_end, request.tolerance)
@@ -294,11 +327,8 @@ def _together(request: Request, motions: Sequence[Motion]) -> list[Case]:
 
 def _alone(request: Request, motion: Motion) -> Case:
     """One case by `simulate`, which refines its steps until the tolerance is met."""
-    scene = replace(request.scene, motion=motion)
     try:
-        run = simulate(
-            scene, request.t_end, request.modes, request.tolerance, discretization=request.discretization
-        )
+        run = request.task(motion).run()
         peak = run.peak(*request.window)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return _failed(str(error))
@@ -433,13 +463,16 @@ def _attempt(request: Request, speeds: tuple[float, ...]) -> list[Case] | Except
 # Results ------------------------------------------------------------------------------------------
 
 
-def _result(request: Request, speeds: np.ndarray, cases: Sequence[Case], provenance: Provenance) -> Sweep:
+def _result(
+    request: Request, speeds: np.ndarray, cases: Sequence[Case], mode_error: float, provenance: Provenance
+) -> Sweep:
     peaks, largest, time_error, status = zip(*cases, strict=True)
     found = Sweep(
         speeds=speeds,
         peaks=np.array(peaks),
         largest=np.array(largest),
         time_error=np.array(time_error),
+        mode_error=mode_error,
         status=status,
         window=request.window,
         t_end=request.t_end,

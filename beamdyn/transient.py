@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -16,11 +17,12 @@ from beamdyn import __version__
 from beamdyn.common.checks import ascending, count, positive, real, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.common.workers import one_blas_thread
-from beamdyn.estimate import ModalEquations, Model, choose
+from beamdyn.estimate import Model, choose, roomy
 from beamdyn.integrators import GaussCollocation
 from beamdyn.modal import ModalSystem
 from beamdyn.motion import Motion
 from beamdyn.operators import Discretization
+from beamdyn.reduction import FEWEST, SAMPLED_TIMES, Kept, ModalEquations, range_of_speed
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
 from beamdyn.stepping import SAMPLES, TOLERANCES, Path, integrate, largest_deflection, tip_deflection
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
 _STOCK = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 _GRAVITY = 9.81
+_COMPARED = 20_000  # times at which runs are compared, at most twice as many
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,10 @@ class Transient(Result):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Notes
+    -----
+    The error by the modes left out is `mode_error`, which takes a second run when first asked for.
     """
 
     t: np.ndarray
@@ -63,10 +70,36 @@ class Transient(Result):
     largest: float
     warnings: tuple[str, ...]
     provenance: Provenance
-    scene: Scene = field(repr=False)
     modal: ModalEquations = field(repr=False)
     system: ModalSystem = field(repr=False)
     path: Path = field(repr=False)
+    task: Task = field(repr=False)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.task.scene
+
+    @cached_property
+    def richer(self) -> Transient | None:
+        """The same run with half as many modes more, at least two; None if there is no richer model."""
+        return self.task.richer()
+
+    @cached_property
+    def mode_error(self) -> float:
+        """Estimated largest error of the tip deflection by the modes left out [m]: twice what `richer` adds.
+
+        What that one leaves out in turn is less than half of what it adds: measured on random runs by
+        `benchmarks/coverage_transients.py`.  Infinite if there is no richer model.
+        """
+        if self.richer is None:
+            return np.inf
+        t, q, _ = (x[:: 1 + len(x) // _COMPARED] for x in self.path.samples)
+        return 2 * float(np.abs(tip_deflection(self.modal.tip, q) - self.richer.deflection(t)).max())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, `mode_error` included."""
+        return {**super().to_dict(), "mode_error": self.mode_error}
 
     def at(self, t: np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
         """Modal coordinates and velocities at any times t [s] of the run: shapes (len(t), m)."""
@@ -140,7 +173,7 @@ def _check_window(start: float, end: float, path: Path) -> None:
 def simulate(
     scene: Scene,
     t_end: float,
-    modes: int | None = 3,
+    modes: int | str | None = "auto",
     tolerance: float = 1e-5,
     method: str | type[OdeSolver] = "auto",
     discretization: str | Discretization = "ritz",
@@ -156,10 +189,13 @@ def simulate(
         The scene, with a motion.
     t_end : float
         End of the run [s].
-    modes : int or None
-        Number of modes kept of each field; None keeps all functions of the discretization.
+    modes : int, "auto" or None
+        Number of modes at rest that are kept of each field.  "auto" keeps modes at the slowest and at the
+        fastest speed, as few as leave no more than the tolerance out; None keeps all functions of the
+        discretization.
     tolerance : float
-        Error in time that is aimed at, relative to the largest tip deflection.
+        Error in time that is aimed at, and with ``modes="auto"`` also the error by the modes left out,
+        each relative to the largest tip deflection.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
         Our Gauss collocation with a step from the tolerance, or any method of `solve_ivp`.
     discretization : {"ritz", "fem"} or Discretization
@@ -181,44 +217,120 @@ def simulate(
     ValueError
         If an argument is out of its range, or the motion passes the critical speed.
     """
-    began = perf_counter()
     t_end, tolerance = positive("t_end", t_end, "s"), within("tolerance", tolerance, *TOLERANCES)
     if scene.motion is None:
         raise ValueError("scene.motion is None: a transient needs a motion, such as SteadyRotation(50.0)")
-    wanted = count("modes", 1 if modes is None else modes)
-    model = choose(scene, discretization, np.zeros(1), wanted, target=1e-3 * tolerance)
-    _check_motion(scene.motion, t_end, model)
-    modal = model.modal(model.solver.size if modes is None else modes)
-    system = ModalSystem(modal.equations, scene.motion)
-    y0 = _initial(initial, system)
-    if method == "auto":
-        path, error, name = integrate(modal.tip, system, y0, t_end, tolerance)
-    else:
-        options = {"rtol": tolerance, "atol": _absolute(modal, system, y0, t_end, tolerance), **options}
-        path, error = _stock(system, y0, t_end, method, options), np.nan
-        name = method if isinstance(method, str) else method.__name__
-    t, q, v = path.samples
-    largest = largest_deflection(modal.tip, path, path.start, path.end)
-    if t_eval is not None:
-        t = _times(t_eval, t_end)
-        q, v = path.at(t)
-    size = "all" if modes is None else str(modes)
-    return Transient(
-        t=t,
-        tip=tip_deflection(modal.tip, q),
-        coordinates=q,
-        velocities=v,
-        time_error=float(error),
-        largest=largest,
-        warnings=tuple(_warnings(scene, t_end, largest)),
-        provenance=Provenance(
-            __version__, f"{name}, {size} modes of {model.discretization}", "", perf_counter() - began
-        ),
-        scene=scene,
-        modal=modal,
-        system=system,
-        path=path,
-    )
+    times = None if t_eval is None else _times(t_eval, t_end)
+    kept = None if modes == "auto" else Kept(None if modes is None else count("modes", modes))
+    if kept is None and not isinstance(initial, str):
+        raise ValueError('initial is an array: give the number of its modes, not modes = "auto"')
+    fewest = kept or Kept(FEWEST, range_of_speed(scene.motion, t_end))
+    task = Task(scene, t_end, tolerance, method, discretization, initial, times, options, fewest)
+    return task.run() if kept else task.cheapest()
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked of a run: see `simulate`."""
+
+    scene: Scene
+    t_end: float
+    tolerance: float
+    method: str | type[OdeSolver]
+    discretization: str | Discretization
+    initial: str | np.ndarray
+    t_eval: np.ndarray | None
+    options: dict[str, Any]
+    kept: Kept
+
+    def run(self) -> Transient:
+        """The run."""
+        began = perf_counter()
+        motion, t_end = self.motion, self.t_end
+        model = self._model
+        _check_motion(motion, t_end, model)
+        modal = model.modal(self.kept)
+        system = ModalSystem(modal.equations, motion)
+        path, error, name = self._integrated(modal, system, _initial(self.initial, system))
+        t, q, v = path.samples
+        largest = largest_deflection(modal.tip, path, path.start, path.end)
+        if self.t_eval is not None:
+            t = self.t_eval
+            q, v = path.at(t)
+        return Transient(
+            t=t,
+            tip=tip_deflection(modal.tip, q),
+            coordinates=q,
+            velocities=v,
+            time_error=error,
+            largest=largest,
+            warnings=tuple(_warnings(self.scene, t_end, largest)),
+            provenance=Provenance(
+                __version__, f"{name}, {self.kept} of {model.discretization}", "", perf_counter() - began
+            ),
+            modal=modal,
+            system=system,
+            path=path,
+            task=self,
+        )
+
+    def richer(self) -> Transient | None:
+        """The run by our integrator with more modes; None if there is no richer model."""
+        own = replace(self, method="auto", t_eval=None)
+        task = own._finer() if self.kept.modes is None else own._more(self.kept.modes)
+        return task and task.run()
+
+    def cheapest(self) -> Transient:
+        """The run with the fewest modes that keeps the tolerance, or else with the most."""
+        run = replace(self, method="auto", t_eval=None).run()
+        while run.mode_error > self.tolerance * run.largest and run.richer is not None:
+            run = run.richer
+        plain = self.method == "auto" and self.t_eval is None
+        return run if plain else replace(self, kept=run.task.kept).run()
+
+    def _more(self, modes: int) -> Task | None:
+        """More modes, in a basis of our choice where the given one is too small."""
+        kept = self.kept.more()
+        if kept is None or kept.modes is None:
+            return None
+        initial = self._padded(modes, kept.modes)
+        return replace(
+            self, kept=kept, discretization=roomy(self.discretization, kept.modes), initial=initial
+        )
+
+    def _finer(self) -> Task | None:
+        """All functions of the next finer discretization."""
+        finer = self._model.discretization.finer()
+        return None if finer is None else replace(self, discretization=finer)
+
+    @property
+    def motion(self) -> Motion:
+        """The scene's motion."""
+        assert self.scene.motion is not None
+        return self.scene.motion
+
+    @property
+    def _model(self) -> Model:
+        wanted, target = self.kept.modes or 1, 1e-3 * self.tolerance
+        return choose(self.scene, self.discretization, np.array(self.kept.speeds), wanted, target)
+
+    def _integrated(
+        self, modal: ModalEquations, system: ModalSystem, y0: np.ndarray
+    ) -> tuple[Path, float, str]:
+        """The path, its error by the steps in time [m], and what was done."""
+        if self.method == "auto":
+            return integrate(modal.tip, system, y0, self.t_end, self.tolerance)
+        absolute = _absolute(modal, system, y0, self.t_end, self.tolerance)
+        options = {"rtol": self.tolerance, "atol": absolute, **self.options}
+        name = self.method if isinstance(self.method, str) else self.method.__name__
+        return _stock(system, y0, self.t_end, self.method, options), np.nan, name
+
+    def _padded(self, modes: int, more: int) -> str | np.ndarray:
+        """Initial coordinates and velocities of more modes: those added are at rest."""
+        if isinstance(self.initial, str):
+            return self.initial
+        parts = np.reshape(self.initial, (-1, modes))
+        return np.hstack([parts, np.zeros((len(parts), more - modes))]).ravel()
 
 
 def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
@@ -230,7 +342,7 @@ def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
 
 def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
     """Refuse a motion that ends early or passes the critical speed, before any long work."""
-    t = np.linspace(0, t_end, 2001)
+    t = np.linspace(0, t_end, SAMPLED_TIMES)
     speed = np.abs(motion.at(t).speed)
     critical = model.solver.critical_speed
     if speed.max() >= critical:
@@ -262,7 +374,11 @@ def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
     motion, length = scene.motion, scene.beam.length
     if largest > LARGE_DEFLECTION * length:
         yield f"the tip moves by {largest / length:.2g} of the length: past 0.1 it is outside linear theory"
-    road = np.abs(motion.at(np.linspace(0, t_end, 2001)).carrier_acceleration[:, 1]).max() if motion else 0.0
+    road = (
+        np.abs(motion.at(np.linspace(0, t_end, SAMPLED_TIMES)).carrier_acceleration[:, 1]).max()
+        if motion
+        else 0.0
+    )
     if road > _GRAVITY:
         yield (
             f"the road accelerates the wheel by {road:.3g} m/s2, more than gravity: it would leave the road; "

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 
+Modes = int | Literal["auto"]
+
 _PERIODS, _FRAMES = 3, 60  # of a close-up
 
 
@@ -34,7 +36,7 @@ def simulate(
     /,
     *,
     t_end: Text,
-    modes: int = 5,
+    modes: Modes = "auto",
     tolerance: float = 1e-5,
     method: Integrator = "auto",
     discretization: Method = "ritz",
@@ -52,7 +54,7 @@ def simulate(
     t_end
         End of the run with its unit, e.g. "30 s".
     modes
-        How many modes.
+        How many modes at rest; auto: as few as leave no more than the tolerance out.
     tolerance
         Error in time that is aimed at, relative to the largest deflection.
     method
@@ -129,7 +131,7 @@ def steady(
     /,
     *,
     speeds: Text,
-    modes: int = 3,
+    modes: Modes = "auto",
     tolerance: float = 1e-5,
     method: Method = "ritz",
     outputs: Outputs = NO_FILES,
@@ -143,7 +145,7 @@ def steady(
     speeds
         With their unit: start:stop:count, e.g. "1:150:1000 rad/s", or a list, e.g. "50, 55 rad/s".
     modes
-        How many modes.
+        How many modes at rest; auto: as few as leave no more than the tolerance out.
     tolerance
         Largest error by neglected harmonics, relative to the sum of the lines.
     method
@@ -172,7 +174,7 @@ def sweep(
     *,
     speeds: Text,
     window: Text,
-    modes: int = 5,
+    modes: Modes = "auto",
     tolerance: float = 1e-5,
     workers: int = 1,
     scheduler: Annotated[
@@ -192,7 +194,7 @@ def sweep(
     window
         Stretch of time in which the largest deflection is sought, e.g. "20:30 s"; the runs end with it.
     modes
-        How many modes.
+        How many modes at rest; auto: as few as leave no more than the tolerance out.
     tolerance
         Error in time that is aimed at, relative to the largest deflection.
     workers

@@ -13,7 +13,7 @@ from tests.reference.power_series import Tip, bending_eigenvalues
 _DIGITS = 40
 
 
-def exact(scene: bd.Scene, speed: float, count: int = 3) -> list[mpc]:
+def exact(scene: bd.Scene, speed: float, count: int = 3, digits: int = 30) -> list[mpc]:
     """The lowest s of exp(s t) [1/s] of a beam without breakpoints, stretch and damping."""
     with mp.workdps(_DIGITS):
         beam, mount = scene.beam, scene.mount
@@ -30,6 +30,7 @@ def exact(scene: bd.Scene, speed: float, count: int = 3) -> list[mpc]:
             stiffness=[c / stiffness[0] for c in stiffness],
             tip=_tip(beam.tip, mass[0], L),
             count=count,
+            digits=digits,
         )
         return [mp.sqrt(mpc(-z)) / tau for z in squares]
 

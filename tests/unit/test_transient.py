@@ -148,7 +148,8 @@ def test_a_damped_batch_with_stretch_and_gravity() -> None:
         (lambda: bd.simulate(ROLLING, 1.0, tolerance=1e-14), ["tolerance", "1e-12"]),
         (lambda: bd.simulate(ROLLING, 1e8), ["t_end", "steps", "steady"]),
         (lambda: bd.simulate(ROLLING, 1.0, initial="hot"), ["initial", "rest"]),
-        (lambda: bd.simulate(ROLLING, 1.0, initial=np.zeros(3)), ["initial", "6"]),
+        (lambda: bd.simulate(ROLLING, 1.0, modes=3, initial=np.zeros(3)), ["initial", "6"]),
+        (lambda: bd.simulate(ROLLING, 1.0, initial=np.zeros(4)), ["initial", "number of its modes"]),
         (lambda: bd.simulate(ROLLING, 1.0, t_eval=[0.0, 2.0]), ["t_eval"]),
         (lambda: bd.simulate(ROLLING, 1.0, t_eval=[0.5, 0.1]), ["t_eval", "ascend"]),
         (
@@ -174,3 +175,41 @@ def test_windows_and_times_outside_the_run(short: bd.Transient) -> None:
             short.peak(*window)
     with pytest.raises(ValueError, match="run"):
         short.at([2.5])
+
+
+@pytest.mark.parametrize("modes", [1, 3, 5])
+def test_what_the_modes_left_out_is_covered_and_not_far_off(modes) -> None:
+    exact = bd.simulate(ROLLING, 3.0, modes=20, tolerance=1e-8)
+    run = bd.simulate(ROLLING, 3.0, modes=modes, tolerance=1e-8)
+    true = np.abs(run.tip - exact.deflection(run.t)).max()
+    assert true <= run.mode_error <= 10 * true
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_modes_are_chosen_for_the_tolerance(tolerance) -> None:
+    exact = bd.simulate(ROLLING, 3.0, modes=30, tolerance=1e-9)
+    run = bd.simulate(ROLLING, 3.0, tolerance=tolerance)
+    true = np.abs(run.tip - exact.deflection(run.t)).max()
+    assert true <= run.time_error + run.mode_error <= 2 * tolerance * run.largest
+    assert "rad/s" in run.provenance.method
+
+
+def test_modes_chosen_serve_a_stock_integrator_and_times_too() -> None:
+    t = np.linspace(0, 1, 11)
+    ours, stock = (bd.simulate(ROLLING, 1.0, method=m, t_eval=t, tolerance=1e-6) for m in ("auto", "DOP853"))
+    assert ours.coordinates.shape == stock.coordinates.shape
+    # The stock method holds its tolerance in each step only.
+    np.testing.assert_allclose(stock.tip, ours.tip, rtol=0, atol=1e-4 * ours.largest)
+
+
+def test_initial_coordinates_go_with_the_richer_model() -> None:
+    start = np.array([1e-6, -2e-6, 0.0, 1e-4])
+    run = bd.simulate(ROLLING, 0.1, modes=2, initial=start)
+    assert run.richer is not None
+    np.testing.assert_allclose(run.richer.coordinates[0], [1e-6, -2e-6, 0, 0], rtol=0, atol=1e-20)
+    np.testing.assert_allclose(run.richer.velocities[0], [0, 1e-4, 0, 0], rtol=0, atol=1e-17)
+
+
+def test_modes_left_out_of_the_largest_model_are_not_known() -> None:
+    run = bd.simulate(ROLLING, 0.01, modes=None, discretization=bd.Fem(100))
+    assert run.mode_error == np.inf
