@@ -33,6 +33,7 @@ __all__ = [
     "SweepInterrupted",
     "Table",
     "TipMass",
+    "Tradeoff",
     "Transient",
     "UserMotion",
     "critical_point",
@@ -47,6 +48,7 @@ __all__ = [
     "steady_response",
     "sweep",
     "terms",
+    "tradeoff",
 ]
 
 _HOME = {
@@ -72,6 +74,7 @@ _HOME = {
     "SweepInterrupted": "sweeps",
     "Table": "profile",
     "TipMass": "beam",
+    "Tradeoff": "tradeoffs",
     "Transient": "transient",
     "UserMotion": "motion",
     "critical_point": "stability",
@@ -86,6 +89,7 @@ _HOME = {
     "steady_response": "steady",
     "sweep": "sweeps",
     "terms": "inventory",
+    "tradeoff": "tradeoffs",
 }
 
 if TYPE_CHECKING:
@@ -112,6 +116,7 @@ if TYPE_CHECKING:
     from beamdyn.stability import critical_point, critical_speed, setting_angle_limits
     from beamdyn.steady import SteadyResponse, steady_response
     from beamdyn.sweeps import Sweep, SweepInterrupted, sweep
+    from beamdyn.tradeoffs import Tradeoff, tradeoff
     from beamdyn.transient import Transient, simulate
 
 

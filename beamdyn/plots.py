@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import LogFormatterSciNotation
 
 from beamdyn.common.pictures import COLOURS
 from beamdyn.common.pictures import save_figure as save_figure  # it belongs to them
 
 _DASHES = ("-", "--", "-.", ":")
+_MARKERS = "osD^vXP"
 _DENSE = 2000  # samples from which a line over time is drawn thin
 _MANY = 6  # entries from which the legend stands beside the data
 _SPEED = "angular speed [rad/s]"
@@ -249,6 +251,76 @@ def plot_sweep(speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None) ->
     _lines(ax, speeds, [1e3 * np.asarray(peaks)], ["peak"])
     ax.set_ylim(bottom=0)
     return ax
+
+
+def plot_work_precision(
+    families: Mapping[str, np.ndarray],
+    front: np.ndarray,
+    title: str = "",
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw error against time, one line a family, and the Pareto front as a broad band below them.
+
+    Parameters
+    ----------
+    families : mapping of str to ndarray, shape (n, 2)
+        Times [s] and relative errors; an error above 1, not a digit being right, is drawn as 1.
+    front : ndarray, shape (k, 2)
+        Times and errors of the measurements that none beats.
+    title : str
+        Above the axes.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _dressed(ax, "time [s]", "relative error")
+    ax.set(xscale="log", yscale="log")
+    ax.set_title(title, fontsize=11)
+    ax.tick_params(which="minor", labelsize=8)
+    ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(0.8, 0.3)))
+    ax.plot(*_drawable(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
+    for i, (name, points) in enumerate(families.items()):
+        marker = _MARKERS[i % len(_MARKERS)]
+        ax.plot(*_drawable(points).T, marker=marker, markersize=4, linewidth=1.2, label=name, **_look(i))
+    return _with_legend(ax)
+
+
+def _drawable(points: np.ndarray) -> np.ndarray:
+    return np.minimum(points[points[:, 1] > 0], [np.inf, 1.0])
+
+
+def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
+    """Axes that share the place of given ones, of which only the place is left; two in a row.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    ax : Axes, optional
+        Whose place they take; that of a new figure if not given.
+
+    Returns
+    -------
+    Axes
+        Those whose place is taken.
+    list of Axes
+        The new ones, in reading order.
+    """
+    columns = min(2, count)
+    rows = -(-count // columns)
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.subplots(figsize=(6.5 * columns, 4.5 * rows), layout="constrained")[1]
+    place, figure = ax.get_subplotspec(), ax.get_figure()
+    if place is None or figure is None:
+        raise ValueError("ax: give axes made by subplots: their place is divided")
+    ax.set_axis_off()
+    grid = place.subgridspec(rows, columns)
+    return ax, [figure.add_subplot(grid[divmod(i, columns)]) for i in range(count)]
 
 
 def mark_points(

@@ -158,7 +158,7 @@ def resonance_speeds(
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
     wanted += [("parametric", line, pair) for line in parametric for pair in pairs]
     found = [c for kind, line, places in wanted for c in locus.crossings(kind, line, places)]
-    names = str(model.discretization), str(model.coarser().discretization)
+    names = str(model.discretization), str(model.coarser.discretization)
     return Crossings(
         crossings=tuple(sorted(found, key=lambda c: c.speed)),
         lines=tuple(forced),

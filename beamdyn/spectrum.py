@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn import __version__
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.workers import one_blas_thread
 from beamdyn.estimate import TOLERANCES, Estimated, Model, missed, solved
 from beamdyn.operators import Discretization, tension
 from beamdyn.scene import Scene
@@ -327,6 +328,7 @@ class Locus(Result):
         return plot_locus(self.speeds, self.frequency, ax)
 
 
+@one_blas_thread()  # the matrices are small: more threads only wait for each other
 def frequency_locus(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],

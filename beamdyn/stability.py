@@ -99,7 +99,7 @@ def critical_point(
         if finer is None or error <= max(target, 3 * model.solver.critical_rounding):
             break
         model = Model(scene, finer)
-    names = str(model.discretization), str(model.coarser().discretization)
+    names = str(model.discretization), str(model.coarser.discretization)
     texts = () if tolerance is None else tuple(missed(error, target))
     return CriticalPoint(
         speed, error, texts, Provenance(__version__, *names, wall_time=perf_counter() - start)
@@ -107,7 +107,7 @@ def critical_point(
 
 
 def _critical(model: Model) -> tuple[float, float]:
-    fine, coarse = model.solver.critical_speed, model.coarser().solver.critical_speed
+    fine, coarse = model.solver.critical_speed, model.coarser.solver.critical_speed
     if np.isinf(fine):
         return fine, 0.0
     if np.isinf(coarse):
@@ -190,7 +190,7 @@ def setting_angle_limits(
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = choose(tangential, method, speeds, 1)
     first, second = _limits(model, top_speed)
-    coarse = model.coarser()
+    coarse = model.coarser
     rough = _limits(coarse, top_speed)
     bent = _bent_at(scene, second, top_speed, model)
     return SettingAngleLimits(

@@ -116,6 +116,7 @@ def _highest(size: np.ndarray) -> np.ndarray:
     """Samples beside the highest maxima, by the vertices of parabolas through three samples."""
     if len(size) < 3:
         return np.arange(len(size))
+    size = size / max(size.max(), 1e-300)  # of any size, without overflow
     left, middle, right = size[:-2], size[1:-1], size[2:]
     bend = np.maximum(2 * middle - left - right, 1e-300)
     summit = (middle >= left) & (middle >= right)

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 _STOCK = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 _GRAVITY = 9.81
+_UNBOUNDED = 1000.0  # deflection over the length, past which no digit means anything
 _COMPARED = 20_000  # times at which runs are compared, at most twice as many
 
 
@@ -216,6 +217,8 @@ def simulate(
     ------
     ValueError
         If an argument is out of its range, or the motion passes the critical speed.
+    ArithmeticError
+        If the motion grows without bound.
     """
     t_end, tolerance = positive("t_end", t_end, "s"), within("tolerance", tolerance, *TOLERANCES)
     if scene.motion is None:
@@ -254,6 +257,7 @@ class Task:
         path, error, name = self._integrated(modal, system, _initial(self.initial, system))
         t, q, v = path.samples
         largest = largest_deflection(modal.tip, path, path.start, path.end)
+        _check_growth(self.scene, largest)
         if self.t_eval is not None:
             t = self.t_eval
             q, v = path.at(t)
@@ -350,6 +354,17 @@ def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
         raise ValueError(
             f"the motion reaches {speed[k]:.6g} rad/s at t = {t[k]:.4g} s, past the critical speed "
             f"{critical:.6g} rad/s: the beam buckles and linear theory has no answer; lower the speed"
+        )
+
+
+def _check_growth(scene: Scene, largest: float) -> None:
+    """Refuse a motion that has grown without bound, whose error no estimate tells."""
+    length = scene.beam.length
+    if not largest <= _UNBOUNDED * length:
+        raise ArithmeticError(
+            f"the motion grows without bound, to {largest / length:.1g} times the length: the beam's weight "
+            "buckles it, or turning sets it swinging, and linear theory has no answer; lower gravity or the "
+            "speed, or end the run earlier"
         )
 
 

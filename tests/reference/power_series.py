@@ -416,12 +416,12 @@ def _lowest(stiffness: np.ndarray, mass: np.ndarray, count: int) -> tuple[np.nda
 
 
 def _definite_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
-    shift = 0.0
+    shift = 1.0  # not 0: a stiffness that is all but singular would spoil the higher modes
     while True:
         try:
             cholesky(stiffness + shift * mass)
         except np.linalg.LinAlgError:
-            shift = max(1.0, 4 * shift)
+            shift *= 4
         else:
             return shift
 

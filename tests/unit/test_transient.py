@@ -213,3 +213,10 @@ def test_initial_coordinates_go_with_the_richer_model() -> None:
 def test_modes_left_out_of_the_largest_model_are_not_known() -> None:
     run = bd.simulate(ROLLING, 0.01, modes=None, discretization=bd.Fem(100))
     assert run.mode_error == np.inf
+
+
+def test_a_beam_that_its_weight_buckles_is_refused() -> None:
+    rope = bd.Beam.rectangular(10.0, 0.02, 0.01, 5e9, 1200.0)  # hangs over: its weight is far past buckling
+    scene = bd.Scene(rope, bd.Mount(0.3, np.pi), bd.SteadyRotation(0.01), gravity=9.81)
+    with pytest.raises(ArithmeticError, match="grows without bound"):
+        bd.simulate(scene, 300.0, modes=2)

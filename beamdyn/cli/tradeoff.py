@@ -1,0 +1,99 @@
+"""The command that measures error against time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from beamdyn.cli.program import app, warn
+from beamdyn.cli.values import SceneFile, Text, parse_positive, parse_speed
+from beamdyn.common.outputs import NO_FILES, Outputs, write
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from rich.console import Group
+
+    from beamdyn.tradeoffs import Diagram, Tradeoff
+
+
+@app.command
+def tradeoff(
+    scene: SceneFile,
+    /,
+    *,
+    speed: Text | None = None,
+    modes: int = 3,
+    t_end: Text | None = None,
+    budget: Text = "60 s",
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """What accuracy costs: error against time of bases, elements, integrators, modes and harmonics.
+
+    Parameters
+    ----------
+    scene
+        The scene; transients and the steady response are measured if it has a motion.
+    speed
+        With its unit, e.g. "50 rad/s" or "525 rpm"; if not given, that of the scene's motion, or rest.
+    modes
+        How many modes are wanted.
+    t_end
+        End of the transients with its unit, e.g. "2 s"; if not given, a hundred periods of the first mode
+        after the start, or, if the start is long, from rest.
+    budget
+        Time that all of it may take, about, e.g. "60 s"; what does not fit is left out, and named.
+    outputs
+        Files to write.
+    """
+    from beamdyn import load_scene
+    from beamdyn.common.tables import console, progress_bar
+    from beamdyn.tradeoffs import tradeoff
+
+    outputs.check()
+    given = None if speed is None else parse_speed("--speed", speed)
+    end = None if t_end is None else parse_positive("--t-end", t_end, "s")
+    limit = parse_positive("--budget", budget, "s")
+    loaded = load_scene(scene)
+    with progress_bar("measuring") as progress:
+        found = tradeoff(loaded, given, modes, end, limit, progress)
+    screen = console()
+    for diagram in found.diagrams:
+        screen.print(_table(diagram))
+    write(found, outputs, _csv(found), lambda ax: _draw(found, ax))
+    warn(found.warnings)
+
+
+def _table(diagram: Diagram) -> Group:
+    """What each digit costs, what none beats, and what it is compared with."""
+    from rich.console import Group
+    from rich.text import Text as Line
+
+    from beamdyn.common.tables import table
+
+    rows = [
+        (f"{d.error:.0e}", d.family, d.setting, f"{1e3 * d.time:.3g}", "" if i == 0 else f"{d.ratio:.2f}")
+        for i, d in enumerate(diagram.per_digit)
+    ]
+    heads = ("error", "cheapest", "setting", "time [ms]", "over the digit before")
+    return Group(
+        table(diagram.title[:1].upper() + diagram.title[1:], heads, rows, (1, 2)),
+        Line(f"Pareto front: {diagram.summary}."),
+        Line(f"Error: of {diagram.error_of}."),
+        Line(f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that."),
+        *(Line(f"Left out: {sentence}.") for sentence in diagram.skipped),
+        Line(),
+    )
+
+
+def _csv(found: Tradeoff) -> Iterator[Sequence[object]]:
+    yield "diagram", "family", "setting", "size", "relative_error", "time_s", "in_front"
+    for diagram in found.diagrams:
+        for m in diagram.measurements:
+            yield diagram.title, m.family, m.setting, m.size, m.error, m.time, m in diagram.front
+
+
+def _draw(found: Tradeoff, ax: Axes) -> None:
+    rows, figure = -(-len(found.diagrams) // 2), ax.figure
+    size: Any = figure
+    size.set_size_inches(6.5 * min(2, len(found.diagrams)), 4.5 * rows)
+    found.plot(ax)

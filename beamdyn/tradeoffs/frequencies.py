@@ -1,0 +1,177 @@
+"""Natural frequencies: bases and elements over their number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Literal
+
+import numpy as np
+
+from beamdyn.bounds import frequency_bounds
+from beamdyn.common.workers import one_blas_thread
+from beamdyn.estimate import Estimated, Model, estimated
+from beamdyn.operators import Discretization
+from beamdyn.ritz import Ritz
+from beamdyn.scene import Scene
+from beamdyn.spectrum import frequency_locus, natural_modes
+from beamdyn.tradeoffs.measurements import Diagram, counted
+from beamdyn.tradeoffs.timing import Case, Family, measured
+
+Basis = Literal["legendre", "eigenfunctions"]
+Mesh = Literal["graded", "uniform"]
+
+_LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
+_EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
+_ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
+_TOLERANCES = tuple(10.0**-k for k in range(1, 13))
+_REFERENCES = (40, 80, 160)  # functions of the reference: more where these do not resolve it
+_RESOLVED = 1e-10
+
+
+@one_blas_thread()  # the matrices are small: more threads only wait for each other
+def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 10.0) -> Diagram:
+    """Error against time of the natural frequencies at one speed, or over a batch of them.
+
+    The time of a basis is that of its matrices and eigenvalues; extrapolated finite elements are
+    solved twice, with half the elements too; ``tolerance=`` is the whole call, which also finds the
+    basis and the error.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s], ascending.
+    modes : int
+        How many of the lowest.
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+
+    Raises
+    ------
+    ArithmeticError
+        If the reference is not within the guaranteed bounds.
+    """
+    exact = _reference(scene, speeds, modes)
+    true = _sizes(exact.eigen.eigenvalue)
+
+    def error(eigenvalues: np.ndarray) -> float:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(np.abs(_sizes(eigenvalues) / true - 1).max())
+
+    found, skipped = measured(
+        list(_families(scene, speeds, modes)), error, resolved := float(exact.error.max()), budget
+    )
+    at = (
+        f"at {speeds[0]:.6g} rad/s"
+        if len(speeds) == 1
+        else f"at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s"
+    )
+    reference = f"{exact.model.discretization}; {_checked(exact, float(speeds[-1]), modes)}"
+    return Diagram.of(
+        f"{counted(modes, 'frequency', 'frequencies')} {at}",
+        "the worst frequency, relative",
+        reference,
+        resolved,
+        found,
+        skipped,
+    )
+
+
+def _sizes(eigenvalues: np.ndarray) -> np.ndarray:
+    """|s| in ascending order: shape (S, m)."""
+    return np.sort(np.abs(eigenvalues), axis=-1)
+
+
+def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> Estimated:
+    """Modes by many functions: as many as resolve them."""
+    segments = len(scene.beam.breakpoints) - 1
+    for functions in _REFERENCES[:-1]:
+        found = _converged(scene, speeds, modes, functions // segments)
+        if found.error.max() <= _RESOLVED:
+            return found
+    return _converged(scene, speeds, modes, _REFERENCES[-1] // segments)
+
+
+def _converged(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> Estimated:
+    return estimated(Model(scene, Ritz(max(functions, 12, modes + 3))), speeds, modes)
+
+
+def _checked(exact: Estimated, speed: float, modes: int) -> str:
+    """What the guaranteed bounds say of the reference at a speed."""
+    try:
+        bounds = frequency_bounds(exact.model.scene, speed, modes)
+    except ValueError:  # stretch or damping
+        return "the guaranteed bounds do not cover this model"
+    s = exact.eigen.eigenvalue[-1]
+    squared = np.sort(-np.real(s**2))
+    slack = 2 * exact.error.max() * np.abs(squared)
+    below, above = squared < bounds.lower_squared - slack, squared > bounds.upper_squared + slack
+    if below.any() or above.any():
+        raise ArithmeticError(f"the reference at {speed:g} rad/s is not within the guaranteed bounds")
+    if np.isnan(bounds.width).any():
+        return f"within the guaranteed bounds at {speed:.6g} rad/s as far as there are any"
+    return f"within the guaranteed bounds at {speed:.6g} rad/s, {bounds.width.max():.0e} apart"
+
+
+def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
+    segments = len(scene.beam.breakpoints) - 1
+    least = -(-modes // segments)  # of Legendre functions there are as many on each segment
+    yield _functions(scene, speeds, modes, "legendre", [n for n in _LEGENDRE if n >= least])
+    yield _functions(scene, speeds, modes, "eigenfunctions", [n for n in _EIGENFUNCTIONS if n >= modes])
+    meshes: tuple[Mesh, ...] = ("graded", "uniform")
+    for mesh in meshes:
+        yield from _elements(scene, speeds, modes, mesh, segments)
+    if not scene.stretch:  # with it modes may cross, and a tracked locus then has others than the lowest
+        called = (Case(f"tolerance={t:.0e}", t, _call(scene, speeds, modes, t)) for t in _TOLERANCES)
+        yield Family("tolerance=", tuple(called))
+
+
+def _functions(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
+    each = "functions a segment" if basis == "legendre" and len(scene.beam.breakpoints) > 2 else "functions"
+    cases = (Case(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
+    return Family(f"Ritz, {basis}", tuple(cases))
+
+
+def _elements(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
+    """Finite elements as they are, and extrapolated."""
+    from beamdyn.fem import Fem  # loads scikit-fem
+
+    for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
+        least = max(segments, -(-modes // 2), 2) * share
+        cases = (
+            Case(f"{n} elements", n, solve(scene, Fem(n, mesh), speeds, modes))
+            for n in _ELEMENTS
+            if n >= least
+        )
+        yield Family(f"elements, {mesh}{name}", tuple(cases))
+
+
+def _solve(
+    scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
+) -> Callable[[float], Any]:
+    return lambda deadline: Model(scene, discretization).solver.eigenvalues(speeds, modes)
+
+
+def _extrapolate(
+    scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
+) -> Callable[[float], Any]:
+    """Richardson's extrapolation from half the elements."""
+    fine, coarse = (_solve(scene, d, speeds, modes) for d in (discretization, discretization.coarser()))
+    gain = 2 ** (discretization.order or 4) - 1
+
+    def run(deadline: float) -> np.ndarray:
+        s = fine(deadline)
+        return s + (s - coarse(deadline)) / gain
+
+    return run
+
+
+def _call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -> Callable[[float], Any]:
+    if len(speeds) == 1:
+        return lambda deadline: natural_modes(scene, speeds[0], modes, tolerance=tolerance).eigenvalue[None]
+    return lambda deadline: frequency_locus(scene, speeds, modes, tolerance=tolerance).eigenvalue

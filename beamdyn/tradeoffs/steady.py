@@ -1,0 +1,109 @@
+"""Steady response: harmonics kept, and the number of modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+
+import numpy as np
+
+from beamdyn.common.workers import one_blas_thread
+from beamdyn.scene import Scene
+from beamdyn.steady import SteadyResponse, steady_response
+from beamdyn.tradeoffs.measurements import Diagram
+from beamdyn.tradeoffs.timing import Case, Family, measured, what_is_left
+
+_HARMONICS = tuple(range(6))
+_ALL_HARMONICS = 6
+_MODES = tuple(range(1, 9))
+_ALL_MODES = 12
+_PHASES = 24  # of each of rotation and road
+_ERROR_OF = "the tip deflection, largest over phases and speeds, over the sum of the lines"
+_EPS = float(np.finfo(float).eps)
+
+
+@one_blas_thread()
+def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 5.0) -> Diagram:
+    """Error against time of the steady response over the interactions that are kept.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion whose steady state is known.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    modes : int
+        Modes that are kept.
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    return _diagram(
+        "harmonics",
+        speeds,
+        lambda h: steady_response(scene, speeds, modes, harmonics=h),
+        _HARMONICS,
+        _ALL_HARMONICS,
+        budget,
+    )
+
+
+@one_blas_thread()
+def steady_modes_diagram(scene: Scene, speeds: np.ndarray, budget: float = 5.0) -> Diagram:
+    """Error against time of the steady response over the number of modes that are kept.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion whose steady state is known.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    return _diagram(
+        "modes", speeds, lambda m: steady_response(scene, speeds, m, harmonics=2), _MODES, _ALL_MODES, budget
+    )
+
+
+def _diagram(
+    what: str,
+    speeds: np.ndarray,
+    run: Callable[[int], SteadyResponse],
+    sizes: tuple[int, ...],
+    most: int,
+    budget: float,
+) -> Diagram:
+    start = perf_counter()
+    exact = run(most)
+    title = f"steady response at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s, number of {what}"
+    if not np.nanmax(exact.bound, initial=0.0):
+        return Diagram.of(title, _ERROR_OF, f"{what}={most}", 0.0, (), ("no load turns or shakes the beam",))
+    cases = tuple(Case(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
+    resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
+    left = what_is_left(budget, start)
+    found, skipped = measured([Family(what, cases)], _error(exact), resolved, left)
+    if not exact.stable.all():
+        skipped.append(f"{(~exact.stable).sum()} of {len(speeds)} speeds, which have no steady response")
+    return Diagram.of(title, _ERROR_OF, f"{what}={most}", resolved, found, skipped)
+
+
+def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
+    """Largest difference of the tip at all phases, over the sum of the lines, where both are stable."""
+    phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
+    rotation, road = np.meshgrid(phase, phase)
+    true = exact.tip(rotation, road)
+
+    def error(found: SteadyResponse) -> float:
+        both = exact.stable & found.stable & (exact.bound > 0)
+        away = np.abs(found.tip(rotation, road) - true).max(axis=(1, 2))
+        return float((away[both] / exact.bound[both]).max(initial=0.0))
+
+    return error

@@ -1,0 +1,159 @@
+"""Transients: integrators over their tolerance, and the number of modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.workers import one_blas_thread
+from beamdyn.estimate import choose
+from beamdyn.operators import Discretization
+from beamdyn.scene import Scene
+from beamdyn.tradeoffs.measurements import Diagram, counted
+from beamdyn.tradeoffs.timing import Case, Family, measured, what_is_left
+from beamdyn.transient import Transient, simulate
+
+OURS = "Gauss collocation"
+STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
+_TOLERANCES = tuple(10.0**-k for k in range(1, 11))
+_STOCK_TOLERANCES = tuple(10.0**-k for k in range(2, 10))
+_TIGHTEST = 1e-11
+_SECOND = 1e-11  # rtol of the second route
+_PART = 0.05  # of the run that the second route follows
+_SECOND_SHARE = 0.15  # of the budget
+_INSTANTS = 20_001
+_MODES = tuple(range(1, 11))
+_ALL_MODES = 16
+_MODES_TOLERANCE = 1e-7
+_ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
+_TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
+_STILL = "nothing moves the beam"
+
+
+@one_blas_thread()
+def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: float = 30.0) -> Diagram:
+    """Error against time of our integrator and the stock ones, over their tolerances.
+
+    All integrate the same equations, in the same modes of the same basis, through `simulate`, whose
+    right-hand side serves any scene: one written by hand for a scene would speed the stock methods up.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion.
+    t_end : float
+        End of the run [s].
+    modes : int
+        Modes that are kept.
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    start = perf_counter()
+    basis = choose(scene, "ritz", np.zeros(1), modes).discretization
+    title = f"transient of {t_end:g} s, {counted(modes, 'mode', 'modes')}"
+    exact = simulate(scene, t_end, modes, _TIGHTEST, discretization=basis)
+    if not exact.largest:
+        return Diagram.of(title, _ERROR_OF, _TIGHT, 0.0, (), (_STILL,))
+    second = _second_route(scene, exact, modes, basis, _SECOND_SHARE * budget)
+    families = list(_integrators(scene, t_end, modes, basis))
+    left = what_is_left(budget, start)
+    error, resolved = _tip_error(exact, t_end), _relative(exact.time_error, exact.largest)
+    found, skipped = measured(families, error, resolved, left)
+    return Diagram.of(title, _ERROR_OF, f"{_TIGHT}; {second}", resolved, found, skipped)
+
+
+@one_blas_thread()
+def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> Diagram:
+    """Error against time of a transient over the number of modes that are kept.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion.
+    t_end : float
+        End of the run [s].
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    start = perf_counter()
+    basis = choose(scene, "ritz", np.zeros(1), _ALL_MODES).discretization
+
+    def run(modes: int) -> Transient:
+        return simulate(scene, t_end, modes, _MODES_TOLERANCE, discretization=basis)
+
+    title = f"transient of {t_end:g} s, number of modes"
+    reference = f"{_ALL_MODES} modes, all with a tolerance in time of {_MODES_TOLERANCE:g}"
+    exact = run(_ALL_MODES)
+    if not exact.largest:
+        return Diagram.of(title, _ERROR_OF, reference, 0.0, (), (_STILL,))
+    cases = tuple(Case(f"modes={m}", m, lambda deadline, m=m: run(m)) for m in _MODES)
+    resolved = _relative(exact.time_error, exact.largest)
+    left = what_is_left(budget, start)
+    found, skipped = measured([Family("modes", cases)], _tip_error(exact, t_end), resolved, left)
+    return Diagram.of(title, _ERROR_OF, reference, resolved, found, skipped)
+
+
+def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
+    """Largest difference of the tip deflection at common times, relative to the largest deflection."""
+    t = np.linspace(0, t_end, _INSTANTS)
+    true = exact.deflection(t)
+    return lambda run: _relative(float(np.abs(run.deflection(t) - true).max()), exact.largest)
+
+
+def _relative(difference: float, largest: float) -> float:
+    return difference / largest if largest else difference
+
+
+def _second_route(scene: Scene, exact: Transient, modes: int, basis: Discretization, limit: float) -> str:
+    """How far DOP853 at a tight tolerance is from the reference on the first part of the run."""
+    end = _PART * exact.path.end
+    options = {"discretization": basis, "events": _until(perf_counter() + limit)}
+    try:
+        other = simulate(scene, end, modes, _SECOND, "DOP853", **options)
+    except TimeoutError:
+        return f"no second route: DOP853 took more than {limit:.2g} s for the first {end:.3g} s"
+    t = np.linspace(0, end, 1001)
+    away = np.abs(other.deflection(t) - exact.deflection(t)).max()
+    return (
+        f"DOP853 with rtol {_SECOND:g} differs by {_relative(float(away), other.largest):.1e} to {end:.3g} s"
+    )
+
+
+def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) -> Iterator[Family]:
+    def ours(tolerance: float) -> Callable[[float], Any]:
+        return lambda deadline: simulate(scene, t_end, modes, tolerance, discretization=basis)
+
+    def stock(method: str, rtol: float) -> Callable[[float], Any]:
+        def run(deadline: float) -> Transient:
+            with np.errstate(over="ignore", invalid="ignore"):  # some diverge: that is their error
+                options = {"discretization": basis, "events": _until(deadline)}
+                return simulate(scene, t_end, modes, rtol, method, **options)
+
+        return run
+
+    yield Family(OURS, tuple(Case(f"tolerance={t:.0e}", t, ours(t)) for t in _TOLERANCES))
+    for method in STOCK:
+        cases = (Case(f"rtol={t:.0e}", t, stock(method, t)) for t in _STOCK_TOLERANCES)
+        yield Family(f"solve_ivp {method}", tuple(cases))
+
+
+def _until(deadline: float) -> Callable[[float, np.ndarray], float]:
+    """An event that never comes, but gives up after each step that ends past the deadline."""
+
+    def event(t: float, y: np.ndarray) -> float:
+        if perf_counter() > deadline:
+            raise TimeoutError(f"at t = {t:.3g} s")
+        return 1.0
+
+    return event

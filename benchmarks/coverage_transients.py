@@ -1,0 +1,152 @@
+"""Whether the stated errors of transients hold.  Run: python -m benchmarks.coverage_transients [--scenes N]
+
+Random scenes in motion.  The error by the steps in time is measured against DOP853 of `solve_ivp`, or where
+that takes too long against our own steps at a tolerance of 1e-11; that by the modes left out against finite
+elements with many modes at three speeds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+import beamdyn as bd
+from beamdyn.reduction import Kept, range_of_speed
+from beamdyn.transient import Transient
+from benchmarks.beam_core import Row, show
+from benchmarks.coverage import random_beam
+
+_BOUND = 0.99
+_MANY = 8  # modes of the reference at each of three speeds
+_DOP853 = 1e4  # largest angle that the fastest mode may turn for it [rad]
+_ROUNDING = 1e-10  # of the references, over the largest deflection
+_TIMES = 2000  # at which tips are compared
+
+
+@dataclass(frozen=True)
+class Case:
+    """One random run: its stated and true errors over the largest deflection, or why it was refused."""
+
+    number: int
+    stated: tuple[float, float] = (0.0, 0.0)  # by the steps in time, by the modes left out
+    true: tuple[float, float] = (0.0, 0.0)
+    refusal: str = ""
+
+
+def random_run(rng: np.random.Generator) -> dict:
+    """Arguments of `simulate`: any motion to 0.9 of the critical speed, 3 to 60 periods."""
+    beam = random_beam(rng)
+    mount = bd.Mount(
+        radius=beam.length * rng.choice([0.0, 10 ** rng.uniform(-2, 1)]),
+        setting_angle=rng.choice([0.0, np.pi, rng.uniform(-np.pi, np.pi)]),
+        bending_angle=rng.choice([0.0, rng.uniform(-np.pi, np.pi)]),
+    )
+    still = bd.Scene(
+        beam,
+        mount,
+        damping_ratio=rng.choice([0.0, 10 ** rng.uniform(-4, -1)]),
+        gravity=rng.choice([0.0, 9.81]),
+    )
+    first = 2 * np.pi * bd.natural_modes(still, 0.0, 1).frequency[0]
+    speed = min(rng.uniform(0, 0.9) * bd.critical_speed(still), 10 ** rng.uniform(-1.5, 0.7) * first)
+    t_end = 2 * np.pi / first * 10 ** rng.uniform(0.5, 1.8)
+    return {
+        "scene": replace(still, motion=random_motion(rng, speed, t_end, beam.length)),
+        "t_end": float(t_end),
+        "modes": "auto" if rng.integers(2) else int(rng.integers(1, 7)),
+        "tolerance": float(10 ** rng.uniform(-8, -2)),
+    }
+
+
+def random_motion(rng: np.random.Generator, speed: float, t_end: float, length: float) -> bd.Motion:
+    """Steady, spun up, or from a table of speeds; half of them on a wheel, most of these on a wavy road."""
+    times = np.linspace(0, t_end, rng.integers(4, 9))
+    rotation = [
+        bd.SteadyRotation(speed),
+        bd.SpinUp(speed, duration=t_end * rng.uniform(0.1, 0.9)),
+        bd.SpinUp(speed, duration=t_end * rng.uniform(0.1, 0.9), law="linear"),
+        bd.SampledRotation(times, speed * rng.uniform(0, 1, len(times)), interpolation="pchip"),
+    ][rng.integers(4)]
+    if rng.integers(2):
+        return rotation
+    radius = length * 10 ** rng.uniform(0, 1)
+    road = bd.RoadWave(wavelength=radius * rng.uniform(0.3, 3), height=length * 10 ** rng.uniform(-4, -2))
+    return bd.RollingWheel(radius, rotation, road if rng.integers(4) else None)
+
+
+def measured(number: int, seed: int) -> Case:
+    """One case, told by its number."""
+    given = random_run(np.random.default_rng([seed, number]))
+    t = np.linspace(0, given["t_end"], _TIMES)
+    try:
+        run = bd.simulate(**given, t_eval=t)
+    except (ValueError, ArithmeticError) as error:
+        return Case(number, refusal=str(error))
+    size = run.largest or 1.0
+    stated = run.time_error / size, run.mode_error / size
+    return Case(number, stated, (time_error(run, t) / size, mode_error(run, t) / size))
+
+
+def time_error(run: Transient, t: np.ndarray) -> float:
+    """Largest distance from the same modes integrated nearly without error [m]."""
+    _, K, _ = run.system.coefficients(np.zeros(1))
+    turned = run.path.end * float(np.sqrt(np.abs(np.linalg.eigvals(K)).max()))
+    if turned < _DOP853:
+        options = {"atol": 1e-300 + 1e-13 * run.largest, "rtol": 3e-13}
+        exact = replace(run.task, method="DOP853", options=options).run()
+    else:
+        exact = replace(run.task, tolerance=1e-11).run()
+    return float(np.abs(run.tip - exact.deflection(t)).max())
+
+
+def mode_error(run: Transient, t: np.ndarray) -> float:
+    """Largest distance from finite elements with many more modes, both nearly without error in time [m]."""
+    ends = range_of_speed(run.task.motion, run.path.end)
+    speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
+    few = replace(run.task, tolerance=1e-9, t_eval=None)
+    many = replace(few, discretization="fem", kept=Kept(_MANY, speeds))
+    return float(np.abs(few.run().deflection(t) - many.run().deflection(t)).max())
+
+
+def coverage(cases: Sequence[Case]) -> Iterator[Row]:
+    """Share of errors covered, and by how much."""
+    answered = [case for case in cases if not case.refusal]
+    yield "random runs", str(len(cases)), "200"
+    yield "refused", str(len(cases) - len(answered)), "0"
+    for k, name in enumerate(("the steps in time", "the modes left out")):
+        stated, true = (
+            np.array([getattr(case, which)[k] for case in answered]) for which in ("stated", "true")
+        )
+        covered = stated + _ROUNDING >= true
+        over = np.median(stated[true > 0] / true[true > 0])
+        yield f"error by {name} covered", f"{covered.mean():.1%}", f"{_BOUND:.0%}"
+        yield "... median over-estimate", f"{over:.1f}", ""
+        yield "... largest true error, over the largest deflection", f"{true.max():.1e}", ""
+        for case in (case for case, hit in zip(answered, covered, strict=True) if not hit):
+            yield f"... not covered: run {case.number}", f"{case.true[k]:.1e} > {case.stated[k]:.1e}", ""
+    for case in cases:
+        if case.refusal:
+            yield f"refused: run {case.number}", case.refusal, ""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=200)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=7)
+    options = parser.parse_args()
+    with ProcessPoolExecutor(options.workers) as pool:
+        cases = list(pool.map(partial(measured, seed=options.seed), range(options.scenes)))
+    show("stated errors of transients", lambda: coverage(cases))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,470 @@
+"""What accuracy costs, and what `tolerance=` makes of it.  Run: python -m benchmarks.tradeoff
+
+Takes some four minutes; writes docs/tradeoff.md and docs/tradeoff.png.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from datetime import date
+from functools import partial
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy
+from numpy.polynomial import Polynomial
+
+import beamdyn as bd
+from beamdyn.common.workers import one_blas_thread
+from beamdyn.estimate import Model, estimated
+from beamdyn.tradeoffs import (
+    Diagram,
+    frequency_diagram,
+    harmonics_diagram,
+    integrators_diagram,
+    steady_modes_diagram,
+    transient_modes_diagram,
+)
+from beamdyn.tradeoffs.transients import OURS
+from benchmarks.peers.tables import grid, seconds
+from benchmarks.transient import lean, system
+from tests.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+DOCS = Path(__file__).parents[1] / "docs"
+MODES, LOCUS = 3, 101
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
+FAMILIES = {
+    "Ritz, legendre": "Legendre functions",
+    "Ritz, eigenfunctions": "eigenfunctions",
+    "elements, graded": "graded elements",
+    "elements, graded, extrapolated": "graded, extrapolated",
+    "elements, uniform": "uniform elements",
+    "elements, uniform, extrapolated": "uniform, extrapolated",
+    "tolerance=": "the call with tolerance=",
+}
+
+
+# Scenes -------------------------------------------------------------------------------------------
+
+
+def scenes() -> dict[str, tuple[bd.Scene, float]]:
+    """Five scenes of different character, and a speed [rad/s] for each."""
+    beam_mass = 7850 * 0.05 * 0.01 * 0.0002
+    body = bd.TipMass(20 * beam_mass, offset=0.003, inertia=2e-8)
+    heavy = replace(HARVESTER, beam=replace(HARVESTER.beam, tip=body))
+    width, thickness = Polynomial([1, -0.9]), Polynomial([1, -0.8])
+    tapered = bd.Beam.from_stiffness(1.0, width * thickness, width * thickness**3)
+    return {
+        "published": (ROLLING, 55.0),
+        "outward blade": (replace(BLADE_SPIN_UP, gravity=9.81), 6.0),
+        "near the critical speed": (HARVESTER, 0.999 * bd.critical_speed(HARVESTER)),
+        "heavy tip mass": (heavy, 0.5 * bd.critical_speed(heavy)),
+        "strong taper": (bd.Scene(tapered, bd.Mount(0.2, math.pi, math.pi / 2)), 10.0),
+    }
+
+
+# The published scene sped up in 1 s instead of 10, so that the stock integrators can be run often.
+HURRIED = replace(
+    ROLLING,
+    motion=bd.RollingWheel(
+        rolling_radius=0.3,
+        speed=bd.SpinUp(55.0, duration=1.0),
+        road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01),
+    ),
+)
+
+
+DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 rad/s;
+- outward blade: a uniform blade of 10 m on the axis, in the plane of rotation, at 6 rad/s; where it
+  moves, with gravity and a damping ratio of 0.01;
+- near the critical speed: the harvester at 0.999 of it;
+- heavy tip mass: the harvester with a body of 20 beam masses, off its tip, at half its critical speed;
+- strong taper: an outward blade, flapwise, whose width falls to 0.1 and whose thickness falls to 0.2 of the
+  root's, at a nondimensional speed of 10."""
+
+
+def best_time(action: Callable[[], object], runs: int = 7) -> float:
+    """Shortest processor time of several runs [s]."""
+    times = []
+    for _ in range(runs):
+        start = process_time()
+        action()
+        times.append(process_time() - start)
+    return min(times)
+
+
+# What tolerance= chooses --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What `tolerance=` makes of a request, beside the least that would do."""
+
+    scene: str
+    speeds: int
+    tolerance: float
+    needed: int  # Legendre functions, from which on the error keeps the tolerance
+    chosen: int
+    error: float
+    estimate: float
+    floor: float  # of the error, by the reference
+    cheapest: float  # time of the model with so many as are needed [s]
+    own: float  # time of the model that was chosen
+    call: float  # time of the whole call
+
+    def row(self) -> tuple[str, ...]:
+        return (
+            self.scene,
+            str(self.speeds),
+            f"{self.tolerance:.0e}",
+            str(self.needed),
+            str(self.chosen),
+            f"{self.error:.0e}",
+            f"{self.estimate:.0e}",
+            seconds(self.cheapest),
+            f"{self.own / self.cheapest:.2f}",
+            f"{self.call / self.cheapest:.1f}",
+        )
+
+
+CHOICE_HEAD = (
+    "scene",
+    "speeds",
+    "tolerance",
+    "functions needed",
+    "chosen",
+    "error",
+    "estimated",
+    "time of those needed",
+    "chosen / needed",
+    "call / needed",
+)
+
+
+def choices(name: str, scene: bd.Scene, speed: float, count: int) -> Iterator[Choice]:
+    """All tolerances for one scene, at one speed or over a locus."""
+    speeds = np.linspace(0, speed, count) if count > 1 else np.array([speed])
+
+    def solve(functions: int) -> np.ndarray:
+        return Model(scene, bd.Ritz(functions)).solver.eigenvalues(speeds, MODES)
+
+    exact = estimated(Model(scene, bd.Ritz(40)), speeds, MODES)
+    floor = float(exact.error.max())
+
+    def error(s: np.ndarray) -> float:
+        return max(floor, float(np.abs(np.abs(s) / np.abs(exact.eigen.eigenvalue) - 1).max()))
+
+    errors = {n: error(solve(n)) for n in range(MODES, 40)}
+    for tolerance in TOLERANCES:
+        needed = 1 + max((n for n, e in errors.items() if e > max(tolerance, floor)), default=MODES - 1)
+        found = called(scene, speeds, tolerance)
+        # of a locus, the size is read from the sentence that says how it was found
+        chosen = int(found.provenance.method.split("functions=")[1].split(",")[0])
+        yield Choice(
+            scene=name,
+            speeds=count,
+            tolerance=tolerance,
+            needed=needed,
+            chosen=chosen,
+            error=error(found.eigenvalue.reshape(len(speeds), MODES)),
+            estimate=float(found.error.max()),
+            floor=floor,
+            cheapest=best_time(partial(solve, needed)),
+            own=best_time(partial(solve, chosen)),
+            call=best_time(partial(called, scene, speeds, tolerance)),
+        )
+
+
+def called(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -> bd.Modes | bd.Locus:
+    """The call that a user makes."""
+    if len(speeds) == 1:
+        return bd.natural_modes(scene, speeds[0], MODES, tolerance=tolerance)
+    return bd.frequency_locus(scene, speeds, MODES, tolerance=tolerance)
+
+
+# Loose against tight ------------------------------------------------------------------------------
+
+
+def locus_rows() -> Iterator[tuple[str, ...]]:
+    """The published locus of 1000 speeds: tolerance, time, over the tightest."""
+    speeds = np.linspace(0, 150, 1000)
+    asked: tuple[float | None, ...] = (1e-3, 1e-5, 1e-7, 1e-10, None)
+    times = {t: best_time(partial(called, ROLLING, speeds, t), 5) for t in asked}
+    for tolerance, time in times.items():
+        error = called(ROLLING, speeds, tolerance).error.max()
+        name = "not given" if tolerance is None else f"{tolerance:.0e}"
+        yield name, seconds(time), f"{times[1e-10] / time:.1f}", f"{error:.0e}"
+
+
+def transient_rows() -> Iterator[tuple[str, ...]]:
+    """Table 3's transient: tolerance, time, over the tightest, error, estimate."""
+    t = np.linspace(0, 30, 30_001)
+    exact = bd.simulate(ROLLING, 30.0, 5, tolerance=1e-11, discretization=bd.Ritz(20))
+    true, rows = exact.deflection(t), []
+    for tolerance in (1e-2, 1e-3, 1e-5, 1e-7, 1e-8, 1e-9, 1e-10):
+        run = partial(bd.simulate, ROLLING, 30.0, 5, tolerance=tolerance, discretization=bd.Ritz(20))
+        found, time = run(), best_time(run, 3)
+        error = np.abs(found.deflection(t) - true).max() / exact.largest
+        rows.append((tolerance, time, error, found.time_error / exact.largest))
+    for tolerance, time, error, estimate in rows:
+        yield (
+            f"{tolerance:.0e}",
+            seconds(time),
+            f"{rows[-1][1] / time:.1f}",
+            f"{error:.0e}",
+            f"{estimate:.0e}",
+        )
+
+
+# The page -----------------------------------------------------------------------------------------
+
+PAGE = """# What accuracy costs
+
+Written by `python -m benchmarks.tradeoff` on {day} in {time:.0f} s (Python {python}, {machine}).
+Versions: beamdyn {beamdyn}, numpy {numpy}, scipy {scipy}. Times are processor times of one thread, the
+shortest of several runs.
+`beamdyn tradeoff SCENE` and `bd.tradeoff(scene)` measure the same on a scene of your own.
+
+![Error against time](tradeoff.png)
+
+Five scenes:
+{described}
+
+## Frequencies
+
+The worst of the first {modes} frequencies, relative to 40 Legendre functions, which lie within the guaranteed
+bounds. The time of a basis is that of its matrices and eigenvalues; extrapolated elements are solved twice;
+`tolerance=` is the whole call, which also looks for the basis and estimates the error.
+
+**Pareto fronts** (what nothing beats in both error and time):
+
+{fronts}
+
+**The cost of each digit**: the cheapest way to an error of at most so much, its time, and in brackets its
+time over that of the digit before.
+
+At one speed:
+
+{single}
+At {locus} speeds, from rest to the same:
+
+{many}
+## Transients
+
+The published scene is brought up to speed in 1 s instead of 10 s where stock integrators are measured, so
+that they can be run often. All integrate the same modal equations through `simulate(method=...)`. Its
+right-hand side serves any scene; one written by hand for this scene alone is {lean:.0f} times faster, and
+would make them faster by nearly as much: `python -m benchmarks.transient` races ours against that.
+
+{transients}
+## Steady response
+
+{steady}
+## What `tolerance=` makes of it
+
+{rules}
+
+{choices}
+Loose against tight, on the published locus of 1000 speeds to 150 rad/s (estimated error of the result):
+
+{loose_locus}
+and on Table 3's transient (30 s, 5 modes; error by the steps in time, over the largest deflection):
+
+{loose_transient}"""
+
+RULES = """The rules follow from the fronts:
+
+- **Legendre functions.** They alone make {legendre:.0%} of the {points} points of the frequency fronts above.
+  Elements make {elements:.0%}: their assembly takes longer than a whole Ritz solution. So `tolerance=` never
+  chooses elements by itself; `method="fem"` is for a second opinion.
+- **A function too many costs little, a model too many costs much.** At one speed {large} functions take
+  {dear:.2f} times as long as {small}: the time goes into building the matrices, not into their size. Each
+  model that is tried on the way costs as much as the answer.
+- **What is chosen**, beside the fewest functions whose true error keeps the tolerance: the model takes
+  {own:.2f} times as long in the median, {own_most:.2f} at most. The whole call takes {call:.1f} times as long
+  in the median, {call_most:.1f} at most; of these, 2 are the estimate of the error, which needs a second
+  model, and the rest is search and what else the result carries.
+- **Errors that are kept**: in {kept} of {cases} cases the true error is below the tolerance, in {covered}
+  below the estimate.
+- **Transients.** {transient} points of the fronts among integrators are ours; the step follows the
+  tolerance, as the tables above and below show."""
+
+
+def page(
+    single: dict[str, Diagram],
+    many: dict[str, Diagram],
+    motion: Sequence[Diagram],
+    chosen: Sequence[Choice],
+    start: float,
+) -> str:
+    """The page of the documentation."""
+    return PAGE.format(
+        day=date.today(),
+        python=platform.python_version(),
+        machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        beamdyn=bd.__version__,
+        numpy=np.__version__,
+        scipy=scipy.__version__,
+        described=DESCRIBED,
+        modes=MODES,
+        locus=LOCUS,
+        fronts="\n".join(fronts(single, "one speed") + fronts(many, f"{LOCUS} speeds")),
+        single=digits(single),
+        many=digits(many),
+        transients="\n".join(section(d) for d in motion if d.title.startswith("transient")),
+        steady="\n".join(section(d) for d in motion if d.title.startswith("steady")),
+        rules=rules([*single.values(), *many.values()], single["published"], motion, chosen),
+        choices=grid(CHOICE_HEAD, (c.row() for c in chosen)),
+        loose_locus=grid(("tolerance", "time", "cheaper than 1e-10 by", "estimated error"), locus_rows()),
+        loose_transient=grid(
+            ("tolerance", "time", "cheaper than 1e-10 by", "error", "estimated"), transient_rows()
+        ),
+        lean=hand_written(),
+        time=perf_counter() - start,
+    )
+
+
+def hand_written() -> float:
+    """How much faster a right-hand side is that was written by hand for the published scene."""
+    equations, y = system(), np.linspace(1e-6, 2e-6, 10)
+    general, own = (
+        best_time(lambda f=f: [f(12.3, y) for _ in range(200)]) for f in (equations.rhs, lean(equations)[0])
+    )
+    return general / own
+
+
+def fronts(diagrams: dict[str, Diagram], where: str) -> list[str]:
+    return [f"- {name}, {where}: {diagram.summary}." for name, diagram in diagrams.items()]
+
+
+def digits(diagrams: dict[str, Diagram]) -> str:
+    """The cost of each digit, a column for each scene."""
+    most = max(len(d.per_digit) for d in diagrams.values())
+    rows = ((f"1e-{k + 1:02d}", *(cell(d, k) for d in diagrams.values())) for k in range(most))
+    return grid(("error", *diagrams), rows)
+
+
+def cell(diagram: Diagram, k: int) -> str:
+    if k >= len(diagram.per_digit):
+        return ""
+    digit = diagram.per_digit[k]
+    number = digit.setting.split()[0]
+    ratio = "" if math.isnan(digit.ratio) else f" ({digit.ratio:.2f})"
+    return f"{FAMILIES[digit.family]}: {number}, {seconds(digit.time)}{ratio}"
+
+
+def section(diagram: Diagram) -> str:
+    """A diagram's measurements, its front marked, and its costs."""
+    rows = (
+        (m.family, m.setting, seconds(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
+        for m in diagram.measurements
+    )
+    costs = ", then ".join(
+        f"{d.error:.0e} {seconds(d.time)}" + ("" if math.isnan(d.ratio) else f" ({d.ratio:.2f})")
+        for d in diagram.per_digit
+    )
+    skipped = "".join(f"- {sentence}\n" for sentence in diagram.skipped)
+    return (
+        f"### {diagram.title[:1].upper()}{diagram.title[1:]}\n\nError of {diagram.error_of}.\n"
+        f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that.\n\n"
+        f"{grid(('method', 'setting', 'time', 'error', 'in the front'), rows)}\n"
+        f"The cost of each digit (over the digit before): {costs or 'not a digit is right'}.\n"
+        + (f"\nNot measured:\n{skipped}" if skipped else "")
+    )
+
+
+def rules(
+    diagrams: Sequence[Diagram], published: Diagram, motion: Sequence[Diagram], chosen: Sequence[Choice]
+) -> str:
+    """What the measurements say of the choice."""
+    points = [m for d in diagrams for m in d.front]
+    share = {
+        kind: sum(m.family.startswith(kind) for m in points) / len(points)
+        for kind in ("Ritz, legendre", "elements")
+    }
+    times = {m.size: m.time for m in published.measurements if m.family == "Ritz, legendre"}
+    raced = [m for d in motion if any(m.family == OURS for m in d.front) for m in d.front]
+    own, call = ([getattr(c, name) / c.cheapest for c in chosen] for name in ("own", "call"))
+    return RULES.format(
+        legendre=share["Ritz, legendre"],
+        elements=share["elements"],
+        points=len(points),
+        transient=f"{sum(m.family == OURS for m in raced)} of {len(raced)}",
+        small=4,
+        large=14,
+        dear=times[14] / times[4],
+        own=np.median(own),
+        own_most=max(own),
+        call=np.median(call),
+        call_most=max(call),
+        kept=sum(c.error <= c.tolerance for c in chosen),
+        covered=sum(c.error <= max(c.estimate, c.floor) for c in chosen),
+        cases=len(chosen),
+    )
+
+
+# The picture --------------------------------------------------------------------------------------
+
+
+def picture(many: dict[str, Diagram], transient: Diagram, path: Path) -> None:
+    """Frequencies of all scenes, with one legend, and the published transient."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(13.0, 8.6), layout="constrained")
+    axes = figure.subplots(2, 3).ravel()
+    for ax, (name, diagram) in zip(axes, many.items(), strict=False):
+        frame(ax, diagram, name)
+        ax.set(ylim=(3e-15, 3))
+    frame(axes[-1], transient, f"published: transient, {MODES} modes")
+    figure.suptitle(
+        f"Error against time: {MODES} frequencies at {LOCUS} speeds in five scenes, and a transient"
+    )
+    axes[-1].legend(fontsize=10)
+    handles, labels = axes[0].get_legend_handles_labels()
+    names = [FAMILIES.get(str(label), str(label)) for label in labels]
+    figure.legend(handles, names, loc="outside lower center", ncols=4, fontsize=12)
+    figure.savefig(path, dpi=110)
+
+
+def frame(ax: Axes, diagram: Diagram, title: str) -> None:
+    diagram.plot(ax)
+    legend = ax.get_legend()
+    if legend is not None:
+        legend.remove()
+    ax.set_title(title, fontsize=12)
+
+
+@one_blas_thread()
+def main() -> None:
+    start = perf_counter()
+    single, many, chosen = {}, {}, []
+    for name, (scene, speed) in scenes().items():
+        single[name] = frequency_diagram(scene, np.array([speed]), MODES, 6.0)
+        many[name] = frequency_diagram(scene, np.linspace(0, speed, LOCUS), MODES, 10.0)
+        chosen += [c for count in (1, LOCUS) for c in choices(name, scene, speed, count)]
+    blade = replace(scenes()["outward blade"][0], damping_ratio=0.01)
+    transient = integrators_diagram(HURRIED, 2.0, MODES, 50.0)
+    motion = [
+        transient,
+        transient_modes_diagram(ROLLING, 30.0, 8.0),
+        integrators_diagram(blade, 30.0, MODES, 25.0),
+        transient_modes_diagram(blade, 20.0, 8.0),
+    ]
+    for scene, speed in ((ROLLING, 55.0), (blade, 6.0)):
+        speeds = np.linspace(0, speed, 51)[1:]
+        motion += [harmonics_diagram(scene, speeds, MODES, 4.0), steady_modes_diagram(scene, speeds, 4.0)]
+    (DOCS / "tradeoff.md").write_text(page(single, many, motion, chosen, start), encoding="utf-8")
+    picture(many, transient, DOCS / "tradeoff.png")
+
+
+if __name__ == "__main__":
+    main()

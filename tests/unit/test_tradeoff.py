@@ -1,0 +1,419 @@
+"""Error against time: fronts, costs of digits, budgets, and the command."""
+
+import csv
+import json
+from math import inf, isnan
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib.figure import Figure
+
+import beamdyn as bd
+from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main
+from beamdyn.tradeoffs import (
+    Measurement,
+    cost_per_digit,
+    frequencies,
+    frequency_diagram,
+    harmonics_diagram,
+    integrators_diagram,
+    pareto_front,
+    timing,
+    transient_modes_diagram,
+    transients,
+)
+from beamdyn.tradeoffs.timing import Case, Family, measured
+from tests.scenes import HARVESTER, ROLLING
+
+ROOT = Path(__file__).parents[2]
+STILL = str(ROOT / "examples" / "tyre_harvester.toml")
+MOVING = str(ROOT / "examples" / "rolling_harvester.toml")
+
+coarse = st.sampled_from([1e-9, 1e-6, 1e-3, 0.1, 2.0])  # few values, so that ties are drawn
+points = st.lists(st.tuples(coarse, coarse | st.just(inf)), max_size=12)
+
+
+def of(pairs):
+    return [Measurement("family", f"setting {i}", i, e, t) for i, (t, e) in enumerate(pairs)]
+
+
+def beats(a, b):
+    return a.error <= b.error and a.time <= b.time and (a.error < b.error or a.time < b.time)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def once():
+    """Each case runs once, and there are few, so that budgets do not decide what is measured."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(timing, "RUNS", 1)
+        patch.setattr(frequencies, "_LEGENDRE", (1, 2, 3, 4, 6, 8, 10, 12, 14))
+        patch.setattr(frequencies, "_EIGENFUNCTIONS", (1, 2, 3, 4, 8, 16, 40))
+        patch.setattr(frequencies, "_ELEMENTS", (2, 4, 10, 20))
+        patch.setattr(frequencies, "_TOLERANCES", (1e-1, 1e-3, 1e-6, 1e-10))
+        patch.setattr(transients, "STOCK", ("Radau", "DOP853"))
+        patch.setattr(transients, "_STOCK_TOLERANCES", (1e-3, 1e-6))
+        patch.setattr(transients, "_MODES", (1, 2, 4))
+        patch.setattr(transients, "_ALL_MODES", 8)
+        yield
+
+
+# Fronts and digits --------------------------------------------------------------------------------
+
+
+@settings(derandomize=True, deadline=None)
+@given(points)
+def test_the_front_is_what_nothing_beats(pairs):
+    everything = of(pairs)
+    front = pareto_front(everything)
+    known = [m for m in everything if m.error < inf]
+    for m in everything:
+        beaten = m.error == inf or any(beats(other, m) for other in known)
+        assert (m in front) == (not beaten)
+    assert [m.time for m in front] == sorted(m.time for m in front)
+
+
+@settings(derandomize=True, deadline=None)
+@given(points)
+def test_a_digit_costs_the_shortest_time_that_reaches_it(pairs):
+    everything = of(pairs)
+    digits = cost_per_digit(everything)
+    reached = min((m.error for m in everything), default=inf)
+    assert len(digits) == {1e-9: 9, 1e-6: 6, 1e-3: 3, 0.1: 1, 2.0: 0, inf: 0}[reached]
+    for digit in digits:
+        assert digit.time == min(m.time for m in everything if m.error <= digit.error)
+    assert [d.time for d in digits] == sorted(d.time for d in digits)
+
+
+def test_the_ratio_is_to_the_digit_before():
+    digits = cost_per_digit(of([(1.0, 0.05), (2.0, 0.011), (4.0, 1e-3), (9.0, 1e-2)]))
+    assert [d.setting for d in digits] == ["setting 0", "setting 2", "setting 2"]
+    assert isnan(digits[0].ratio)
+    assert [d.ratio for d in digits[1:]] == [4.0, 1.0]
+
+
+# Budgets ------------------------------------------------------------------------------------------
+
+
+class Clock:
+    """Time that passes only in the runs."""
+
+    def __init__(self):
+        self.now = 0.0
+
+    def __call__(self):
+        return self.now
+
+    def case(self, setting, takes, answer=0.5):
+        def run(deadline):
+            if self.now + takes > deadline:
+                self.now = deadline
+                raise TimeoutError("half-way")
+            self.now += takes
+            if isinstance(answer, Exception):
+                raise answer
+            return answer
+
+        return Case(setting, 1.0, run)
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr(timing, "perf_counter", clock)
+    monkeypatch.setattr(timing, "process_time", clock)
+    return clock
+
+
+def run(clock, *cases, budget=10.0, resolved=1e-12):
+    return measured([Family("F", cases)], lambda answer: answer, resolved, budget)
+
+
+def test_a_cheap_case_is_repeated_and_a_dear_one_is_not(clock, monkeypatch):
+    monkeypatch.setattr(timing, "RUNS", 7)
+    found, skipped = run(clock, clock.case("a", 0.1), clock.case("b", 5.0))
+    assert ([m.time for m in found], skipped) == (pytest.approx([0.1, 5.0], rel=1e-12), [])
+    assert clock.now == pytest.approx(7 * 0.1 + 5.0, rel=1e-12)
+
+
+def test_the_shortest_run_counts(monkeypatch):
+    monkeypatch.setattr(timing, "RUNS", 3)
+    instants = iter([0.0, 3.0, 3.0, 4.0, 4.0, 6.0])  # the runs take 3, 1 and 2 s
+    monkeypatch.setattr(timing, "process_time", lambda: next(instants))
+    found, _ = measured([Family("F", (Case("a", 1, lambda deadline: 0.5),))], float, 0.0, 1e3)
+    assert [m.time for m in found] == [1.0]
+
+
+def test_a_reference_leaves_half_of_the_budget(clock):
+    clock.now = 3.0
+    assert [timing.what_is_left(budget, 1.0) for budget in (10.0, 3.0)] == [8.0, 1.5]
+
+
+def test_a_run_past_the_budget_is_given_up_and_named(clock):
+    found, skipped = run(clock, clock.case("a", 5.0), clock.case("b", 7.0), clock.case("c", 1.0))
+    assert [m.setting for m in found] == ["a"]
+    assert skipped == ["F: b given up after 5 s half-way, and the rest left out"]
+    assert clock.now == 10.0
+
+
+def test_what_would_not_fit_is_not_begun(clock):
+    found, skipped = run(clock, clock.case("a", 6.0), clock.case("b", 1.0))
+    assert [m.setting for m in found] == ["a"]
+    assert skipped == ["F: left out from b on, its 10 s being used up"]
+
+
+def test_a_failure_is_named(clock):
+    broken = clock.case("b", 1.0, ArithmeticError("no such luck"))
+    found, skipped = run(clock, clock.case("a", 1.0), broken, clock.case("c", 1.0))
+    assert [m.setting for m in found] == ["a"]
+    assert skipped == ["F: b failed (no such luck), and the rest left out"]
+
+
+def test_what_a_family_leaves_goes_to_the_next(clock):
+    families = [Family("F", (clock.case("a", 4.0),)), Family("G", (clock.case("b", 6.0),))]
+    found, skipped = measured(families, lambda answer: answer, 0.0, 10.0)
+    assert ([m.family for m in found], skipped) == (["F", "G"], [])
+
+
+def test_errors_are_not_below_what_is_resolved_and_never_nan(clock):
+    found, _ = run(clock, clock.case("a", 1.0, 1e-15), clock.case("b", 1.0, float("nan")))
+    assert [m.error for m in found] == [1e-12, inf]
+
+
+# Diagrams -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def diagram():
+    return frequency_diagram(HARVESTER, np.array([100.0]), 3, budget=60.0)
+
+
+def errors(diagram, family):
+    return {m.size: m.error for m in diagram.measurements if m.family == family}
+
+
+@pytest.mark.parametrize("basis", ["legendre", "eigenfunctions"])
+def test_more_functions_are_never_worse(diagram, basis):
+    found = errors(diagram, f"Ritz, {basis}")
+    assert list(found) == sorted(found)
+    # Poincare: the values of nested spaces fall; rounding is within twice what is resolved
+    assert (np.diff(list(found.values())) <= 2 * diagram.resolved).all()
+    assert min(found.values()) < 1e-10 < 1e-4 < max(found.values()) or basis == "eigenfunctions"
+    assert min(found.values()) < 1e-8
+
+
+def test_elements_converge_with_the_fourth_power_and_extrapolated_faster(diagram):
+    plain, better = (errors(diagram, f"elements, uniform{name}") for name in ("", ", extrapolated"))
+    assert plain[10] / plain[20] == pytest.approx(16, rel=0.1)  # the asymptotic rate, nearly reached
+    assert better[10] / better[20] > 40
+    assert better[20] < 0.1 * plain[20]
+
+
+def test_tolerances_are_kept(diagram):
+    found = errors(diagram, "tolerance=")
+    assert len(found) == 4
+    assert all(error <= max(tolerance, 1e-11) for tolerance, error in found.items())
+
+
+def test_the_reference_is_checked_by_the_guaranteed_bounds(monkeypatch):
+    def wrong(scene, speed, modes):
+        return bd.frequency_bounds(scene, speed + 1.0, modes)
+
+    monkeypatch.setattr(frequencies, "frequency_bounds", wrong)
+    with pytest.raises(ArithmeticError, match="not within the guaranteed bounds"):
+        frequency_diagram(HARVESTER, np.array([100.0]), 1, budget=1.0)
+
+
+def test_a_locus_has_the_error_of_its_worst_speed():
+    speeds = np.array([0.0, 100.0])
+    both, one = (frequency_diagram(HARVESTER, s, 2, budget=60.0) for s in (speeds, speeds[1:]))
+    family = "Ritz, eigenfunctions"  # exact at rest, and so worst at the highest speed
+    assert errors(both, family)[2] == pytest.approx(errors(one, family)[2], rel=1e-6)
+    assert "at 2 speeds to 100 rad/s" in both.title
+
+
+@pytest.fixture(scope="module")
+def integrators():
+    return integrators_diagram(ROLLING, 0.05, 2, budget=60.0)
+
+
+def test_integrators_agree(integrators):
+    for family in ("solve_ivp Radau", "solve_ivp DOP853"):
+        found = errors(integrators, family)
+        assert found[1e-6] < 1e-3  # some steps add up
+        assert found[1e-6] < 0.1 * found[1e-3]
+    assert errors(integrators, "Gauss collocation")[1e-10] < 1e-10
+    assert "DOP853 with rtol 1e-11 differs by" in integrators.reference
+
+
+def test_stock_integrators_are_given_up_in_time():
+    found = integrators_diagram(ROLLING, 5.0, 2, budget=0.7)
+    left_out = [sentence for sentence in found.skipped if sentence.startswith("solve_ivp")]
+    assert any("given up after" in sentence for sentence in left_out)
+    assert "no second route: DOP853 took more than" in found.reference
+
+
+def test_more_modes_are_better():
+    found = list(errors(transient_modes_diagram(ROLLING, 0.5, budget=60.0), "modes").values())
+    assert len(found) == 3
+    assert (np.diff(found) < 0).all()
+
+
+def test_more_harmonics_are_better():
+    diagram = harmonics_diagram(ROLLING, np.array([20.0, 40.0]), 2, budget=60.0)
+    found = np.array(list(errors(diagram, "harmonics").values()))
+    above = found > 10 * diagram.resolved
+    assert above.sum() >= 3
+    assert (np.diff(found[above]) < 0).all()
+
+
+def test_nothing_is_measured_where_nothing_moves():
+    still = bd.Scene(HARVESTER.beam, bd.Mount(0.0), bd.SteadyRotation(0.0))
+    assert integrators_diagram(still, 0.1, 1, budget=0.5).skipped == ("nothing moves the beam",)
+    assert transient_modes_diagram(still, 0.1, budget=0.5).measurements == ()
+
+
+# The whole ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def still():
+    return bd.tradeoff(HARVESTER, 100.0, budget=20.0)
+
+
+def test_a_scene_without_motion_has_frequencies_only(still):
+    assert [d.title for d in still.diagrams] == [
+        "3 frequencies at 100 rad/s",
+        "3 frequencies at 101 speeds to 100 rad/s",
+    ]
+    assert "no motion" in still.warnings[0]
+    assert isnan(still.t_end)
+    assert bd.tradeoff is bd.tradeoff  # the function, also after its module is loaded
+    assert callable(bd.tradeoff)
+
+
+def test_diagrams_of_a_beam_that_does_not_move_are_missing_with_a_reason():
+    spun = bd.Scene(HARVESTER.beam, bd.Mount(0.2, bending_angle=np.pi / 2), bd.SteadyRotation(50.0))
+    found = bd.tradeoff(spun, t_end=0.1, budget=5.0)  # the load lies in the plane, the deflection out of it
+    assert [d.title.split()[1] for d in found.diagrams] == ["frequencies", "frequencies"]
+    assert len(found.warnings) == 4
+    assert "nothing moves the beam" in found.warnings[0]
+
+
+def test_functions_are_counted_on_each_segment():
+    jump = bd.Table([0.0, 0.4, 0.4, 1.0], [4e-4, 4e-4, 2e-4, 2e-4])
+    beam = bd.Beam.rectangular(0.05, 0.01, jump, youngs_modulus=200e9, density=7850.0)
+    found = frequency_diagram(bd.Scene(beam, HARVESTER.mount), np.array([50.0]), 3, budget=20.0)
+    assert found.measurements[0].setting == "2 functions a segment"
+    assert errors(found, "Ritz, legendre")[10] < 1e-9  # the jump is at an edge: no loss of convergence
+    assert errors(found, "Ritz, eigenfunctions")[16] > 1e-6
+
+
+def test_to_dict_has_the_fronts_and_the_costs(still):
+    diagram = still.to_dict()["diagrams"][0]
+    assert diagram["front"][0]["family"].startswith("Ritz")
+    assert [d["error"] for d in diagram["per_digit"][:2]] == [0.1, 0.01]
+
+
+def test_summary_names_the_front(still):
+    assert still.diagrams[0].summary.startswith("Ritz, ")
+    assert " functions" in still.diagrams[0].summary
+
+
+def test_plot_has_a_panel_a_diagram_and_a_line_a_family(still):
+    ax = Figure().subplots()
+    assert still.plot(ax) is ax
+    _, first, second = ax.figure.axes
+    assert first.get_title() == "3 frequencies at 100 rad/s"
+    families = {m.family for m in still.diagrams[1].measurements}
+    drawn = {line.get_label() for line in second.lines}
+    assert drawn == {"Pareto front", *families}
+    assert (first.get_xscale(), first.get_yscale()) == ("log", "log")
+
+
+@pytest.mark.parametrize("budget", [0.0, -1.0, 1e-4, 1e9, float("nan"), "soon"])
+def test_bad_budgets_are_refused(budget):
+    with pytest.raises(ValueError, match="budget"):
+        bd.tradeoff(HARVESTER, budget=budget)
+
+
+def test_a_transient_needs_a_motion():
+    with pytest.raises(ValueError, match=r"t_end = 2\.0: the scene has no motion"):
+        bd.tradeoff(HARVESTER, t_end=2.0)
+
+
+def test_the_length_of_the_run_follows_from_the_scene():
+    from beamdyn.tradeoffs.study import _end
+
+    assert 11 < _end(ROLLING) < 12.1  # settled after 10 s; a hundred periods of 1/65 s
+    slow = bd.Scene(HARVESTER.beam, HARVESTER.mount, bd.SpinUp(55.0, duration=3600.0))
+    assert 1 < _end(slow) < 2
+
+
+# The command --------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def command(capsys):
+    def command(*arguments):
+        code = main(["tradeoff", *map(str, arguments)])
+        return code, *capsys.readouterr()
+
+    return command
+
+
+def test_the_command_prints_and_writes(command, tmp_path):
+    j, c, p = (tmp_path / name for name in ("j.json", "c.csv", "p.png"))
+    files = ("--json", j, "--csv", c, "--plot", p)
+    code, out, err = command(STILL, "--speed", "50 rad/s", "--modes", 2, "--budget", "5 s", *files)
+    assert code == DONE
+    for part in ("2 frequencies at 50 rad/s", "over the digit before", "Pareto front: Ritz", "guaranteed"):
+        assert part in out
+    assert "no motion" in err
+    diagrams = json.loads(j.read_text())["diagrams"]
+    rows = list(csv.DictReader(c.read_text().splitlines()))
+    assert len(rows) == sum(len(d["measurements"]) for d in diagrams)
+    assert sum(row["in_front"] == "True" for row in rows) == sum(len(d["front"]) for d in diagrams)
+    assert p.stat().st_size > 10_000
+    code, _, err = command(STILL, "--budget", "1 s", "--csv", c)
+    assert (code, "--force" in err) == (BAD_INPUT, True)
+
+
+def test_the_command_measures_motion(command):
+    code, out, _ = command(MOVING, "--t-end", "0.1 s", "--modes", 1, "--budget", "5 s")
+    assert code == DONE
+    for part in (
+        "1 frequency at 55 rad/s",
+        "Transient of 0.1 s, 1 mode\n",
+        "Gauss collocation",
+        "number of modes",
+    ):
+        assert part in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--budget", "0 s"), "--budget"),
+        (("--budget", "60"), "unit"),
+        (("--budget", "1e9 s"), "budget = 1e+09 s: give 0.01 to 86400 s"),
+        (("--t-end", "1 s"), "the scene has no motion"),
+        (("--modes", "0"), "modes = 0"),
+    ],
+)
+def test_bad_input_is_refused_with_a_sentence(command, arguments, sentence):
+    code, _, err = command(STILL, *arguments)
+    assert (code, sentence in err) == (BAD_INPUT, True)
+
+
+def test_no_answer_if_the_reference_fails(command, monkeypatch):
+    from beamdyn.tradeoffs import study
+
+    def fails(*arguments):
+        raise ArithmeticError("not within the guaranteed bounds")
+
+    monkeypatch.setattr(study, "frequency_diagram", fails)
+    code, _, err = command(STILL, "--budget", "1 s")
+    assert (code, "guaranteed" in err) == (NO_ANSWER, True)
