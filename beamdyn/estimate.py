@@ -18,6 +18,7 @@ from beamdyn.scene import Scene
 TARGET = 1e-11  # relative error aimed at by the defaults: two digits beyond the promised 1e-9
 TOLERANCES = 1e-14, 0.1  # the least and the largest that can be asked for
 _FEM_TARGET = 1e-7
+_UNRESOLVED = 0.3  # error from which two bases tell nothing of a third
 _SLOW = 1e-10  # distance of two bases from which the error may exceed it
 _LEAST = 9  # functions: fewer differ from their coarser companion by one, which a mode may have no use for
 
@@ -91,7 +92,7 @@ def estimated(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> E
         relative = np.abs(distance) / np.abs(s)
         left = relative / 3 if order is not None else _with_margin(distance, s, model.solver.rest)
         error = left + fine.rounding[:, :modes] + model.discretization.rounding
-    return Estimated(model, coarse, fine, np.where(np.isnan(error), np.inf, error))
+    return Estimated(model, coarse, fine, np.where(error < _UNRESOLVED, error, np.inf))  # nan, too
 
 
 def _with_margin(distance: np.ndarray, s: np.ndarray, rest: float) -> np.ndarray:

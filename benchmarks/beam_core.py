@@ -95,17 +95,21 @@ def speed() -> Iterator[Row]:
     yield "beamdyn --help [s]", f"{help_time:.2f}", "0.5"
 
 
-def show(title: str, *parts: Callable[[], Iterator[Row]]) -> None:
+PARTS = tables, published_scene, many_functions, speed
+
+
+def show(title: str, *parts: Callable[[], Iterator[Row]]) -> list[Row]:
     """Print the rows of all parts as one table."""
     table = Table("what", "measured", "bound", title=title)
-    for part in parts:
-        for row in part():
-            table.add_row(*map(escape, row))
+    rows = [row for part in parts for row in part()]
+    for row in rows:
+        table.add_row(*map(escape, row))
     Console(width=120).print(table)
+    return rows
 
 
 def main() -> None:
-    show("beam core", tables, published_scene, many_functions, speed)
+    show("beam core", *PARTS)
 
 
 if __name__ == "__main__":

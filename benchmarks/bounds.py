@@ -7,11 +7,13 @@ many lower bounds are missing, how wide the bounds are, and the time for a scene
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from time import perf_counter
 
 import numpy as np
 
 from beamdyn.bounds import frequency_bounds
+from benchmarks.beam_core import Row, show
 from tests.invariants.test_bounds import draw, encloses, relative_width
 
 MODES = 3
@@ -27,18 +29,30 @@ def measured(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
     return encloses(found, case.exact(MODES)), relative_width(found), time
 
 
-def main(scenes: int) -> int:
-    held, width, time = map(
-        np.array, zip(*map(measured, range(FIRST_SEED, FIRST_SEED + scenes)), strict=True)
-    )
-    print(f"{scenes} scenes, {held.size} eigenvalues: {held.sum()} enclosed, {(~held).sum()} not")
-    print(f"lower bounds missing: {np.isnan(width).sum()}")
-    known = width[~np.isnan(width)]
-    quantiles = np.quantile(known, [0.5, 0.9, 0.99, 1.0])
-    print("relative width of the squares, median, 90 %, 99 %, all:", *(f"{q:.1e}" for q in quantiles))
-    print(f"time a scene: median {np.median(time) * 1e3:.0f} ms, longest {time.max() * 1e3:.0f} ms")
-    return int(not held.all())
+def rows(scenes: int) -> Iterator[Row]:
+    """How the bounds of so many scenes hold."""
+    found = map(measured, range(FIRST_SEED, FIRST_SEED + scenes))
+    held, width, time = map(np.array, zip(*found, strict=True))
+    yield "random scenes with guaranteed bounds of three modes", f"{scenes}", "1000"
+    yield "... frequencies outside their bounds", f"{(~held).sum()} of {held.size}", "0"
+    yield "... lower bounds missing", f"{np.isnan(width).sum()}", ""
+    median, most = np.nanquantile(width, [0.5, 0.99])
+    yield "... relative width of the squares, median and 99 %", f"{median:.0e}, {most:.0e}", ""
+    yield "... time a scene, median [ms]", f"{np.median(time) * 1e3:.0f}", ""
+
+
+def sample() -> Iterator[Row]:
+    """The first 100 scenes."""
+    yield from rows(100)
+
+
+PARTS = (sample,)
+
+
+def main() -> None:
+    scenes = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    show("guaranteed bounds", lambda: rows(scenes))
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 1000))
+    main()

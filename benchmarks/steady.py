@@ -9,12 +9,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 import beamdyn as bd
-from benchmarks.beam_core import Row, best_time
+from benchmarks.beam_core import Row, best_time, show
 from tests.literature.test_resonance import HEAVY, ROLLING
 
 
@@ -65,12 +62,11 @@ def speed() -> Iterator[Row]:
         yield f"1000 speeds x 3 modes, {name} [s]", f"{time:.3f}", bound
 
 
+PARTS = crossings, amplitudes, tongues, speed
+
+
 def main() -> None:
-    table = Table("what", "measured", "bound", title="resonance and steady response")
-    for part in (crossings, amplitudes, tongues, speed):
-        for row in part():
-            table.add_row(*map(escape, row))
-    Console(width=120).print(table)
+    show("resonance and steady response", *PARTS)
 
 
 if __name__ == "__main__":

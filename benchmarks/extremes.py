@@ -1,0 +1,234 @@
+"""Frequencies over the whole range of inputs: right, or refused.  Run: python -m benchmarks.extremes
+
+Every answer is held against another route: guaranteed bounds, the power series in mpmath, the closed form
+of the uniform beam at rest for up to 200 modes, or finite elements for the beam with stretch.  It is wrong
+in silence if its stated error does not reach what is known to be true.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from scipy.optimize import brentq
+
+import beamdyn as bd
+from benchmarks.beam_core import Row, show
+from benchmarks.coverage import MOST_TENSION, largest_tension, time_unit
+from tests.reference.of_scene import exact, relative_errors
+
+_EPS = float(np.finfo(float).eps)
+
+_QUARTER = np.pi / 2
+SEED = 11
+_WARNED = 1e-6  # stated error from which an answer carries a warning
+_STEEL = 200e9, 7850.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one draw."""
+
+    kind: str
+    verdict: str  # "right", "right, with a warning", "refused" or "wrong in silence"
+    known: float  # relative uncertainty of what it is held against
+    detail: str = ""
+
+
+# Draws --------------------------------------------------------------------------------------------
+
+
+def beam_of(rng: np.random.Generator, taper: bool = True, tip: bool = True) -> bd.Beam:
+    """Ten micrometres to 100 m long, slenderness 10 to 1e6, up to 1e6 beam masses at its tip."""
+    length = 10 ** rng.uniform(-5, 2)
+    thickness = length / 10 ** rng.uniform(1, 6)
+    tapers = rng.uniform(0, 0.9, 2) * rng.integers(0, 2) * taper
+    sides = [Polynomial([s, -t * s]) for s, t in zip((10 * thickness, thickness), tapers, strict=True)]
+    mass = _STEEL[1] * length * 10 * thickness**2 * 10 ** rng.uniform(-6, 6)
+    body = bd.TipMass(mass, length * rng.uniform(0, 0.1)) if tip and rng.integers(0, 2) else None
+    return bd.Beam.rectangular(length, *sides, *_STEEL, tip=body)
+
+
+def scene_of(rng: np.random.Generator) -> tuple[bd.Scene, float]:
+    """Any scene and speed: hubs to 1e6 lengths, gamma to 1e4, past the critical speed, all angles."""
+    beam = beam_of(rng)
+    angles = [0.0, np.pi, _QUARTER, _QUARTER + rng.choice([-1, 1]) * 1e-12, rng.uniform(-np.pi, np.pi)]
+    mount = bd.Mount(
+        beam.length * rng.choice([0.0, 10 ** rng.uniform(-3, 6)]),
+        angles[rng.integers(len(angles))],
+        rng.choice([0.0, _QUARTER, rng.uniform(-np.pi, np.pi)]),
+    )
+    scene = bd.Scene(beam, mount)
+    gamma = rng.choice([0.0, 10 ** rng.uniform(-8, 4)]) / time_unit(beam)
+    if rng.integers(0, 2) and np.isfinite(critical := bd.critical_speed(scene)):
+        side = rng.choice([1 - 10 ** rng.uniform(-12, 0), 1 + 10 ** rng.uniform(-12, 0.5)])
+        return scene, float(side * critical * rng.choice([1, -1]))
+    return scene, float(gamma * rng.choice([1, -1]))
+
+
+# What is known ------------------------------------------------------------------------------------
+
+
+def by_bounds(rng: np.random.Generator) -> Outcome:
+    """Three modes against the guaranteed bounds of their squares."""
+    scene, speed = scene_of(rng)
+    found = bd.natural_modes(scene, speed)
+    known = bd.frequency_bounds(scene, speed)
+    squared = -np.real(found.eigenvalue**2)
+    # Near the critical speed the squared frequency is a small difference: 4 eps times its condition.
+    cond = np.abs(squared[-1] / squared) if len(squared) else 1.0
+    error = np.maximum(found.error, 4 * _EPS * cond)
+    room = np.abs(squared) * (2 * error + error**2)
+    low, high = known.lower_squared, known.upper_squared
+    low, high = np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
+    fits = bool((np.maximum(low - squared, squared - high) <= room).all())
+    width = float(np.median((high - low) / np.abs(squared))) / 2
+    return outcome("guaranteed bounds", found, fits, width, f"{scene} at {speed!r}")
+
+
+def by_series(rng: np.random.Generator) -> Outcome:
+    """Three modes against the power series, which is exact, up to a tension of 1e5 EI / L^2."""
+    scene, speed = scene_of(rng)
+    speed = float(np.sign(speed) * min(abs(speed), np.sqrt(MOST_TENSION / largest_tension(scene))))
+    found = bd.natural_modes(scene, speed)
+    true = np.array(relative_errors(found, exact(scene, speed, digits=22)))
+    squared = np.abs(found.eigenvalue) ** 2
+    fits = bool((true <= np.maximum(found.error, 4 * _EPS * squared[-1] / squared)).all())
+    return outcome("power series", found, fits, 1e-20, f"{scene} at {speed!r}")
+
+
+def at_rest(rng: np.random.Generator) -> Outcome:
+    """Up to 200 modes of a uniform beam at rest against the roots of cos x cosh x = -1."""
+    beam = beam_of(rng, taper=False, tip=False)
+    modes = int(10 ** rng.uniform(0, np.log10(200)))
+    found = bd.natural_modes(bd.Scene(beam, bd.Mount(0.0)), 0.0, modes)
+    exact = np.array([root(n) for n in range(1, modes + 1)]) ** 2 / time_unit(beam) / (2 * np.pi)
+    true = np.abs(found.frequency / exact - 1)
+    fits = bool((true <= np.maximum(found.error, 8 * _EPS)).all())
+    return outcome("closed form at rest, to 200 modes", found, fits, _EPS, f"{beam}, {modes} modes")
+
+
+def root(n: int) -> float:
+    """The n-th root of cos x = -1 / cosh x."""
+    middle = (n - 0.5) * np.pi
+    return (
+        middle
+        if n > 12
+        else float(brentq(lambda x: np.cos(x) + 1 / np.cosh(x), middle - 1, middle + 1, xtol=1e-15))
+    )
+
+
+def with_stretch(rng: np.random.Generator) -> Outcome:
+    """Stretch with axial stiffness ratios EA L^2 / EI to 1e16, against finite elements."""
+    beam = beam_of(rng, tip=False)
+    ratio = 10 ** rng.uniform(3, 16)
+    soft = bd.Beam.from_stiffness(
+        beam.length,
+        beam.mass_per_length,
+        beam.bending_stiffness,
+        axial_stiffness=ratio * float(beam.bending_stiffness(np.zeros(1))[0]) / beam.length**2,
+    )
+    scene = bd.Scene(soft, bd.Mount(beam.length * 10 ** rng.uniform(-2, 1), np.pi), stretch=True)
+    speed = min(10 ** rng.uniform(-2, 1.5), 0.3 * np.sqrt(ratio)) / time_unit(beam)
+    found, other = (bd.natural_modes(scene, speed, 2, method) for method in ("ritz", "fem"))
+    apart = np.abs(found.eigenvalue - other.eigenvalue) / np.abs(found.eigenvalue)
+    fits = bool((apart <= found.error + other.error).all())
+    return outcome(
+        "finite elements, with stretch", found, fits, float(other.error.max()), f"{scene} at {speed!r}"
+    )
+
+
+def outcome(kind: str, found: bd.Modes, fits: bool, known: float, detail: str) -> Outcome:
+    """The verdict on an answer."""
+    if not fits:
+        return Outcome(kind, "wrong in silence", known, detail)
+    warned = found.error.max() > _WARNED
+    return Outcome(kind, "right, with a warning" if warned else "right", known)
+
+
+_KINDS: tuple[tuple[str, float, Callable[[np.random.Generator], Outcome]], ...] = (
+    ("guaranteed bounds", 0.94, by_bounds),
+    ("power series", 0.01, by_series),
+    ("closed form at rest, to 200 modes", 0.03, at_rest),
+    ("finite elements, with stretch", 0.02, with_stretch),
+)
+
+
+def measured(number: int, seed: int) -> Outcome:
+    """One draw, told by its number."""
+    rng = np.random.default_rng([seed, number])
+    name, _, check = _KINDS[rng.choice(len(_KINDS), p=[share for _, share, _ in _KINDS])]
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return check(rng)
+    except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
+        return Outcome(name, "refused", np.nan, str(error))
+
+
+# Report -------------------------------------------------------------------------------------------
+
+
+def rows(outcomes: Sequence[Outcome]) -> Iterator[Row]:
+    """Counts of verdicts, and what was refused."""
+    verdicts = Counter(o.verdict for o in outcomes)
+    yield "random draws", str(len(outcomes)), "100000"
+    yield "wrong in silence", str(verdicts["wrong in silence"]), "0"
+    yield "refused", f"{verdicts['refused'] / len(outcomes):.2%}", "2%"
+    yield "right", f"{verdicts['right'] / len(outcomes):.1%}", ""
+    yield (
+        "right, with a warning that digits are lost",
+        f"{verdicts['right, with a warning'] / len(outcomes):.1%}",
+        "",
+    )
+    for name, _, _ in _KINDS:
+        of_kind = [o for o in outcomes if o.kind == name]
+        bad = sum(o.verdict == "wrong in silence" for o in of_kind)
+        known = np.nanmedian([o.known for o in of_kind])
+        yield f"held against {name}", f"{len(of_kind)}, {bad} wrong", f"known to {known:.0e}"
+    for o in [o for o in outcomes if o.verdict == "wrong in silence"][:10]:
+        yield f"wrong in silence ({o.kind})", o.detail[:300], ""
+    reasons = Counter(
+        o.detail.partition(":")[2][:60] or o.detail[:60] for o in outcomes if o.verdict == "refused"
+    )
+    for reason, many in reasons.most_common(8):
+        yield "refused", f"{many}", reason
+
+
+def run(first: int, scenes: int, workers: int, seed: int) -> list[Outcome]:
+    """Make so many draws."""
+    with ProcessPoolExecutor(workers) as pool:
+        return list(pool.map(partial(measured, seed=seed), range(first, first + scenes), chunksize=64))
+
+
+def sample() -> Iterator[Row]:
+    """The first 1000 draws."""
+    yield from rows(run(0, 1000, 2, SEED))
+
+
+PARTS = (sample,)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=100_000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first draw, to go on in parts")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=SEED)
+    options = parser.parse_args()
+    outcomes = run(options.first, options.scenes, options.workers, options.seed)
+    show("the whole range of inputs", lambda: rows(outcomes))
+
+
+if __name__ == "__main__":
+    main()
