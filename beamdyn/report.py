@@ -94,7 +94,7 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
         ("", "tip deflection [mm]", "over the length", "at [s]"),
         rows,
     )
-    return Group(shown, Text(_time_error(run)), *(Text(f"warning: {w}") for w in run.warnings))
+    return Group(shown, Text(_errors(run)), *(Text(f"warning: {w}") for w in run.warnings))
 
 
 def time_of_peak(run: Transient, start: float, end: float) -> tuple[float, float]:
@@ -109,18 +109,21 @@ def time_of_peak(run: Transient, start: float, end: float) -> tuple[float, float
 def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str]:
     size, length = run.peak(start, end), run.scene.beam.length
     error = _UNKNOWN * size if math.isnan(run.time_error) else run.time_error
+    error += run.mode_error if math.isfinite(run.mode_error) else 0.0
     deflection, share = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
     return deflection, share, supported(*time_of_peak(run, start, end)) if size else "-"
 
 
-def _time_error(run: Transient) -> str:
-    left_out = f"by the modes left out {1e3 * run.mode_error:.1g} mm."
+def _errors(run: Transient) -> str:
+    """The two errors in words."""
+    known = math.isfinite(run.mode_error)
+    modes = f"by the modes left out {1e3 * run.mode_error:.1g} mm" if known else "by the modes left out unknown"
     if math.isnan(run.time_error):
         return (
             "The error in time is not estimated: this integrator bounds that of each step only. "
-            f"Estimated error {left_out}"
+            f"Estimated error {modes}."
         )
-    return f"Estimated error by the steps in time {1e3 * run.time_error:.1g} mm, {left_out}"
+    return f"Estimated error by the steps in time {1e3 * run.time_error:.1g} mm, {modes}."
 
 
 def crossings_table(found: Crossings) -> Group:

@@ -1,7 +1,7 @@
 """All figures that the README quotes, in one run.  Run: python -m benchmarks
 
 Writes docs/measured.md; the README's tables repeat rows of it.  Takes a quarter of an hour, on a machine that
-does nothing else.  The long samples (10 000 scenes and more) have commands of their own, which the page names.
+does nothing else.  The long samples (10 000 scenes and more) have commands of their own.
 """
 
 from __future__ import annotations

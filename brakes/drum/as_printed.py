@@ -15,6 +15,7 @@ import numpy as np
 from brakes.drum.assembly import brake_torque, simplex
 from brakes.drum.shoe import Shoe, shoe_torque
 from brakes.published import load
+from brakes.published.errata import Erratum
 
 _MU, _P, _A, _C, _B1, _B2 = 0.35, 1000.0, 0.115, 0.110, 0.020, 0.025  # -, N, m
 _R, _START = 0.138, np.radians(30.0)
@@ -34,26 +35,6 @@ class Table1:
     def difference(self) -> float:
         """Largest difference of the torques, the paper's Delta M [N m]."""
         return float(np.max(self.second_torque - self.first_torque))
-
-
-@dataclass(frozen=True)
-class Erratum:
-    """An error in the paper and its consequence: the printed expression's value and the right one."""
-
-    name: str
-    where: str
-    printed: str
-    right: str
-    quantity: str
-    unit: str
-    printed_value: float
-    right_value: float
-
-    @property
-    def consequence(self) -> str:
-        """The two numbers in a sentence."""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{self.quantity}: {self.printed_value:.5g} in place of {self.right_value:.5g}{unit}"
 
 
 def table_1(arc: np.ndarray | None = None) -> Table1:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import Numbers, not_negative, numbers, positive, refuse, together
 from brakes.drum.shoe import Shoe, ShoeResult, lock_message, only_one, solve
 
@@ -53,7 +54,7 @@ def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
 
 
 @dataclass(frozen=True)
-class BrakeResult:
+class BrakeResult(Result):
     """Forces in a brake.
 
     Attributes

@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import (
     Numbers,
     first_where,
@@ -156,7 +157,7 @@ def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
 
 
 @dataclass(frozen=True)
-class ShoeResult:
+class ShoeResult(Result):
     """Forces on a shoe; vectors are in its axes, their components last.
 
     Past self-locking the formulas do not hold: forces, torque and factors are then nan, `locked` is

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import Numbers, first_where, numbers, pair, positive, refuse, together
 from brakes.forklift.levers import Levers
 
@@ -213,7 +214,7 @@ class DuoServo:
 
 
 @dataclass(frozen=True)
-class ShoeMotion:
+class ShoeMotion(Result):
     """Where the shoes go; arrays have one value a case.
 
     Attributes

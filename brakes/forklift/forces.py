@@ -23,6 +23,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import Numbers, positive, refuse, together
 from brakes.forklift.levers import Levers
 from brakes.forklift.newton import ten_equations
@@ -41,7 +42,7 @@ class Geometry(Protocol):
 
 
 @dataclass(frozen=True)
-class InternalForces:
+class InternalForces(Result):
     """Forces in a duo-servo brake; arrays have one value a case, vectors their components last.
 
     Attributes

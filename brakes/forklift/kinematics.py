@@ -13,10 +13,12 @@ bottom. Both shoes welded make a row redundant; pinned at their contact points o
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.checks import count, positive
+from beamdyn.common.results import Result, plain
 from brakes.forklift.duo_servo import DuoServo
 from brakes.planar import (
     GROUND,
@@ -65,6 +67,11 @@ class Stage:
     rank: np.ndarray
     least_singular_value: np.ndarray
 
+    @property
+    def constraints(self) -> int:
+        """Rows of the constraints; as many are independent where nothing is redundant."""
+        return self.mechanism.system.constraints
+
 
 @dataclass(frozen=True)
 class Event:
@@ -77,7 +84,7 @@ class Event:
 
 
 @dataclass(frozen=True)
-class Kinematics:
+class Kinematics(Result):
     """Both stages of a brake's motion.
 
     Attributes
@@ -99,6 +106,16 @@ class Kinematics:
     drum: Stage
     events: tuple[Event, ...]
     interference: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings."""
+        stages = {name: _stage_dict(getattr(self, name)) for name in ("right", "left", "drum")}
+        return super().to_dict() | stages
+
+
+def _stage_dict(stage: Stage) -> dict[str, Any]:
+    travel = {side: values.tolist() for side, values in stage.travel.items()}
+    return plain(stage) | {"travel": travel}
 
 
 def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import Numbers, positive
 from brakes.forklift.levers import Levers
 
@@ -19,7 +20,7 @@ SCALED_START = (-1.5, 0.1, 0.1, 0.7, 0.6, 0.1, 0.05, -0.3, 0.5, 1.4)
 
 
 @dataclass(frozen=True)
-class NewtonResult:
+class NewtonResult(Result):
     """End of an iteration.
 
     Attributes

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import Numbers
 from brakes.forklift.duo_servo import BENDIX_12_5, DuoServo, ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
@@ -14,7 +15,7 @@ from brakes.forklift.vehicle import STANDARD_GRAVITY, Stop, Truck, stop
 
 
 @dataclass(frozen=True)
-class Procedure:
+class Procedure(Result):
     """Results of the three stages, each carried into the next.
 
     Attributes

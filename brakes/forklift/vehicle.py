@@ -28,6 +28,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from beamdyn.common.results import Result
 from brakes.arrays import (
     Numbers,
     first_where,
@@ -123,7 +124,7 @@ class Truck:
 
 
 @dataclass(frozen=True)
-class Stop:
+class Stop(Result):
     """A stop, or why there is none; arrays have one value a case.
 
     Attributes

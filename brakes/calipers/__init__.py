@@ -1,0 +1,32 @@
+"""Bicycle calipers: what they make of the force of a finger, over the stroke, with friction and wear."""
+
+from brakes.calipers.caliper import Caliper
+from brakes.calipers.designs import (
+    NAMED,
+    Cantilever,
+    CentrePull,
+    Design,
+    DualPivot,
+    EeBrake,
+    SinglePivot,
+    VBrake,
+)
+from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
+from brakes.calipers.stopping import Stop, stop
+
+__all__ = [
+    "NAMED",
+    "Caliper",
+    "CaliperStroke",
+    "Cantilever",
+    "CentrePull",
+    "Design",
+    "DualPivot",
+    "EeBrake",
+    "PadWear",
+    "PivotFriction",
+    "SinglePivot",
+    "Stop",
+    "VBrake",
+    "stop",
+]

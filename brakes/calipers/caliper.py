@@ -1,0 +1,330 @@
+"""A caliper: a mechanism that a cable closes and that two pads stop at the rim."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from beamdyn.common.checks import count, not_negative, positive, real_array
+from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
+from brakes.planar import (
+    Cable,
+    Contact,
+    Equilibrium,
+    Force,
+    Mechanism,
+    Pin,
+    Position,
+    Spring,
+    TorsionSpring,
+    solve,
+    solve_with_friction,
+    stroke,
+)
+from brakes.planar.joints import Joint
+
+CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
+Split = Literal["equal force", "equal work"]
+_SPLITS = ("equal force", "equal work")
+_FINGER = 40.0  # N, a firm squeeze
+_NOISE = 1e-9  # part of the largest force that is rounding
+_CLOSED = 1e-12  # of the clearance: Newton's last step
+
+
+class _Forces(NamedTuple):
+    """Forces at S positions: the worst equilibrium's verdict, and arrays by name."""
+
+    worst: Equilibrium
+    warnings: tuple[str, ...]
+    pads: np.ndarray
+    reactions: dict[str, np.ndarray]
+    magnitudes: dict[str, np.ndarray]
+    virtual_work: np.ndarray
+    residual: np.ndarray
+
+
+@dataclass(frozen=True)
+class Caliper:
+    """A mechanism with a cable and two pads, drawn open.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Its bodies and joints, and among its loads the cable and the pads' forces, whatever their magnitudes.
+    centring : tuple of joints
+        What keeps the free arms in step until the pads touch, such as equal return springs.  Empty where
+        the mechanism does so by itself: then `split` says how the rim loads the two pads, not statics.
+    cable : str
+        The load that closes the brake.
+    pads : tuple of 2 str
+        The forces of the rim on the right and on the left pad, which point away from the rim.
+    split : {"equal force", "equal work"}
+        Both pads press alike, or both do the same work (with no springs, tension 2 F_R delta_R).
+    lever_ratio : float
+        Travel of the finger over that of the cable.
+    clearance : float
+        Mean gap between pad and rim [m]; the brake is centred so that both pads touch at once.
+    pivot_radius : float
+        Radius of the pivots [m].
+    name : str
+        For titles.
+    """
+
+    mechanism: Mechanism
+    centring: tuple[Joint, ...] = ()
+    cable: str = CABLE
+    pads: tuple[str, str] = (RIGHT_PAD, LEFT_PAD)
+    split: Split = "equal force"
+    lever_ratio: float = 4.0
+    clearance: float = 1.25e-3
+    pivot_radius: float = 4e-3
+    name: str = "caliper"
+
+    def __post_init__(self) -> None:
+        if self.split not in _SPLITS:
+            raise ValueError(f"split = {self.split!r}: give {' or '.join(map(repr, _SPLITS))}")
+        positive("lever_ratio", self.lever_ratio)
+        positive("clearance", self.clearance, "m")
+        not_negative("pivot_radius", self.pivot_radius, "m")
+        for name in (self.cable, *self.pads):
+            if isinstance(self.mechanism.load(name), Spring | TorsionSpring):
+                raise ValueError(f"load {name!r} is a spring: name a force, a moment or a cable pair")
+        if len({self.cable, *self.pads}) < 3:
+            raise ValueError(f"cable {self.cable!r} and pads {self.pads}: name three different loads")
+
+    # Motion -----------------------------------------------------------------------------------------
+
+    @cached_property
+    def free(self) -> Mechanism:
+        """The mechanism before the pads touch: with what centres it, and without tension."""
+        held = replace(self.mechanism, joints=(*self.mechanism.joints, *self.centring))
+        return _loaded(held, {self.cable: 0.0, **dict.fromkeys(self.pads, 0.0)})
+
+    @cached_property
+    def contact(self) -> float:
+        """Travel of the cable at which the pads touch: their mean travel is the clearance [m].
+
+        Raises
+        ------
+        OutOfReachError
+            If the caliper does not close so far.
+        """
+        travel, step = 0.0, np.inf
+        for _ in range(30):
+            motion = stroke(self.free, self.cable, [travel])
+            gone, ratio = self._pads(motion.travel).mean(), self._pads(motion.ratio).mean()
+            if ratio <= 0:
+                raise ValueError(
+                    f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
+                    f"{self.pads[1]!r} away from the rim, or the cable"
+                )
+            step = (self.clearance - gone) / ratio
+            travel += step
+            if abs(step) <= _CLOSED * travel:
+                break
+        return float(travel)
+
+    def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
+        """Travel (S, 2) towards the rim: against the forces."""
+        return -np.stack([travel[name] for name in self.pads], axis=-1)
+
+    # Forces -----------------------------------------------------------------------------------------
+
+    def stroke(
+        self,
+        travel: float | Sequence[float] | np.ndarray | None = None,
+        points: int = 100,
+        finger: float = _FINGER,
+    ) -> CaliperStroke:
+        """The caliper over its stroke.
+
+        Parameters
+        ----------
+        travel : float or sequence of floats, optional
+            Largest travel of the cable, or its travels [m]; up to where the pads touch if not given.
+        points : int
+            How many, from 0 to the largest.
+        finger : float
+            Force of the finger on the hand lever [N].
+
+        Raises
+        ------
+        AssemblyError, OutOfReachError
+            If the drawing cannot be assembled, or the mechanism does not go so far.
+        ValueError
+            If the mechanism does not have one motion.
+        """
+        travel = self.contact if travel is None else travel
+        values = np.linspace(0.0, travel, count("points", points, 2)) if np.ndim(travel) == 0 else travel
+        motion = stroke(self.free, self.cable, real_array("travel", values))  # pyright: ignore[reportArgumentType]
+        tension = self.lever_ratio * positive("finger", finger, "N")
+        forces = self._forces(motion.position, tension)
+        toggles = [toggle.message for toggle in motion.toggles]
+        return CaliperStroke(
+            caliper=self.name,
+            status=forces.worst.status,
+            message=forces.worst.message,
+            warnings=(*forces.warnings, *toggles),
+            finger_force=finger,
+            tension=tension,
+            lever_ratio=self.lever_ratio,
+            cable=motion.values,
+            finger=motion.values * self.lever_ratio,
+            pad_travel=self._pads(motion.travel),
+            pad_ratio=self._pads(motion.ratio),
+            pad_force=forces.pads,
+            advantage=forces.pads / finger,
+            reactions=forces.reactions,
+            magnitudes=forces.magnitudes,
+            virtual_work=forces.virtual_work,
+            residual=forces.residual,
+            motion=motion,
+        )
+
+    def equilibrium(self, travel: float | None = None, finger: float = _FINGER) -> Equilibrium:
+        """All forces at one travel of the cable [m], where the pads touch if not given; for free bodies."""
+        position = stroke(self.free, self.cable, [self.contact if travel is None else travel]).position
+        tension = self.lever_ratio * positive("finger", finger, "N")
+        right = None
+        if not self.centring:  # then the split gives one of the two forces
+            found = float(self._forces(position, tension).pads[0, 0])
+            right = None if np.isnan(found) else found
+        return solve(self._with(tension, right, None), position[0])
+
+    def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
+        return _loaded(
+            self.mechanism, dict(zip((self.cable, *self.pads), (tension, right, left), strict=True))
+        )
+
+    def _forces(self, position: Position, tension: float) -> _Forces:
+        """Forces at a tension [N].
+
+        Where the arms are coupled, the answer is between those with one pad alone: any such mean is in
+        equilibrium, and the weight is the share of the right pad in the work.
+        """
+        if self.centring:
+            return _mean(solve(self._with(tension, None, None), position), None, self.pads, 1.0)
+        right = solve(self._with(tension, None, 0.0), position)
+        left = solve(self._with(tension, 0.0, None), position)
+        share = np.full(len(position.batch), 0.5)
+        if self.split == "equal force":
+            a, b = right.amplitudes[self.pads[0]], left.amplitudes[self.pads[1]]
+            share = b / (a + b)
+        return _mean(right, left, self.pads, share)
+
+    # What changes it --------------------------------------------------------------------------------
+
+    def friction(self, coefficient: float, travel: float | None = None) -> PivotFriction:
+        """What friction in all pivots takes, at one travel of the cable [m]; that of contact if not given.
+
+        The pads keep the forces that they have without friction; the tension is what friction changes.
+        """
+        travel = self.contact if travel is None else travel
+        motion = stroke(self.free, self.cable, [travel])
+        tension = self.lever_ratio * _FINGER
+        right, left = self._forces(motion.position, tension).pads[0]
+        joints = tuple(
+            replace(joint, radius=self.pivot_radius, friction=coefficient)
+            if isinstance(joint, Pin)
+            else joint
+            for joint in self.free.joints
+        )
+        rubbing = _loaded(
+            replace(self.free, joints=joints), {self.cable: None, self.pads[0]: right, self.pads[1]: left}
+        )
+        found = solve_with_friction(rubbing, self.cable, motion.position.of(rubbing))
+        squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (found.squeeze, found.release))
+        locked = [
+            f"{way}: {e.message}"
+            for way, e in (("squeeze", found.squeeze), ("release", found.release))
+            if e.status == "self-locking"
+        ]
+        return PivotFriction(
+            coefficient=coefficient,
+            cable=float(travel),
+            squeeze=0.0 if np.isnan(squeeze) else tension / squeeze,
+            release=0.0 if np.isnan(release) else release / tension,
+            status="self-locking" if locked else "determined",
+            message="; ".join(locked) or "the brake closes and opens",
+        )
+
+    def worn(self, lost: float) -> Caliper:
+        """The caliper whose pads have each lost a thickness [m]: their faces lie further from the rim."""
+        lost = not_negative("lost", lost, "m", "it is the thickness that a pad has lost")
+        loads = tuple(
+            _shifted(load, lost) if load.name in self.pads else load for load in self.mechanism.loads
+        )
+        return replace(self, mechanism=replace(self.mechanism, loads=loads), clearance=self.clearance + lost)
+
+    def wear(self, lost: Sequence[float] | np.ndarray) -> PadWear:
+        """Where the pads touch, and the advantage there, after they have lost thicknesses [m]."""
+        lost = real_array("lost", lost)
+        worn = [self.worn(thickness) for thickness in lost]
+        runs = [caliper.stroke([caliper.contact]) for caliper in worn]
+        cable = np.array([run.cable[0] for run in runs])
+        advantage = np.array([run.advantage[0] for run in runs]).reshape(-1, 2)
+        return PadWear(lost, cable, cable * self.lever_ratio, advantage)
+
+
+def _loaded(mechanism: Mechanism, magnitudes: dict[str, float | None]) -> Mechanism:
+    """The mechanism with other magnitudes of some of its loads."""
+    loads = tuple(
+        replace(load, magnitude=magnitudes[load.name])
+        if load.name in magnitudes and not isinstance(load, Spring | TorsionSpring)
+        else load
+        for load in mechanism.loads
+    )
+    return replace(mechanism, loads=loads)
+
+
+def _shifted(load: object, lost: float) -> object:
+    if not isinstance(load, Force):
+        raise ValueError("the wear of a pad needs its load to be a force on its face")
+    (x, y), (dx, dy) = load.at, np.array(load.direction) / np.hypot(*load.direction)
+    return replace(load, at=(x + lost * float(dx), y + lost * float(dy)))
+
+
+def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float) -> _Forces:
+    """The mean of two equilibria, of which the first has a share; or the only one."""
+    b = a if b is None else b
+    weight = np.broadcast_to(share, a.residual.shape)
+
+    def mean(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        w = weight.reshape(-1, *[1] * (x.ndim - 1))
+        return x if a is b else w * x + (1 - w) * y
+
+    forces = np.stack([mean(a.amplitudes[name], b.amplitudes[name]) for name in pads], axis=-1)
+    reactions = {name: mean(force, b.reactions[name]) for name, force in a.reactions.items()}
+    joints = a.position.mechanism.joints
+    sizes = {  # of a pin not the mean of the sizes, but the size of the mean
+        joint.name: np.linalg.norm(reactions[joint.name], axis=-1)
+        if isinstance(joint, Pin)
+        else mean(a.magnitudes[joint.name], b.magnitudes[joint.name])
+        for joint in joints
+    }
+    one_way = [*pads, *(joint.name for joint in joints if isinstance(joint, Contact | Cable))]
+    return _Forces(
+        worst=a if a.status != "determined" else b,
+        warnings=_one_way({**sizes, **dict(zip(pads, forces.T, strict=True))}, one_way),
+        pads=forces,
+        reactions=reactions,
+        magnitudes=sizes,
+        virtual_work=np.maximum(a.virtual_work, b.virtual_work),
+        residual=np.maximum(a.residual, b.residual),
+    )
+
+
+def _one_way(sizes: dict[str, np.ndarray], names: Sequence[str]) -> tuple[str, ...]:
+    """Warnings of pads and contacts that would have to pull, and of cables that would have to push."""
+    largest = max(np.nanmax(np.abs(size), initial=0.0) for size in sizes.values())
+    least = {name: np.nanmin(sizes[name], initial=0.0) for name in names}
+    return tuple(
+        f"{name!r} would have to act the other way, with {-size:.6g} N: it is open or slack there; "
+        "check its direction"
+        for name, size in least.items()
+        if size < -_NOISE * largest
+    )

@@ -1,0 +1,318 @@
+"""Six calipers as data: their dimensions, and the mechanisms these give.
+
+x points to the right and y up, seen from the front; the wheel's mid-plane is x = 0 and the brake is drawn
+open.  "Right" and "left" are the sides of the pads; the rim pushes them outward.  A dimension of a symmetric
+caliper is that of the right-hand side.  The eeBrake is a reconstruction that meets the numbers of its paper,
+whose own coordinates are lost; the others have dimensions usual for their kind, of no particular product.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from brakes.calipers.caliper import CABLE, LEFT_PAD, RIGHT_PAD, Caliper, Split
+from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
+
+Point = tuple[float, float]
+MM = 1e-3
+RIGHT, LEFT = "right arm", "left arm"
+
+
+def _mm(x: float, y: float) -> Point:
+    """A point in mm."""
+    return x * MM, y * MM
+
+
+def _metres(meaning: str) -> dict[str, str]:
+    return {"unit": "m", "meaning": meaning}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design:
+    """Dimensions that every caliper has.
+
+    Parameters
+    ----------
+    lever_ratio : float
+        Travel of the finger over that of the cable, at the hand lever.
+    clearance : float
+        Mean gap between pad and rim, open [m].
+    pivot_radius : float
+        Radius of the pivots [m]; it matters with friction only.
+    """
+
+    label: ClassVar[str]
+
+    lever_ratio: float = field(
+        default=4.0, metadata={"unit": "", "meaning": "travel of the finger over that of the cable"}
+    )
+    clearance: float = field(default=1.25e-3, metadata=_metres("mean gap between pad and rim, open"))
+    pivot_radius: float = field(default=4e-3, metadata=_metres("radius of the pivots"))
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        raise NotImplementedError
+
+    def _caliper(self, mechanism: Mechanism, centring: tuple[RotationLock, ...] = (), **more: Any) -> Caliper:
+        return Caliper(
+            mechanism,
+            centring,
+            lever_ratio=self.lever_ratio,
+            clearance=self.clearance,
+            pivot_radius=self.pivot_radius,
+            name=self.label,
+            **more,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class EeBrake(Design):
+    """The eeBrake: two levers on the panel, a strut and a link that keep them in step; reconstructed.
+
+    Parameters
+    ----------
+    pivot, pad, upper_pin : tuple of 2 floats
+        Of the right lever: its pivot on the panel, its pad, the pin of the strut; the left lever mirrors it,
+        and its upper pin is O of the upper-left lever [m].
+    link_pin, strut_pin, housing : tuple of 2 floats
+        Points A, B and C of the upper-left lever: the link, the strut, and the face on which the cable's
+        housing stands [m].
+    link_anchor : tuple of 2 floats
+        The link's end G on the panel [m].
+    cable_anchor : tuple of 2 floats
+        Where the inner wire ends on the panel: at the right pivot [m].
+    split : {"equal force", "equal work"}
+        How the rim shares the load between the pads, which statics alone does not say: "equal work" is the
+        reading T = 2 delta_R under which the paper's X = 0.875 comes out.
+    """
+
+    label = "eeBrake (reconstructed)"
+
+    pivot: Point = field(default=_mm(17.5, -19), metadata=_metres("pivot of the right lever on the panel"))
+    pad: Point = field(default=_mm(12.75, -45), metadata=_metres("right pad"))
+    upper_pin: Point = field(
+        default=_mm(25.5, 11.053947511008978),
+        metadata=_metres("pin of the strut on the right lever; mirrored, O"),
+    )
+    link_pin: Point = field(
+        default=_mm(-22, 20.679813957477265), metadata=_metres("pin A of the link on the upper-left lever")
+    )
+    strut_pin: Point = field(
+        default=_mm(-12.6, 29), metadata=_metres("pin B of the strut on the upper-left lever")
+    )
+    housing: Point = field(
+        default=_mm(-3.765798714439799, 33.9), metadata=_metres("face C of the cable's housing")
+    )
+    link_anchor: Point = field(default=_mm(-3.6, 14.9), metadata=_metres("pin G of the link on the panel"))
+    cable_anchor: Point = field(
+        default=_mm(17.5, -19), metadata=_metres("end of the inner wire on the panel")
+    )
+    split: Split = field(default="equal force", metadata={"meaning": "how the rim loads the two pads"})
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        right, left, upper, strut, link = "right lever", "left lever", "upper-left lever", "strut", "link"
+        joints = (
+            Pin("right pivot", right, GROUND, self.pivot),
+            Pin("left pivot", left, GROUND, mirrored(self.pivot)),
+            Pin("pin O", upper, left, mirrored(self.upper_pin)),
+            Pin("pin A", link, upper, self.link_pin),
+            Pin("pin G", link, GROUND, self.link_anchor),
+            Pin("pin B", strut, upper, self.strut_pin),
+            Pin("strut end", strut, right, self.upper_pin),
+        )
+        cable = CablePair(CABLE, upper, GROUND, self.housing, self.cable_anchor)
+        bodies = (right, left, upper, strut, link)
+        return self._caliper(
+            Mechanism(bodies, joints, (cable, *pads(self.pad, right, left))), split=self.split
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SinglePivot(Design):
+    """Single-pivot side-pull: both arms on the mount bolt, the cable pulls their ends together at the side.
+
+    Parameters
+    ----------
+    bolt, pad : tuple of 2 floats
+        The mount bolt, on which both arms turn, and the right pad [m].
+    clamp, housing : tuple of 2 floats
+        Cable clamp on the arm of the right pad, housing's stop on the arm of the left pad [m].
+    """
+
+    label = "single-pivot side-pull"
+
+    bolt: Point = field(default=_mm(0, 0), metadata=_metres("mount bolt, on which both arms turn"))
+    pad: Point = field(default=_mm(12.5, -48), metadata=_metres("right pad"))
+    clamp: Point = field(default=_mm(-42, 2), metadata=_metres("cable clamp, on the arm of the right pad"))
+    housing: Point = field(
+        default=_mm(-42, 34), metadata=_metres("stop of the housing, on the arm of the left pad")
+    )
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        joints = (
+            Pin("bolt, right arm", RIGHT, GROUND, self.bolt),
+            Pin("bolt, left arm", LEFT, GROUND, self.bolt),
+        )
+        cable = CablePair(CABLE, RIGHT, LEFT, self.clamp, self.housing)
+        return self._caliper(Mechanism((RIGHT, LEFT), joints, (cable, *pads(self.pad))), CENTRED)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DualPivot(Design):
+    """Dual-pivot side-pull: one arm on the mount bolt, the other beside it, a roller keeps them in step.
+
+    Parameters
+    ----------
+    bolt, side_pivot : tuple of 2 floats
+        Pivot of the arm of the left pad, and of that of the right pad [m].
+    roller : tuple of 2 floats
+        Where the right pad's arm lifts the left pad's arm [m].
+    pad : tuple of 2 floats
+        The right pad [m].
+    clamp, housing : tuple of 2 floats
+        Cable clamp on the arm of the right pad, housing's stop on the arm of the left pad [m].
+    """
+
+    label = "dual-pivot side-pull"
+
+    bolt: Point = field(default=_mm(0, 0), metadata=_metres("mount bolt, pivot of the arm of the left pad"))
+    side_pivot: Point = field(default=_mm(27, 4), metadata=_metres("pivot of the arm of the right pad"))
+    roller: Point = field(default=_mm(13, 1), metadata=_metres("roller between the arms"))
+    pad: Point = field(default=_mm(12.5, -46), metadata=_metres("right pad"))
+    clamp: Point = field(default=_mm(-38, 2), metadata=_metres("cable clamp, on the arm of the right pad"))
+    housing: Point = field(
+        default=_mm(-38, 34), metadata=_metres("stop of the housing, on the arm of the left pad")
+    )
+    split: Split = field(default="equal force", metadata={"meaning": "how the rim loads the two pads"})
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        joints = (
+            Pin("side pivot", RIGHT, GROUND, self.side_pivot),
+            Pin("bolt", LEFT, GROUND, self.bolt),
+            Contact("roller", LEFT, RIGHT, self.roller, (0.0, 1.0)),
+        )
+        cable = CablePair(CABLE, RIGHT, LEFT, self.clamp, self.housing)
+        return self._caliper(Mechanism((RIGHT, LEFT), joints, (cable, *pads(self.pad))), split=self.split)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CentrePull(Design):
+    """Centre-pull: arms that cross, on a pivot each; a yoke pulls the straddle cable between their ends.
+
+    Parameters
+    ----------
+    pivot, pad, hook : tuple of 2 floats
+        Pivot and pad of the right arm, and its end of the straddle cable, beyond the middle [m].
+    yoke, stop : tuple of 2 floats
+        The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
+    """
+
+    label = "centre-pull"
+
+    pivot: Point = field(default=_mm(20, 0), metadata=_metres("pivot of the right arm"))
+    pad: Point = field(default=_mm(12.5, -48), metadata=_metres("right pad"))
+    hook: Point = field(default=_mm(-32, 24), metadata=_metres("end of the straddle cable on the right arm"))
+    yoke: Point = field(default=_mm(0, 60), metadata=_metres("yoke on the straddle cable"))
+    stop: Point = field(default=_mm(0, 120), metadata=_metres("stop of the main cable's housing"))
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        return self._caliper(straddled(self), CENTRED)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cantilever(Design):
+    """Cantilever: arms on bosses below the rim, a yoke pulls the straddle cable between their outer ends.
+
+    Parameters
+    ----------
+    pivot, pad, hook : tuple of 2 floats
+        Boss and pad of the right arm, and its end of the straddle cable [m].
+    yoke, stop : tuple of 2 floats
+        The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
+    """
+
+    label = "cantilever"
+
+    pivot: Point = field(default=_mm(40, -25), metadata=_metres("boss of the right arm"))
+    pad: Point = field(default=_mm(12.5, 0), metadata=_metres("right pad"))
+    hook: Point = field(default=_mm(62, 12), metadata=_metres("end of the straddle cable on the right arm"))
+    yoke: Point = field(default=_mm(0, 70), metadata=_metres("yoke on the straddle cable"))
+    stop: Point = field(default=_mm(0, 130), metadata=_metres("stop of the main cable's housing"))
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        return self._caliper(straddled(self), CENTRED)
+
+
+@dataclass(frozen=True, kw_only=True)
+class VBrake(Design):
+    """V-brake (linear-pull): long arms on bosses below the rim, the cable pulls their tops together.
+
+    Parameters
+    ----------
+    pivot, pad, clamp : tuple of 2 floats
+        Boss and pad of the right arm, and the cable clamp at its top; the left arm's noodle mirrors it [m].
+    """
+
+    label = "V-brake"
+
+    lever_ratio: float = field(
+        default=2.2, metadata={"unit": "", "meaning": "travel of the finger over that of the cable"}
+    )
+    pivot: Point = field(default=_mm(40, -25), metadata=_metres("boss of the right arm"))
+    pad: Point = field(default=_mm(12.5, 0), metadata=_metres("right pad"))
+    clamp: Point = field(default=_mm(34, 80), metadata=_metres("cable clamp at the top of the right arm"))
+
+    def build(self) -> Caliper:
+        """The caliper of these dimensions."""
+        joints = (
+            Pin("right boss", RIGHT, GROUND, self.pivot),
+            Pin("left boss", LEFT, GROUND, mirrored(self.pivot)),
+        )
+        cable = CablePair(CABLE, RIGHT, LEFT, self.clamp, mirrored(self.clamp))
+        return self._caliper(Mechanism((RIGHT, LEFT), joints, (cable, *pads(self.pad))), CENTRED)
+
+
+NAMED: dict[str, type[Design]] = {
+    "eebrake": EeBrake,
+    "single-pivot": SinglePivot,
+    "dual-pivot": DualPivot,
+    "centre-pull": CentrePull,
+    "cantilever": Cantilever,
+    "v-brake": VBrake,
+}
+
+# Equal return springs turn free arms by equal angles; they do not hold them once the pads touch.
+CENTRED = (RotationLock("return springs", LEFT, RIGHT, -1.0),)
+
+
+def mirrored(point: Point) -> Point:
+    """The same point of the other side."""
+    return -point[0], point[1]
+
+
+def pads(right: Point, right_body: str = RIGHT, left_body: str = LEFT) -> tuple[Force, Force]:
+    """Forces of the rim on the right pad and on its mirror image."""
+    return (
+        Force(RIGHT_PAD, right_body, right, (1.0, 0.0)),
+        Force(LEFT_PAD, left_body, mirrored(right), (-1.0, 0.0)),
+    )
+
+
+def straddled(arms: CentrePull | Cantilever) -> Mechanism:
+    """Two arms and a yoke that slides on the straddle cable; the main cable keeps it in the middle."""
+    yoke = "yoke"
+    joints = (
+        Pin("right pivot", RIGHT, GROUND, arms.pivot),
+        Pin("left pivot", LEFT, GROUND, mirrored(arms.pivot)),
+        Cable("straddle cable", (RIGHT, yoke, LEFT), (arms.hook, arms.yoke, mirrored(arms.hook))),
+        Slot("middle", yoke, GROUND, arms.yoke, (0.0, 1.0)),
+        RotationLock("yoke upright", yoke, GROUND),
+    )
+    cable = CablePair(CABLE, yoke, GROUND, arms.yoke, arms.stop)
+    return Mechanism((RIGHT, LEFT, yoke), joints, (cable, *pads(arms.pad)))

@@ -1,0 +1,146 @@
+"""What is known of a caliper over its stroke, with friction, and as its pads wear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.results import Result, plain
+from brakes.planar import Position, Stroke
+
+
+@dataclass(frozen=True)
+class CaliperStroke(Result):
+    """A caliper over its stroke; S positions, and the pads in the order right, left.
+
+    The pads are loaded at every position as if the rim were just there.  What is not determined is nan.
+
+    Parameters
+    ----------
+    caliper : str
+        Its name.
+    status, message : str
+        Worst of the positions, as in `planar.Equilibrium`.
+    warnings : tuple of str
+        Pads that would have to pull, toggle positions, answers that hang on the last digits.
+    finger_force, tension : float
+        Force of the finger on the hand lever and tension of the cable [N].
+    lever_ratio : float
+        Travel of the finger over that of the cable.
+    cable, finger : ndarray, shape (S,)
+        Travels of cable and finger from the open position [m].
+    pad_travel : ndarray, shape (S, 2)
+        Travel of each pad towards the rim [m].
+    pad_ratio : ndarray, shape (S, 2)
+        Its velocity over that of the cable.
+    pad_force : ndarray, shape (S, 2)
+        Force of each pad on the rim [N].
+    advantage : ndarray, shape (S, 2)
+        The same over the force of the finger.
+    reactions : dict of ndarray, shape (S, 2)
+        Force (x, y) of each joint on the body named first [N].
+    magnitudes : dict of ndarray, shape (S,)
+        Its size, as in `planar.Equilibrium` [N].
+    virtual_work : ndarray, shape (S,)
+        Largest work of the loads on a free motion over the largest force: 0 but for rounding.
+    residual : ndarray, shape (S,)
+        Largest force or moment left over on a body, over the largest force.
+    motion : Stroke
+        Positions of the bodies.
+    """
+
+    caliper: str
+    status: str
+    message: str
+    warnings: tuple[str, ...]
+    finger_force: float
+    tension: float
+    lever_ratio: float
+    cable: np.ndarray
+    finger: np.ndarray
+    pad_travel: np.ndarray
+    pad_ratio: np.ndarray
+    pad_force: np.ndarray
+    advantage: np.ndarray
+    reactions: dict[str, np.ndarray]
+    magnitudes: dict[str, np.ndarray]
+    virtual_work: np.ndarray
+    residual: np.ndarray
+    motion: Stroke = field(repr=False)
+
+    @property
+    def position(self) -> Position:
+        """Positions of the bodies."""
+        return self.motion.position
+
+    @property
+    def total_advantage(self) -> np.ndarray:
+        """Sum of both pads' forces over that of the finger, shape (S,)."""
+        return self.advantage.sum(axis=1)
+
+    @property
+    def travel_symmetry(self) -> np.ndarray:
+        """Velocity of the left pad over that of the right, shape (S,)."""
+        return self.pad_ratio[:, 1] / self.pad_ratio[:, 0]
+
+    @property
+    def force_symmetry(self) -> np.ndarray:
+        """Force of the left pad over that of the right, shape (S,)."""
+        return self.pad_force[:, 1] / self.pad_force[:, 0]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings."""
+        sets = {
+            key: {name: plain(values) for name, values in getattr(self, key).items()}
+            for key in ("reactions", "magnitudes")
+        }
+        more = {key: plain(getattr(self, key)) for key in ("travel_symmetry", "force_symmetry")}
+        return super().to_dict() | sets | more
+
+
+@dataclass(frozen=True)
+class PivotFriction(Result):
+    """What friction in the pivots takes, at one position.
+
+    Parameters
+    ----------
+    coefficient : float
+        Coefficient of friction of every pivot.
+    cable : float
+        Travel of the cable [m].
+    squeeze : float
+        Efficiency while it is squeezed: tension without friction over that with it, for the same pad forces.
+    release : float
+        While it is let go: tension with friction over that without; 0 where friction holds the brake closed.
+    status, message : str
+        "determined", or "self-locking" and in which direction.
+    """
+
+    coefficient: float
+    cable: float
+    squeeze: float
+    release: float
+    status: str
+    message: str
+
+
+@dataclass(frozen=True)
+class PadWear(Result):
+    """What the wear of both pads changes, the cable not readjusted; W thicknesses lost.
+
+    Parameters
+    ----------
+    lost : ndarray, shape (W,)
+        Thickness lost by each pad [m].
+    cable, finger : ndarray, shape (W,)
+        Travel at which the pads touch [m].
+    advantage : ndarray, shape (W, 2)
+        Force of the right and left pad over that of the finger there.
+    """
+
+    lost: np.ndarray
+    cable: np.ndarray
+    finger: np.ndarray
+    advantage: np.ndarray

@@ -1,0 +1,59 @@
+"""The command on drum brakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from beamdyn.common.outputs import NO_FILES, Outputs
+from beamdyn.common.program import NoAnswer
+from brakes.cli.program import app, warn
+from brakes.cli.sweeps import Results, Sweeps, run_sweep, save, show_sweep
+
+DrumFile = Annotated[Path, Parameter(name="DRUM.toml")]
+_SWEPT = "torque,c_star,peak_pressure"
+
+
+@app.command
+def drum(
+    file: DrumFile, /, *, sweep: Sweeps = (), result: Results = None, outputs: Outputs = NO_FILES
+) -> None:
+    """Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.
+
+    Parameters
+    ----------
+    file
+        The brake.
+    sweep
+        An input and its values: KEY=start:stop:count unit, e.g. "shoe.lining_end=50:120:15 deg" or
+        "friction=0.1:0.6:11"; twice for two inputs.
+    result
+        Results of a sweep, separated by commas, such as "torque,pin_1"; the file of --csv without a
+        sweep lists all names.
+    outputs
+        Files to write.
+    """
+    from beamdyn.common.tables import console
+    from brakes.config.drum import load_drum
+    from brakes.config.sweeps import chosen
+    from brakes.drawings.drum import brake_figure
+    from brakes.report import drum_outputs, drum_tables, outputs_csv
+
+    outputs.check()
+    design = load_drum(file)
+    known = drum_outputs(len(design.core.shoes))
+    wanted = chosen(known, result or _SWEPT)
+    if sweep:
+        swept, cases = run_sweep(design, sweep, wanted, lambda d: d.solve())
+        show_sweep(swept, outputs)
+        warn([cases.message] if cases.locked.any() else [])
+        return
+    if result is not None:
+        raise ValueError("--result goes with --sweep: without one, all results are shown")
+    found = design.solve()
+    console().print(drum_tables(found))
+    save(found, outputs, outputs_csv(known, value=found), lambda: brake_figure(found))
+    if found.locked:
+        raise NoAnswer(found.message)

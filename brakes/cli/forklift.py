@@ -1,0 +1,139 @@
+"""The command on a forklift's brakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from beamdyn.common.outputs import NO_FILES, Outputs
+from beamdyn.common.program import NoAnswer
+from brakes.cli.program import app, warn
+from brakes.cli.sweeps import Results, Sweeps, run_sweep, save, show_sweep
+
+if TYPE_CHECKING:
+    from brakes.config.forklift import ForkliftAnswer, ForkliftInput, StageName
+    from brakes.config.sweeps import Sweep
+
+ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
+StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
+ModelChoice = Literal["corrected", "as_printed", "both"]
+
+_SWEPT = {
+    "vehicle": "distance,torque_per_brake",
+    "kinematics": "drum_turn,left_travel,lining_penetration",
+    "forces": "A,B,Q,P_L,lining_friction",
+}
+
+
+@app.command
+def forklift(
+    file: ForkliftFile,
+    /,
+    *,
+    stage: StageChoice = "all",
+    model: ModelChoice | None = None,
+    sweep: Sweeps = (),
+    result: Results = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part.
+
+    Parameters
+    ----------
+    file
+        The truck, the stop, and one of its brakes.
+    stage
+        What to show; what comes before it is computed where it is needed.
+    model
+        Of the vehicle, in place of that in the file; both: side by side.
+    sweep
+        An input and its values: KEY=start:stop:count unit, e.g. "stop.speed=10:30:9 km/h"; twice for
+        two inputs.
+    result
+        Results of a sweep, separated by commas, such as "distance,A"; the file of --csv without a
+        sweep lists all names.
+    outputs
+        Files to write.
+    """
+    from brakes.config.forklift import load_forklift
+
+    outputs.check()
+    design = load_forklift(file)
+    stages = design.stages if stage == "all" else (stage,)
+    if sweep:
+        swept, cases = _swept(design, stages, model, sweep, result)
+        show_sweep(swept, outputs)
+        warn((*cases.warnings, *cases.refusals))
+        return
+    if result is not None:
+        raise ValueError("--result goes with --sweep: without one, all results are shown")
+    found = _answers(design, stages, model)
+    _show(found)
+    _save(found, stages, outputs)
+    warn(dict.fromkeys(w for answer in found.values() for w in answer.warnings))
+    if refused := [sentence for answer in found.values() for sentence in answer.refusals]:
+        raise NoAnswer("; ".join(dict.fromkeys(refused)))
+
+
+def _answers(
+    design: ForkliftInput, stages: tuple[StageName, ...], model: ModelChoice | None
+) -> dict[str, ForkliftAnswer]:
+    """The answer of each model, by its name."""
+    if model != "both":
+        return {"value": design.solve(stages, model).followed()}
+    return {
+        "corrected": design.solve(stages, "corrected").followed(),
+        "as_printed": design.solve(stages, "as_printed").followed(),
+    }
+
+
+def _swept(
+    design: ForkliftInput,
+    stages: tuple[StageName, ...],
+    model: ModelChoice | None,
+    texts: Sweeps,
+    names: Results,
+) -> tuple[Sweep, ForkliftAnswer]:
+    from brakes.config.sweeps import chosen
+    from brakes.report import forklift_outputs
+
+    if model == "both":
+        raise ValueError("--model both does not go with --sweep: sweep each model by itself")
+    wanted = chosen(forklift_outputs(stages), names or ",".join(_SWEPT[s] for s in stages))
+    return run_sweep(design, texts, wanted, lambda d: d.solve(stages, model))
+
+
+def _show(found: dict[str, ForkliftAnswer]) -> None:
+    from beamdyn.common.tables import console
+    from brakes.report import forces_table, kinematics_tables, vehicle_table
+
+    answers, screen = [*found.values()], console()
+    first = answers[0]
+    stops = [answer.stop for answer in answers if answer.stop is not None]
+    if stops:
+        screen.print(vehicle_table(stops))
+    if first.motion is not None and first.kinematics is not None:
+        screen.print(kinematics_tables(first.motion, first.kinematics))
+    if first.forces is not None:
+        differ = first.torque_from == "the stop"
+        screen.print(
+            forces_table(answers if differ else answers[:1], [name.replace("_", " ") for name in found])
+        )
+
+
+def _save(found: dict[str, ForkliftAnswer], stages: tuple[StageName, ...], files: Outputs) -> None:
+    from brakes.config.forklift import Models
+    from brakes.drawings.forklift import answer_figure
+    from brakes.report import forklift_outputs, outputs_csv
+
+    answers = [*found.values()]
+    first = answers[0]
+    rows = outputs_csv(forklift_outputs(stages), **found)
+    save(
+        first if len(answers) == 1 else Models(*answers),
+        files,
+        rows,
+        lambda: answer_figure(first.stop, first.kinematics, first.forces),
+    )

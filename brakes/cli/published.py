@@ -1,0 +1,32 @@
+"""The command that reproduces published results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from beamdyn.common.program import NoAnswer
+from brakes.cli.program import app
+
+
+@app.command
+def reproduce(*, output: Path = Path("brakes-reproduce")) -> None:
+    """Published numbers of brakes beside ours, what the papers' errors cost, and the pictures.
+
+    Parameters
+    ----------
+    output
+        Folder for the pictures; it is made if needed, and its pictures are replaced.
+    """
+    from beamdyn.common.tables import console
+    from brakes.reproduce import report
+
+    if output.exists() and not output.is_dir():
+        raise ValueError(f"--output = {output}: it is a file; give a folder")
+    screen = console()
+    checked = report(screen, output)
+    unexpected = sum(not verdict.as_expected for verdict in checked)
+    if unexpected:
+        raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")
+    screen.print(
+        f"\nAll {len(checked)} verdicts are as expected: agreement, but for what is explained above."
+    )

@@ -1,0 +1,1 @@
+"""Pictures of brakes: matplotlib axes in, matplotlib axes out."""

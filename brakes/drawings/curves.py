@@ -1,0 +1,99 @@
+"""Curves of any results over any inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from beamdyn.common.pictures import COLOURS
+
+_STYLES = ("-", "--", "-.", ":")
+_MOST_CURVES = 8
+
+
+def sweep_figure(found: Any) -> Figure:
+    """One panel a result over the first input, one curve a value of the second.
+
+    Parameters
+    ----------
+    found : Sweep
+        See `brakes.config.sweeps.Sweep`.
+
+    Returns
+    -------
+    Figure
+    """
+    groups = _groups(found)
+    figure = Figure(figsize=(7.5, max(4.5, 2.7 * len(groups))), layout="constrained")
+    panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
+    for ax, (heading, labels, values) in zip(panels, groups, strict=True):
+        curves(ax, found.values[0], values, labels)
+        ax.set_ylabel(heading)
+        if len(labels) > 1:
+            ax.legend(title=_second(found), fontsize=9, title_fontsize=9)
+    panels[-1].set_xlabel(_named(found.inputs[0].rpartition(".")[2], found.units[0]))
+    return figure
+
+
+def _groups(found: Any) -> list[tuple[str, list[str], np.ndarray]]:
+    """Panels: heading, names of the curves, the curves. Results of one unit share a panel."""
+    results = [*zip(found.results, found.result_units, found.found, strict=True)]
+    if len(found.values) > 1:
+        names = [f"{value:.4g}" for value in found.values[1]]
+        return [(_named(name, unit), names, values) for name, unit, values in results]
+    groups: dict[str, list[tuple[str, np.ndarray]]] = {}
+    for name, unit, values in results:
+        groups.setdefault(unit or name, []).append((name, values))
+    units = {unit: unit for unit in found.result_units if unit}
+    return [
+        (
+            _named(", ".join(name for name, _ in group), units.get(key, "")),
+            [name.replace("_", " ") for name, _ in group],
+            np.array([values for _, values in group]),
+        )
+        for key, group in groups.items()
+    ]
+
+
+def _second(found: Any) -> str | None:
+    """Heading of the legend: the second input."""
+    return _named(found.inputs[1].rpartition(".")[2], found.units[1]) if len(found.values) > 1 else None
+
+
+def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:
+    """Curves, shape (m, n), that differ in colour and style; of many, some spread evenly.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw.
+    x : ndarray, shape (n,)
+        Places.
+    values : ndarray, shape (m, n)
+        Heights; there is a gap where they are not finite.
+    labels : sequence of str
+        One a curve.
+    """
+    values = np.where(np.isfinite(values), values, np.nan)
+    shown = np.unique(np.linspace(0, len(values) - 1, min(len(values), _MOST_CURVES)).round().astype(int))
+    for place, i in enumerate(shown):
+        style = _STYLES[place // len(COLOURS) % len(_STYLES)] if place >= len(COLOURS) else "-"
+        colour = COLOURS[place % len(COLOURS)]
+        label = labels[i] if np.isfinite(values[i]).any() else f"{labels[i]}: none"
+        ax.plot(x, values[i], color=colour, linestyle=style, linewidth=1.6, label=label)
+    grid(ax)
+    return ax
+
+
+def grid(ax: Axes) -> None:
+    """A light grid behind the curves."""
+    ax.grid(color="0.9", linewidth=0.8)
+    ax.set_axisbelow(True)
+
+
+def _named(name: str, unit: str) -> str:
+    return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")

@@ -1,0 +1,185 @@
+"""Pictures of a duo-servo brake: its parts on their way through both stages, and its shoes as free bodies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle
+
+from beamdyn.common.pictures import COLOURS
+from brakes.drawings.arrows import force, frame, scale_bar, sized
+from brakes.forklift import DuoServo, InternalForces, Kinematics, ShoeMotion
+
+_SIDES = {"right": COLOURS[0], "left": COLOURS[1]}
+_RED = "#a00000"
+_PUSH, _NORMAL, _RUB = COLOURS[6], COLOURS[0], COLOURS[1]
+
+
+def positions(figure: Any, followed: Kinematics) -> None:
+    """The brake at rest, with the linings on the drum, and with the piston at its bottom."""
+    panels = figure.subplots(1, 3)
+    titles = (
+        f"at rest, clearance {1e3 * float(followed.clearance):.3g} mm",
+        f"linings on the drum, shoes turned {np.degrees(followed.right.turn[-1]):.3g} deg",
+        f"piston at its bottom, drum turned {np.degrees(followed.drum.turn[-1]):.3g} deg",
+    )
+    for ax, progress, title in zip(panels, (0.0, 1.0, 2.0), titles, strict=True):
+        duo_servo(ax, followed.geometry, followed.geometry.motion(followed.clearance), progress)
+        ax.set_title(title, fontsize=10)
+    if np.any(followed.geometry.motion(followed.clearance).lining_penetration > 0):
+        figure.suptitle("thick red: here a lining that is concentric at rest would be inside the drum's wall",
+                        fontsize=10, color=_RED)  # fmt: skip
+
+
+def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float) -> Axes:
+    """The brake on its way: 0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw.
+    geometry : DuoServo
+        One brake.
+    motion : ShoeMotion
+        Its motion at a clearance.
+    progress : float
+        From 0 to 2; between whole numbers the turn of that stage goes evenly.
+
+    Notes
+    -----
+    The lining drawn is concentric at rest and reaches from pin to pin; where it is outside the drum, it is
+    drawn in red and thick: there it would touch first.
+    """
+    r = float(geometry.drum_radius)
+    ax.add_patch(Circle((0, 0), r, fill=False, color="0.45", linewidth=1.6))
+    ax.plot(0, 0, "+", color="0.5", markersize=8)
+    for side, colour in _SIDES.items():
+        _shoe(ax, geometry, motion, progress, side, colour)
+    _adjuster(ax, geometry, motion, progress)
+    ax.update_datalim([(-1.04 * r, -1.04 * r), (1.04 * r, 1.04 * r)])
+    frame(ax, "")
+    return ax
+
+
+def moved(
+    points: np.ndarray, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str
+) -> np.ndarray:
+    """Where points of a shoe, given on the right side at rest, are on a side, shape (n, 2)."""
+    first, second = min(progress, 1.0), max(progress - 1.0, 0.0)
+    pin = np.array(geometry.adjuster, dtype=float)
+    turned = pin + _turned(np.asarray(points) - pin, -first * float(motion.seating_turn))
+    if side == "left":
+        turned = turned * (-1.0, 1.0)
+    return _turned(turned, second * float(motion.drum_turn))
+
+
+def lining(geometry: DuoServo, motion: ShoeMotion) -> np.ndarray:
+    """Points of a lining that is concentric at rest and reaches from pin to pin, right side, shape (n, 2)."""
+    (x, y), (ax, ay) = geometry.tip, geometry.adjuster
+    angle = np.linspace(np.arctan2(float(ay), float(ax)), np.arctan2(float(y), float(x)), 121)
+    radius = float(geometry.drum_radius) - float(motion.clearance)
+    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def _turned(points: np.ndarray, angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.asarray(points) @ np.array([[c, s], [-s, c]])
+
+
+def _shoe(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str, colour: str) -> None:
+    place = (geometry, motion, progress, side)
+    rim = moved(lining(geometry, motion), *place)
+    ends = moved(np.array([geometry.adjuster, geometry.tip], dtype=float), *place)
+    ax.plot(*np.vstack([ends[0], 0.97 * rim, ends[1]]).T, color="0.8", linewidth=4, zorder=1)
+    ax.plot(*rim.T, color=colour, linewidth=3, zorder=3)
+    out = np.hypot(*rim.T) > float(geometry.drum_radius) + 1e-9
+    ax.plot(*np.where(out[:, None], rim, np.nan).T, color=_RED, linewidth=5, zorder=4)
+    contact = (float(geometry.drum_radius) - float(motion.clearance)) * np.array(
+        [[np.cos(geometry.contact_angle), np.sin(geometry.contact_angle)]]
+    )
+    ax.plot(*moved(contact, *place).T, "D", color=colour, markeredgecolor="white", markersize=7, zorder=6)
+    ax.plot(*ends.T, "o", color="white", markeredgecolor="0.2", markersize=6, zorder=6)
+    _piston(ax, geometry, ends[1], side)
+
+
+def _piston(ax: Axes, geometry: DuoServo, tip: np.ndarray, side: str) -> None:
+    """Face through the tip, rod along x."""
+    tilt, sign, r = float(geometry.face_tilt), (1 if side == "right" else -1), float(geometry.drum_radius)
+    along = np.array([sign * np.sin(tilt), np.cos(tilt)]) * 0.1 * r
+    face = np.array([tip - along, tip + along])
+    ax.plot(*face.T, color="0.25", linewidth=2.5, zorder=5)
+    rod = np.array([tip, (sign * 0.12 * r, tip[1])])
+    ax.plot(*rod.T, color="0.6", linewidth=5, zorder=2, solid_capstyle="butt")
+
+
+def _adjuster(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float) -> None:
+    pin = np.array([geometry.adjuster], dtype=float)
+    ends = np.vstack([moved(pin, geometry, motion, progress, side) for side in _SIDES])
+    ax.plot(*ends.T, color="0.35", linewidth=3.5, zorder=2)
+
+
+# Free bodies ------------------------------------------------------------------------------------------------
+
+
+def free_bodies(figure: Any, forces: InternalForces, followed: Kinematics | None = None) -> None:
+    """Both shoes apart, with the forces on them to one scale; of one case.
+
+    Parameters
+    ----------
+    figure : Figure or SubFigure
+        Where to draw two panels.
+    forces : InternalForces
+        The forces.
+    followed : Kinematics, optional
+        The brake's motion, for the outlines of the shoes; without it lines of action alone are drawn.
+    """
+    left, right = figure.subplots(1, 2)
+    largest = float(max(forces.A, forces.P_L, forces.C))
+    scale = 0.9 * float(forces.levers.drum_radius) / largest
+    for ax, side, title in ((left, "left", "trailing shoe"), (right, "right", "leading shoe")):
+        _free_body(ax, forces, followed, side, scale)
+        share = forces.leading_share if side == "right" else forces.trailing_share
+        frame(ax, f"{title}: {100 * float(share):.3g} % of the torque")
+        scale_bar(ax, scale, largest)
+
+
+def _free_body(ax: Axes, f: InternalForces, followed: Kinematics | None, side: str, scale: float) -> None:
+    r = float(f.levers.drum_radius)
+    ax.add_patch(Circle((0, 0), r, fill=False, color="0.7", linewidth=1.2, linestyle="--"))
+    ax.plot(0, 0, "+", color="0.5", markersize=8)
+    outline, tip, pin = _outline(f, followed, side)
+    if outline is not None:
+        ax.plot(*outline.T, color="0.82", linewidth=7, zorder=1, solid_joinstyle="round")
+    A, B = (f.A_vector, f.B_vector) if side == "right" else (f.C_vector, f.D_vector)
+    contact = -r * A / np.hypot(*A)
+    alpha, gamma = float(f.levers.alpha1 if side == "right" else f.levers.alpha2), float(f.levers.gamma)
+    sense = 1 if side == "right" else -1
+    P = float(f.P_L if side == "right" else f.piston_force) * np.array(
+        [sense * np.cos(alpha), -np.sin(alpha)]
+    )
+    Q = sense * float(f.Q) * np.array([np.cos(gamma), np.sin(gamma)])
+    a, b, ab = ("A", "B", "P_L") if side == "right" else ("C", "D", "P_T")
+    force(ax, contact, A, scale, sized(a, A), _NORMAL)
+    force(ax, contact, B, scale, sized(b, B), _RUB, ha="left" if side == "right" else "right")
+    force(ax, tip, P, scale, sized(ab, P), _PUSH, ends_here=True)
+    force(ax, pin, Q, scale, sized("Q", Q), COLOURS[2], ends_here=True)
+    ax.update_datalim([(-1.02 * r, -1.02 * r), (1.02 * r, 1.02 * r)])
+
+
+def _outline(
+    f: InternalForces, followed: Kinematics | None, side: str
+) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
+    """Points of the shoe, where the piston pushes, and where the adjuster does."""
+    if followed is not None:
+        geometry, motion = followed.geometry, followed.geometry.motion(followed.clearance)
+        place = (geometry, motion, 2.0, side)
+        tip, pin = moved(np.array([geometry.tip, geometry.adjuster], dtype=float), *place)
+        rim = moved(0.97 * lining(geometry, motion), *place)
+        return np.vstack([pin, rim, tip]), tip, pin
+    levers, sense = f.levers, 1 if side == "right" else -1
+    a, alpha = (levers.a1, levers.alpha1) if side == "right" else (levers.a2, levers.alpha2)
+    tip = float(a) * np.array([sense * np.sin(float(alpha)), np.cos(float(alpha))])
+    pin = float(levers.b1) * np.array([np.sin(float(levers.gamma)), -np.cos(float(levers.gamma))])
+    return None, tip, pin

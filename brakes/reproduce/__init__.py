@@ -1,0 +1,87 @@
+"""The published numbers of brakes again: each beside ours, what the papers' errors cost, and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from rich.console import Console
+
+from beamdyn.common.comparison import comparison_table
+from beamdyn.common.pictures import save_figure
+from brakes.published import load
+from brakes.reproduce import caliper, drum, forklift
+
+
+class Verdict(Protocol):
+    """A printed number beside ours."""
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether they agree, or differ for a known reason."""
+        ...
+
+
+def report(screen: Console, folder: Path) -> Sequence[Verdict]:
+    """Print the papers' tables beside ours and draw the pictures.
+
+    Parameters
+    ----------
+    screen : Console
+        Where to print.
+    folder : Path
+        Where to draw; it is made if needed, and files of the same names are replaced.
+
+    Returns
+    -------
+    sequence of Verdict
+        All that was compared.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    checked: list[Verdict] = []
+    for part in (drum, forklift):
+        screen.rule()
+        screen.print(part.title(), style="bold")
+        screen.print(f"\n{part.introduction()}\n")
+        _print_notes(screen, part.summary())
+        for made in part.tables():
+            screen.print(made)
+        _print_notes(screen, part.notes())
+    checked += cells()
+    checked += _caliper(screen, folder)
+    for path in draw(folder):
+        screen.print(f"drawn: {path}", soft_wrap=True)
+    return checked
+
+
+def cells() -> list[Verdict]:
+    """All numbers of both papers on drum brakes."""
+    rows = [*drum.rows(), *(row for table in forklift.rows().values() for row in table)]
+    return [cell for row in rows for cell in row.cells]
+
+
+def draw(folder: Path) -> list[Path]:
+    """Draw the pictures of both papers into a folder."""
+    made = drum.pictures() | forklift.pictures()
+    return [save_figure(figure, folder / f"{name}.png", force=True) for name, figure in made.items()]
+
+
+def _print_notes(screen: Console, notes: Iterable[str]) -> None:
+    for note in notes:
+        screen.print(f"{note}\n")
+
+
+def _caliper(screen: Console, folder: Path) -> list[Verdict]:
+    """The part on bicycle calipers."""
+    compared: list[Verdict] = []
+    page = load("eebrake")
+    screen.rule()
+    screen.print(f"{page['title']}\n{page['journal']}, {page['year']}\n", style="bold")
+    for title, rows in caliper.sections().items():
+        screen.print(comparison_table(title, rows))
+        compared += rows
+    _print_notes(screen, caliper.notes())
+    for path in caliper.draw(folder):
+        screen.print(f"drawn: {path}", soft_wrap=True)
+    return compared

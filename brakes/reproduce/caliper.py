@@ -1,0 +1,115 @@
+"""The numbers of the eeBrake's analysis beside those of its reconstruction."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from beamdyn.common.comparison import Comparison
+from beamdyn.common.pictures import save_figure
+from brakes.calipers import CaliperStroke, EeBrake, stop
+from brakes.published import load
+
+PAGE = "eeBrake page"
+_ERROR = 5e-10  # the reconstruction is given to ten digits
+_CABLE = 3.5e-3  # m of cable that close the reconstruction's pads
+
+
+def sections() -> dict[str, list[Comparison]]:
+    """Comparisons by the titles of their tables."""
+    return {
+        "eeBrake, open: forces for a force of 1 on the right pad": _statics(),
+        "eeBrake: travel, mechanical advantage, stop": _travel(),
+    }
+
+
+def _statics() -> list[Comparison]:
+    printed = {name: entry["value"] for name, entry in load("eebrake")["statics"].items()}
+    f_t, x_work = tangential_forces("equal work")
+    _, x_equal = tangential_forces("equal force")
+    difference = (x_work - f_t) / x_work
+    equal = "with equal pads X = f_t follows from the mean pad travel; the page's tension is another"
+    return [
+        Comparison("f_t of the strut", PAGE, printed["f_t"], f_t, _ERROR, 3),
+        Comparison("X, tension 2 delta_R", PAGE, printed["X"], x_work, _ERROR, 3),
+        Comparison("X, equal pad forces", PAGE, printed["X"], x_equal, _ERROR, 3, equal),
+        Comparison("difference (X - f_t)/X", PAGE, printed["difference"], difference, _ERROR, 4),
+        Comparison(
+            "difference (X - f_t)/X [%]",
+            PAGE,
+            printed["difference_percent"],
+            100 * difference,
+            100 * _ERROR,
+            1,
+            "cut off, not rounded",
+        ),
+    ]
+
+
+def _travel() -> list[Comparison]:
+    data = load("eebrake")
+    travel = {name: entry["value"] for name, entry in data["travel"].items()}
+    given = {name: entry["value"] for name, entry in data["stop"].items()}
+    run = _stroke("equal force", _CABLE)
+    mean = float(run.finger[-1] / run.pad_travel[-1].sum())
+    force = mean * travel["finger_force"]
+    found = stop(given["mass"], given["speed"] / 3.6, force, given["friction"])
+    error, finger = 1e-8 * mean, float(run.finger[-1])
+    pad = float(run.pad_travel[-1].mean())
+    return [
+        Comparison("travel of finger [mm]", PAGE, 1e3 * travel["finger"], 1e3 * finger, 1e-9, 0),
+        Comparison("mean travel of a pad [mm]", PAGE, 1e3 * travel["pad"], 1e3 * pad, 1e-8, 2),
+        Comparison("advantage, mean of the stroke", PAGE, travel["advantage"], mean, error, 1),
+        Comparison("force of each pad [N]", PAGE, travel["pad_force"], force, 40 * error, 0),
+        Comparison("stop of 80 kg from 30 km/h [m]", "by hand", given["distance"], found.distance, 1e-6, 2),
+    ]
+
+
+def tangential_forces(split: str) -> tuple[float, float]:
+    """f_t of the strut on the right lever and X on the left lever's upper pin, for a right pad force of 1."""
+    design, run = EeBrake(), _stroke(split, 0.0)
+    pivot, pin = np.array(design.pivot), np.array(design.upper_pin)
+    radial = (pin - pivot) / np.linalg.norm(pin - pivot)
+    inboard_right, inboard_left = np.array((-radial[1], radial[0])), np.array((radial[1], radial[0]))
+    strut = -run.reactions["strut end"][0]  # on the right lever
+    unit = float(run.pad_force[0, 0])
+    return -float(strut @ inboard_right) / unit, float(run.reactions["pin O"][0] @ inboard_left) / unit
+
+
+@cache
+def _stroke(split: str, travel: float) -> CaliperStroke:
+    return EeBrake(split=split).build().stroke([0.0, travel])  # pyright: ignore[reportArgumentType]
+
+
+def notes() -> tuple[str, ...]:
+    """What the numbers mean."""
+    open_, closed = _stroke("equal force", _CABLE).advantage[[0, -1], 0]
+    ratio = _stroke("equal work", 0.0).force_symmetry[0]
+    return (
+        "X against f_t does not test whether both arms get the same force. Statics gives "
+        "F_L = (T - F_R delta_R)/delta_L and X/f_t = F_L/F_R: with T = delta_R + delta_L the two are equal "
+        "whatever the geometry; with T = 2 delta_R their ratio is delta_R/delta_L, the ratio of the pads' "
+        f"velocities ({ratio:.5f} here). An error of 2.3 % in T makes the whole difference.",
+        "With both pads on a rigid rim the split between them is statically indeterminate; the two readings "
+        "are equal forces and equal work of both pads.",
+        "The page's 5.6 is the mean over the stroke; in the reconstruction the advantage grows from "
+        f"{open_:.3f} to {closed:.3f}. The hand-lever ratio of 4 is assumed, and the coordinates are "
+        "reconstructed to meet the page's numbers.",
+    )
+
+
+def draw(folder: Path) -> list[Path]:
+    """Draw the eeBrake with its curves, and its free bodies, into a folder."""
+    from brakes.drawings.caliper import caliper_figure
+    from brakes.drawings.mechanism import free_body_diagrams
+
+    folder.mkdir(parents=True, exist_ok=True)
+    caliper = EeBrake().build()
+    closed = caliper.equilibrium(_CABLE)
+    pictures = {
+        "eebrake.png": caliper_figure(caliper, caliper.stroke(_CABLE), closed),
+        "eebrake_free_bodies.png": free_body_diagrams(closed),
+    }
+    return [save_figure(figure, folder / name, force=True) for name, figure in pictures.items()]

@@ -1,0 +1,110 @@
+"""What the sections share: a printed number beside ours, rows of them, errata."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rich.console import Group
+
+from beamdyn.common.tables import table
+from brakes.published.errata import Erratum
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A printed number beside ours.
+
+    Parameters
+    ----------
+    printed : str
+        As the paper prints it.
+    ours : float
+        By the paper's own way, in the unit printed.
+    step : float
+        Unit of the last digit that counts.
+    reason : str
+        Why the two are known to differ; empty where they should agree.
+    right : float, optional
+        By the corrected mechanics, in the unit printed.
+    """
+
+    printed: str
+    ours: float
+    step: float
+    reason: str = ""
+    right: float | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether ours rounds to what is printed."""
+        return abs(self.ours - float(self.printed)) <= self.step / 2 * (1 + 1e-12)
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether they agree, or differ for a known reason."""
+        return self.agrees != bool(self.reason)
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        if self.agrees:
+            return "agrees, which is unexpected" if self.reason else "agrees"
+        return f"differs: {self.reason or 'unexpected'}"
+
+    @property
+    def texts(self) -> list[str]:
+        """Printed, ours with a digit more, and, if there is one, the right value with as many."""
+        decimals = max(0, 1 - round(math.log10(self.step)))
+        shown = [self.printed, f"{self.ours:.{decimals}f}"]
+        if self.right is None:
+            return shown
+        return [*shown, f"{self.right:.{decimals}f}" if math.isfinite(self.right) else "never stops"]
+
+
+def step(printed: str, digits: int | None = None) -> float:
+    """Unit of the last digit printed that counts.
+
+    Parameters
+    ----------
+    printed : str
+        The number.
+    digits : int, optional
+        Significant digits, where the last zeros only pad.
+    """
+    if digits is not None:
+        lead = len(printed.partition(".")[0].lstrip("-0"))
+        return 10.0 ** (lead - digits)
+    if "." in printed:
+        return 10.0 ** -len(printed.partition(".")[2])
+    return 10.0 if printed.endswith("0") else 1.0
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a printed table: the inputs that vary, as text, and the numbers found."""
+
+    inputs: tuple[str, ...]
+    cells: tuple[Cell, ...]
+
+    @property
+    def verdict(self) -> str:
+        """Of all its cells in words."""
+        different = [f"{c.printed} {c.verdict}" for c in self.cells if c.verdict != "agrees"]
+        return "; ".join(different) or "agrees"
+
+
+def rows_table(title: str, inputs: Sequence[str], quantities: Sequence[str], rows: Sequence[Row]) -> Group:
+    """A printed table: for each quantity the number printed, ours by the paper's way, the right one."""
+    heads: list[str] = [*inputs]
+    for name, cell in zip(quantities, rows[0].cells, strict=True):
+        heads += [name, "ours", "corrected"][: len(cell.texts)]
+    lines = ([*row.inputs, *(t for cell in row.cells for t in cell.texts), row.verdict] for row in rows)
+    return table(title, (*heads, "verdict"), lines, (len(heads),))
+
+
+def errata_table(title: str, errata: Iterable[Erratum]) -> Group:
+    """The table of a paper's errors."""
+    rows = ([e.where, e.printed, e.right, e.consequence] for e in errata)
+    return table(title, ("where", "the paper has", "right", "what follows"), rows, (0, 1, 2, 3))

@@ -1,0 +1,165 @@
+"""The drum brake of Vardanyan et al. (2019): Table 1, what is wrong in it, and the right one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.console import Group
+
+from beamdyn.common.pictures import COLOURS
+from beamdyn.common.tables import table
+from brakes.drawings.curves import grid
+from brakes.drawings.drum import brake_figure
+from brakes.drum import BrakeResult, Shoe, as_printed, brake_torque, simplex
+from brakes.published import load
+from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
+
+_SYMBOLS = (
+    "A pmax: width times radius times largest pressure; K, S, C: integrals of sin, sin^2, sin cos;\n"
+    "n = c S - b C and d = r K - b S - c C: arms of the normal and of the friction forces about the pin"
+)
+_WIDTH = 0.05  # [m] the paper gives none; the torque does not depend on it
+
+
+def title() -> str:
+    """Paper and authors."""
+    paper = load("vardanyan_2019")
+    return f"{paper['title']}\n{', '.join(paper['authors'])}, {paper['year']}"
+
+
+def introduction() -> str:
+    """What was computed."""
+    return (
+        "Torques of two shoes in a drum over the arc of the lining. The printed equations (12) and (15) do "
+        "not give the printed table: what does is an effective arm rho with another constant, and (15) with "
+        "the other sign of mu b1."
+    )
+
+
+def rows() -> list[Row]:
+    """Table 1, cell by cell."""
+    paper, ours = load("vardanyan_2019")["table_1"], as_printed.table_1()
+    columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
+    found = []
+    for i, arc in enumerate(paper["arc"]["value"]):
+        cells = (
+            _cell(paper[name]["printed"][i], unit * float(getattr(ours, name)[i]))
+            for name, unit in columns.items()
+        )
+        found.append(Row((f"{arc}",), tuple(cells)))
+    found.append(Row(("largest MT2 - MT1",), (_cell(paper["difference"]["printed"], ours.difference),)))
+    return found
+
+
+def _cell(printed: str, ours: float) -> Cell:
+    return Cell(printed, ours, step(printed))
+
+
+def tables() -> Iterator[Group]:
+    """Table 1, the corrected one, and the errata."""
+    *body, _ = rows()
+    heads = ("rho", "MT1", "MT2")
+    yield rows_table("Table 1: rho [mm], torques [N m], as printed", ("arc [deg]",), heads, body)
+    yield _corrected_table()
+    heading = f"What is wrong in the paper, and what follows at its longest arc (80 deg)\n{_SYMBOLS}"
+    yield errata_table(heading, as_printed.errata())
+
+
+def summary() -> Iterator[str]:
+    """What the tables say to a brake engineer."""
+    printed, right = as_printed.table_1(), corrected()
+    total = printed.first_torque + printed.second_torque
+    short, long = (float(total[i] / right.torque[i]) for i in (0, -1))
+    second, trailing = float(printed.second_torque[-1]), float(right.shoes[1].torque[-1])
+    yield (
+        f"Do not use Table 1. Its total torque is {100 * short:.0f} % of the right one at 10 deg and "
+        f"{100 * long:.0f} % at 80 deg; it rises with the arc, where at a given force the right one falls. "
+        "The paper's second shoe is self-energising as well; in fact it trails, and gives "
+        f"{trailing:.3g} in place of {second:.4g} N m. The leading shoe locks at a friction of "
+        f"{float(right.shoes[0].locking_friction[-1]):.3g}; the paper's condition for that, (18), has "
+        "no root."
+    )
+
+
+def notes() -> Iterator[str]:
+    """What the tables do not say."""
+    last = rows()[-1].cells[0]
+    yield f"Largest MT2 - MT1: printed {last.printed}, ours {last.ours:.3f} N m; {last.verdict}."
+
+
+def corrected() -> BrakeResult:
+    """The paper's brake by the corrected mechanics, at the arcs of Table 1."""
+    given = {name: entry["value"] for name, entry in load("vardanyan_2019")["input"].items()}
+    start, arcs = np.radians(given["lining_start"]), as_printed.table_1().arc
+    first, second = (
+        Shoe(
+            1e-3 * given["drum_radius"],
+            _WIDTH,
+            (start, start + arcs),
+            (1e-3 * b, -1e-3 * given["pivot_depth"]),
+            1e-3 * given["force_arm"],
+        )
+        for b in given["pivot_offset"]
+    )
+    return brake_torque(simplex(first, second), friction=given["friction"], force=given["force"])
+
+
+def _corrected_table() -> Group:
+    printed, right = as_printed.table_1(), corrected()
+    total = printed.first_torque + printed.second_torque
+    columns = [
+        np.degrees(printed.arc),
+        1e3 * right.shoes[0].effective_arm,
+        right.shoes[0].torque,
+        right.shoes[1].torque,
+        right.torque,
+        total,
+        total / right.torque,
+    ]
+    formats = ("{:.0f}", "{:.3f}", "{:.3f}", "{:.3f}", "{:.3f}", "{:.3f}", "{:.3f}")
+    lines = ([f.format(x) for f, x in zip(formats, row, strict=True)] for row in zip(*columns, strict=True))
+    heads = ("arc [deg]", "rho", "leading", "trailing", "total", "printed total", "printed / right")
+    return table("The same brake by the corrected mechanics: rho [mm], torques [N m]", heads, lines, ())
+
+
+def pictures() -> dict[str, Figure]:
+    """Pictures by the names of their files."""
+    return {"drum_forces": brake_figure(_longest()), "drum_torque_over_arc": over_arc()}
+
+
+def _longest() -> BrakeResult:
+    """The case with the longest lining."""
+    found = corrected()
+    shoes = [
+        Shoe(s.drum_radius, s.face_width, (s.lining[0], float(s.lining[1][-1])), s.pivot, s.force_arm)
+        for s in found.brake.shoes
+    ]
+    return brake_torque(simplex(*shoes), friction=found.friction, force=float(np.max(found.force)))
+
+
+def over_arc() -> Figure:
+    """Torques over the arc, as printed and corrected."""
+    printed, right = as_printed.table_1(), corrected()
+    figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+    ax = figure.subplots()
+    arc = np.degrees(printed.arc)
+    lines = (
+        ("corrected: total", right.torque, COLOURS[6], "-"),
+        ("leading shoe", right.shoes[0].torque, COLOURS[0], "-"),
+        ("trailing shoe", right.shoes[1].torque, COLOURS[2], "-"),
+        ("as printed: total", printed.first_torque + printed.second_torque, COLOURS[6], "--"),
+        ("MT2", printed.second_torque, COLOURS[2], "--"),
+        ("MT1", printed.first_torque, COLOURS[0], "--"),
+    )
+    for label, values, colour, style in lines:
+        marker = "o" if style == "--" else ""
+        ax.plot(arc, values, style, color=colour, marker=marker, markersize=4, linewidth=1.7, label=label)
+    grid(ax)
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("arc of the lining [deg]")
+    ax.set_ylabel("torque at 1000 N on each shoe [N m]")
+    ax.legend(fontsize=9, ncols=2, loc="upper right")
+    ax.set_title("Torque over the arc: Table 1 as printed, and corrected", fontsize=11)
+    return figure

@@ -1,0 +1,255 @@
+"""`brakes drum` and `brakes forklift`: exit codes, what is printed, files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from beamdyn.common.program import BAD_INPUT, DONE, NO_ANSWER
+from brakes.cli import main
+
+ROOT = Path(__file__).parents[2]
+DRUM, FORKLIFT = ROOT / "examples" / "drum.toml", ROOT / "examples" / "forklift.toml"
+
+
+@pytest.fixture
+def run(capsys):
+    def run(*arguments: object) -> tuple[int, str, str]:
+        code = main([str(a) for a in arguments])
+        return code, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def edited(tmp_path: Path):
+    """A copy of a file with a text replaced."""
+
+    def edited(path: Path, old: str, new: str) -> Path:
+        text = path.read_text()
+        assert old in text
+        copy = tmp_path / path.name
+        copy.write_text(text.replace(old, new, 1))
+        return copy
+
+    return edited
+
+
+def table(path: Path) -> list[list[str]]:
+    """Rows of a CSV file."""
+    return [*csv.reader(path.read_text().splitlines())]
+
+
+def cells(out: str, words: str) -> list[str]:
+    """Numbers of the row of a table that begins with words."""
+    (line,) = (line for line in out.splitlines() if line.strip().startswith(words + "  "))
+    return line.strip().removeprefix(words).split()
+
+
+# Drum -------------------------------------------------------------------------------------------------
+
+
+def test_drum_prints_the_corrected_torques(run) -> None:
+    """The last row of the facts' corrected table: 179.05, 89.23, together 268.29 N m."""
+    code, out, err = run("drum", DRUM)
+    assert (code, err) == (DONE, "")
+    assert cells(out, "torque of the brake")[0] == "268.29"
+    assert cells(out, "torque")[:2] == ["179.05", "89.231"]
+    assert cells(out, "effective arm of the friction")[:2] == ["148.72", "148.72"]
+    assert "shoe 1, leading" in out and "shoe 2, trailing" in out
+
+
+def test_a_brake_that_locks_is_an_answer_of_its_own(run, edited) -> None:
+    code, out, err = run("drum", edited(DRUM, "friction = 0.35", "friction = 1.2"))
+    assert code == NO_ANSWER
+    assert "locked: friction 1.2 is at or past self-locking, 1.014" in err
+    assert cells(out, "torque of the brake")[0] == "-"
+
+
+@pytest.mark.parametrize(
+    "old, new, parts",
+    [
+        ("110 deg", "20 deg", ["lining_end = 20 deg", "empty"]),
+        ("1000 N", "1000 m", ["load.force", "length"]),
+        ('force = "1000 N"', 'torque = "0 N m"', ["load.torque", "greater than 0"]),
+        ("[shoe]", "[shoo]", ["shoo", "did you mean shoe?", "shoe: missing"]),
+    ],
+)
+def test_bad_drums(run, edited, old: str, new: str, parts: list[str]) -> None:
+    code, out, err = run("drum", edited(DRUM, old, new))
+    assert (code, out) == (BAD_INPUT, "")
+    assert [part for part in ["brakes: ", "drum.toml", *parts] if part not in err] == []
+
+
+def test_files_of_a_drum(run, tmp_path: Path) -> None:
+    plot, sheet, result = tmp_path / "d.png", tmp_path / "d.csv", tmp_path / "d.json"
+    assert run("drum", DRUM, "--plot", plot, "--csv", sheet, "--json", result)[0] == DONE
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    rows = {name: float(value) for name, value, _ in table(sheet)[1:]}
+    saved = json.loads(result.read_text())
+    assert rows["torque"] == saved["torque"] == pytest.approx(268.285616128, rel=1e-11)
+    assert rows["torque_2"] == saved["shoes"][1]["torque"]
+    assert rows["peak_pressure"] == pytest.approx(saved["peak_pressure"] / 1e6, rel=1e-15)
+
+
+def test_a_file_is_not_overwritten_unasked(run, tmp_path: Path) -> None:
+    path = tmp_path / "d.json"
+    path.write_text("mine")
+    code, out, err = run("drum", DRUM, "--json", path)
+    assert (code, out, path.read_text()) == (BAD_INPUT, "", "mine") and "--force" in err
+    assert run("drum", DRUM, "--json", path, "--force")[0] == DONE
+
+
+def test_a_picture_of_a_locked_brake(run, edited, tmp_path: Path) -> None:
+    locked = edited(DRUM, "friction = 0.35", "friction = 1.2")
+    assert run("drum", locked, "--plot", tmp_path / "d.svg")[0] == NO_ANSWER
+    assert "<svg" in (tmp_path / "d.svg").read_text()
+
+
+def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
+    path, plot = tmp_path / "s.csv", tmp_path / "s.png"
+    options = ("--sweep", "friction=0.35:1.2:2", "--result", "torque,pin_1", "--csv", path, "--plot", plot)
+    code, out, err = run("drum", DRUM, *options)
+    assert code == DONE and "locked in 1 of 2 cases" in err
+    rows = table(path)
+    assert rows[0] == ["friction", "torque_N_m", "pin_1_N"]
+    assert float(rows[1][1]) == pytest.approx(268.285616128, rel=1e-11) and rows[2][1] == "nan"
+    assert plot.exists() and "268.29" in out
+
+
+@pytest.mark.parametrize(
+    "options, part",
+    [
+        (("--result", "torque"), "--result goes with --sweep"),
+        (("--sweep", "friction=0.1:0.5:3", "--result", "trque"), "did you mean torque"),
+        (("--sweep", "friction=0.1:0.5:3", "--sweep", "brake.friction=0.1:0.5:3"), "two inputs"),
+        (("--sweep", "lining_end=20:80:4 deg"), "lining_end = 20 deg"),
+        (("--swep", "x"), "--help"),
+    ],
+)
+def test_bad_options(run, options: tuple[str, ...], part: str) -> None:
+    code, out, err = run("drum", DRUM, *options)
+    assert (code, out) == (BAD_INPUT, "") and part in err
+
+
+def test_two_sweeps_have_a_row_a_case(run, tmp_path: Path) -> None:
+    path = tmp_path / "s.csv"
+    sweeps = ("--sweep", "friction=0.2:0.4:3", "--sweep", "load.force=1:2:2 kN")
+    assert run("drum", DRUM, *sweeps, "--csv", path)[0] == DONE
+    rows = [[float(x) for x in row[:3]] for row in table(path)[1:]]
+    assert [row[:2] for row in rows] == [[mu, P] for P in (1.0, 2.0) for mu in (0.2, pytest.approx(0.3), 0.4)]
+    assert rows[4][2] == pytest.approx(2 * rows[1][2], rel=1e-13)  # torque grows with the force
+
+
+# Forklift -----------------------------------------------------------------------------------------------
+
+
+def test_forklift_prints_all_stages(run) -> None:
+    code, out, err = run("forklift", FORKLIFT)
+    assert code == DONE
+    assert cells(out, "stopping distance, from the driver's reaction")[0] == "13.425"
+    assert cells(out, "stage 1: turn of each shoe")[0] == "5.2317"
+    assert cells(out, "stage 2: turn of drum and shoes")[0] == "9.7083"
+    assert "23 of 23" in out and "the torque is from the stop" in out
+    assert err.count("enters the drum by 1.55 mm near 26 deg") == 1
+
+
+def test_models_side_by_side(run) -> None:
+    code, out, _ = run("forklift", FORKLIFT, "--model", "both")
+    assert code == DONE
+    assert cells(out, "torque of one brake")[:2] == ["8480.8", "11000"]
+    assert cells(out, "acceleration, wheels locked")[:2] == ["-1.5715", "-2.9922"]
+    assert cells(out, "leading shoe: drum's normal force A")[1] == "117211"
+
+
+@pytest.mark.parametrize("stage, there, absent", [
+    ("vehicle", "Vehicle", "Kinematics"),
+    ("kinematics", "Kinematics", "Vehicle"),
+    ("forces", "Forces in one brake", "Kinematics"),
+])  # fmt: skip
+def test_a_stage_alone(run, stage: str, there: str, absent: str) -> None:
+    code, out, _ = run("forklift", FORKLIFT, "--stage", stage)
+    assert code == DONE and there in out and absent not in out
+
+
+def test_a_truck_that_does_not_stop_is_an_answer(run, edited) -> None:
+    code, out, err = run("forklift", edited(FORKLIFT, "3500 kg", "0 kg"))
+    assert code == NO_ANSWER and "never stops" in err
+    assert cells(out, "acceleration, wheels locked")[0] == "0.6393"
+    assert "Forces in one brake" in out  # those of locked wheels
+
+
+def test_a_duo_servo_brake_that_locks_is_an_answer(run, tmp_path: Path) -> None:
+    text = FORKLIFT.read_text()
+    path = tmp_path / "brake.toml"
+    path.write_text(text[text.index("[brake]") :].replace('"11650 N"', '"11650 N"\nlining_friction = 1.3'))
+    code, _, err = run("forklift", path)
+    assert code == NO_ANSWER and "locked" in err
+
+
+@pytest.mark.parametrize(
+    "old, new, parts",
+    [
+        ("0.3019 rad", "70 deg", ["slope = 70 deg", "overturns"]),
+        ("10.6 mm", "200 mm", ["clearance = 0.2 m", "larger than the drum allows"]),
+        ('"-1.20 m"', '"-3 m"', ["ahead of the front wheel"]),
+        ('"20 km/h"', '"20 kg"', ["stop.speed", "mass", "velocity"]),
+    ],
+)
+def test_bad_forklifts(run, edited, old: str, new: str, parts: list[str]) -> None:
+    code, out, err = run("forklift", edited(FORKLIFT, old, new))
+    assert (code, out) == (BAD_INPUT, "")
+    assert [part for part in parts if part not in err] == []
+
+
+def test_files_of_a_forklift(run, tmp_path: Path) -> None:
+    plot, sheet, result = tmp_path / "f.svg", tmp_path / "f.csv", tmp_path / "f.json"
+    files = ("--plot", plot, "--csv", sheet, "--json", result)
+    assert run("forklift", FORKLIFT, "--model", "both", *files)[0] == DONE
+    assert "<svg" in plot.read_text()
+    heads, *lines = table(sheet)
+    rows = {line[0]: dict(zip(heads, line, strict=True)) for line in lines}
+    saved = json.loads(result.read_text())
+    assert float(rows["distance"]["corrected"]) == saved["corrected"]["stop"]["distance"]
+    assert float(rows["A"]["as_printed"]) == saved["as_printed"]["forces"]["A"]
+    stage = saved["corrected"]["kinematics"]["drum"]
+    assert len(stage["travel"]["left"]) == len(stage["rank"]) == 21
+    assert "mm out" in saved["corrected"]["kinematics"]["events"][0]["message"]
+
+
+def test_sweep_of_a_forklift_by_each_model(run, tmp_path: Path) -> None:
+    path = tmp_path / "s.csv"
+    options = ("--sweep", "load_mass=0:3500:3 kg", "--result", "distance", "--csv", path, "--force")
+    found = {}
+    for model in ("corrected", "as_printed"):
+        code, out, err = run("forklift", FORKLIFT, "--stage", "vehicle", "--model", model, *options)
+        assert code == DONE
+        found[model] = [float(row[1]) for row in table(path)[1:]]
+        assert ("1 of 3 cases do not stop" in err, "never" in out) == ((model == "corrected",) * 2)
+    assert found["as_printed"] == pytest.approx([120.46, 12.555, 9.557], abs=5e-3)  # Table 3
+    assert found["corrected"][0] == float("inf")
+
+
+def test_both_models_cannot_be_swept(run) -> None:
+    code, _, err = run("forklift", FORKLIFT, "--model", "both", "--sweep", "speed=10:20:3 km/h")
+    assert code == BAD_INPUT and "--model both" in err
+
+
+def test_help_names_the_exit_codes(run) -> None:
+    code, out, _ = run("--help")
+    assert code == DONE and "Exit codes" in out
+    for command in ("drum", "forklift", "reproduce"):
+        assert command in out
+
+
+def test_the_command_line_loads_nothing_heavy() -> None:
+    code = "import brakes.cli, sys; print(*{name.partition('.')[0] for name in sys.modules})"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=True
+    )
+    assert not {"numpy", "scipy", "matplotlib", "pydantic", "pint"} & set(done.stdout.split())

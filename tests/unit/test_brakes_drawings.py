@@ -1,0 +1,195 @@
+"""Pictures of drum and forklift brakes: what they show is what was computed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+
+from brakes import drum, forklift
+from brakes.drawings.curves import curves, sweep_figure
+from brakes.drawings.drum import brake_figure, factors, free_body, pressures
+from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
+from brakes.drawings.forklift import answer_figure, distances, forces_over, truck
+
+ROOT = Path(__file__).parents[2]
+SHOE = drum.Shoe(0.138, 0.05, (np.radians(30.0), np.radians(110.0)), (0.020, -0.110), 0.115)
+TRUCK = {
+    "empty_mass": 5950,
+    "empty_cg": (1.049, 0.359),
+    "load_mass": 3500,
+    "load_cg": (-1.20, 0.450),
+    "front_wheel_radius": 0.40,
+    "wheelbase": 1.89,
+}
+STOP = {"slope": 0.3019, "speed": 20 / 3.6, "friction": 0.7, "reaction_time": 0.5, "rise_time": 0.3}
+BRAKE = forklift.BENDIX_12_5
+
+
+def axes():
+    return Figure(figsize=(5, 4)).subplots()
+
+
+def arrows(ax) -> dict[str, np.ndarray]:
+    """Vectors of the arrows drawn, by the names beside them, which follow their arrows."""
+    notes = [child for child in ax.get_children() if isinstance(child, Annotation)]
+    found = {}
+    for arrow, name in pairwise(notes):
+        if arrow.arrow_patch is not None and "$" in name.get_text():
+            found[name.get_text().split("$")[1].replace(" ", "")] = np.subtract(arrow.xy, arrow.xyann)
+    return found
+
+
+def stopped(**changes) -> forklift.Stop:
+    return forklift.stop(forklift.Truck(**(TRUCK | changes)), **STOP)
+
+
+def test_forces_on_a_drum_shoe_balance_as_drawn() -> None:
+    """Pressure, friction, pin and actuating force of each shoe sum to nothing."""
+    found = drum.brake_torque(drum.simplex(SHOE), friction=0.35, force=1000.0)
+    drawn = arrows(free_body(axes(), found))
+    for shoe in "12":
+        four = [drawn[f"{name}_{shoe}"] for name in "PNTR"]
+        assert np.hypot(*sum(four)) < 1e-12
+        assert np.hypot(*four[0]) > 0.01
+    assert drawn["P_1"][0] > 0 > drawn["P_2"][0]  # pushed apart
+
+
+def test_both_shoes_of_a_duplex_brake_rub_the_same_way_round() -> None:
+    found = drum.brake_torque(drum.duplex(SHOE), friction=0.35, force=1000.0)
+    drawn = arrows(free_body(axes(), found))
+    np.testing.assert_allclose(drawn["T_1"], -drawn["T_2"], rtol=1e-12)
+
+
+def test_pressure_is_drawn_over_the_lining_only() -> None:
+    found = drum.brake_torque(drum.simplex(SHOE), friction=0.35, force=1000.0)
+    for line, shoe in zip(pressures(axes(), found).lines, found.shoes, strict=True):
+        x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        assert (x.min(), x.max()) == pytest.approx((30.0, 110.0), rel=1e-12)
+        assert y.max() == pytest.approx(1e-6 * shoe.peak_pressure, rel=1e-3)
+
+
+def test_factors_end_before_locking_and_say_where_it_is() -> None:
+    brake = drum.simplex(SHOE)
+    limit = drum.brake_torque(brake, friction=0.1, force=1.0).locking_friction
+    ax = factors(axes(), brake, friction=0.35)
+    assert np.max(ax.lines[0].get_xdata()) < limit
+    assert any(f"locks at {limit:.3g}" in text.get_text() for text in ax.texts)
+    trailing = factors(axes(), brake=drum.duplex(SHOE), reverse=True)
+    assert not any("locks" in text.get_text() for text in trailing.texts)
+
+
+@pytest.mark.parametrize("friction, panels", [(0.35, 3), (1.2, 1)])
+def test_figure_of_a_brake(friction: float, panels: int) -> None:
+    found = drum.brake_torque(drum.simplex(SHOE), friction=friction, force=1000.0)
+    assert len(brake_figure(found).axes) == panels
+
+
+def test_axle_loads_and_friction_as_drawn() -> None:
+    """Across the slope they hold the weight; along it, what is left accelerates the truck."""
+    found = stopped()
+    drawn = arrows(truck(axes(), found))
+    along = np.array([np.cos(0.3019), -np.sin(0.3019)])
+    total = sum(drawn[name] for name in ("Mg", "N_A", "N_B", "R_A"))
+    across = np.array([along[1], -along[0]])
+    assert abs(total @ across) < 1e-12
+    scale = np.hypot(*drawn["Mg"]) / 9.806
+    assert total @ along == pytest.approx(scale * found.acceleration, rel=1e-12)
+
+
+def test_a_truck_without_load_is_drawn_and_named() -> None:
+    ax = truck(axes(), stopped(load_mass=0.0))
+    assert "never stops" in ax.get_title()
+
+
+def test_slopes_on_which_it_never_stops_are_named() -> None:
+    speeds, slopes = np.array([2.0, 4.0]), np.radians([0.0, 26.0])
+    found = forklift.stop(forklift.Truck(**TRUCK), **(STOP | {"slope": slopes[:, None], "speed": speeds}))
+    ax = distances(axes(), speeds, slopes, found.distance)
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [t.get_text() for t in legend.get_texts()] == ["0 deg", "26 deg: never stops"]
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_the_tip_ends_where_the_kinematics_have_it(side: str) -> None:
+    motion = BRAKE.motion(0.0106)
+    (tip,) = moved(np.array([BRAKE.tip]), BRAKE, motion, 2.0, side)
+    np.testing.assert_allclose(tip, getattr(motion, f"{side}_tip"), rtol=1e-13)
+
+
+def test_the_lining_drawn_enters_the_drum_as_deep_as_computed() -> None:
+    motion = BRAKE.motion(0.0106)
+    rim = moved(lining(BRAKE, motion), BRAKE, motion, 1.0, "right")
+    deepest = np.hypot(*rim.T).max() - BRAKE.drum_radius
+    assert deepest == pytest.approx(motion.lining_penetration, rel=1e-3)  # 121 points along the lining
+
+
+@pytest.mark.parametrize("progress", [0.0, 0.5, 1.0, 1.5, 2.0])
+def test_the_brake_on_its_way(progress: float) -> None:
+    ax = duo_servo(axes(), BRAKE, BRAKE.motion(0.0106), progress)
+    assert len(ax.lines) > 8
+
+
+def test_duo_servo_shoes_balance_as_drawn() -> None:
+    found = forklift.internal_forces(BRAKE, torque=11000.0, piston_force=11650.0, clearance=0.0106)
+    figure = Figure(figsize=(8, 4))
+    free_bodies(figure, found, forklift.follow(BRAKE, 0.0106))
+    for ax, names in zip(figure.axes, (("C", "D", "P_T", "Q"), ("A", "B", "P_L", "Q")), strict=True):
+        drawn = arrows(ax)
+        assert np.hypot(*sum(drawn[name] for name in names)) < 1e-12
+        assert np.hypot(*drawn["Q"]) > 0.01
+
+
+def test_free_bodies_of_levers_alone() -> None:
+    found = forklift.internal_forces(BRAKE.levers(0.0106), torque=11000.0, piston_force=11650.0)
+    figure = answer_figure(None, None, found)
+    assert len(figure.axes) == 2
+
+
+def test_forces_over_the_torque() -> None:
+    torque = np.linspace(9e3, 12e3, 5)
+    found = forklift.internal_forces(BRAKE, torque=torque, piston_force=11650.0, clearance=0.0106)
+    ax = forces_over(axes(), torque, found, "torque")
+    by_name = {str(line.get_label()): np.asarray(line.get_ydata()) for line in ax.lines}
+    np.testing.assert_allclose(by_name["A"], 1e-3 * found.A, rtol=1e-15)
+    assert ax.get_xlabel() == "torque"
+
+
+def test_a_curve_without_values_says_so() -> None:
+    ax = curves(axes(), np.array([0.0, 1.0]), np.array([[1.0, 2.0], [np.inf, np.nan]]), ["a", "b"])
+    assert [line.get_label() for line in ax.lines] == ["a", "b: none"]
+
+
+def test_a_sweep_has_a_panel_a_unit_or_a_panel_a_result() -> None:
+    x, second = np.array([0.0, 1.0]), np.array([1.0, 2.0, 3.0])
+    one = {
+        "inputs": ("t.a",),
+        "units": ("m",),
+        "values": (x,),
+        "results": ("A", "B", "mu"),
+        "result_units": ("N", "N", ""),
+        "found": (x, x, x),
+    }
+    figure = sweep_figure(SimpleNamespace(**one))
+    assert [len(ax.lines) for ax in figure.axes] == [2, 1] and figure.axes[0].get_ylabel() == "A, B [N]"
+    two = one | {"inputs": ("t.a", "t.b"), "units": ("m", "s"), "values": (x, second)}
+    two["found"] = tuple(np.ones((3, 2)) for _ in range(3))
+    figure = sweep_figure(SimpleNamespace(**two))
+    assert [len(ax.lines) for ax in figure.axes] == [3, 3, 3]
+
+
+def test_pyplot_is_not_used() -> None:
+    modules = "brakes.drawings.drum, brakes.drawings.forklift"
+    code = f"import {modules}, sys; print('matplotlib.pyplot' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=True
+    )
+    assert done.stdout.strip() == "False"
