@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from itertools import pairwise
 from typing import Literal
 
@@ -57,13 +57,7 @@ class Ritz:
 
     def spaces(self, beam: Beam) -> RitzSpaces:
         """The spaces for a beam."""
-        bending, stretch = _BASES[self.basis]
-        edges = np.array(beam.breakpoints)
-        rule = _rule(edges, self._points(beam))
-        return RitzSpaces(
-            bending=RitzSpace(bending(self.functions, edges), *rule, orders=2),
-            stretch=RitzSpace(stretch(self.functions, edges), *rule, orders=1),
-        )
+        return _spaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
         """Gauss points a segment: exact for Legendre bases, past resolution for eigenfunctions."""
@@ -142,13 +136,28 @@ class RitzSpace:
         """Integrals of weight times function i."""
         return self.samples[0] @ self.weights(weight)
 
+    @cached_property
+    def _ends(self) -> list[np.ndarray]:
+        return [self.evaluation(np.ones(1), order)[:, 0] for order in range(self.orders + 1)]
+
     def end(self, order: int) -> np.ndarray:
         """Derivatives at the tip."""
-        return self.evaluation(np.array([1.0]), order)[:, 0]
+        return self._ends[order]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Derivatives at xi."""
         return self.evaluation(np.asarray(xi, dtype=float), order)
+
+
+@lru_cache(maxsize=64)  # beams differ in their properties, seldom in these: half the time of a small model
+def _spaces(ritz: Ritz, breakpoints: tuple[float, ...], points: int) -> RitzSpaces:
+    bending, stretch = _BASES[ritz.basis]
+    edges = np.array(breakpoints)
+    rule = _rule(edges, points)
+    return RitzSpaces(
+        bending=RitzSpace(bending(ritz.functions, edges), *rule, orders=2),
+        stretch=RitzSpace(stretch(ritz.functions, edges), *rule, orders=1),
+    )
 
 
 def _rule(edges: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -147,7 +148,7 @@ def _path(loc: tuple[int | str, ...]) -> str:
 
 
 def _how_to_give(model: type[BaseModel], path: str) -> str:
-    inputs = describe(model)
+    inputs, path = describe(model), _without_indices(path)
     if any(i.path.startswith(f"{path}.") for i in inputs):
         return f"give a table [{path}]"
     return next((f"give the {i.help}" for i in inputs if i.path == path), "give as many values as stations")
@@ -155,7 +156,7 @@ def _how_to_give(model: type[BaseModel], path: str) -> str:
 
 def _nearest(model: type[BaseModel], path: str) -> str:
     """The known key that resembles an unknown one most, or all that are known."""
-    parent, _, key = path.rpartition(".")
+    parent, _, key = _without_indices(path).rpartition(".")
     prefix = parent and f"{parent}."
     known = [
         i.path.removeprefix(prefix).partition(".")[0] for i in describe(model) if i.path.startswith(prefix)
@@ -165,6 +166,11 @@ def _nearest(model: type[BaseModel], path: str) -> str:
         return f"it goes with kind = {' or '.join(kinds)}"
     near = difflib.get_close_matches(key, known, n=1)
     return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+
+
+def _without_indices(path: str) -> str:
+    """The path of an item of a list as descriptions have it."""
+    return re.sub(r"\[\d+\]", "", path)
 
 
 def _kinds_with(model: type[BaseModel], table: str, key: str) -> list[str]:
