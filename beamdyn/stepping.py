@@ -19,6 +19,7 @@ STAGES = 8
 TOLERANCES = (1e-12, 0.1)  # smaller ones are lost in rounding
 SAMPLES = 8  # of the response in each step, where the caller gives no times
 _RADIANS = 3.84  # turned by the fastest motion in a step, for an error of 1e-5: measured
+_LOOSEST = 0.1  # error of a mode, over its size, at which it is still followed
 _PARTS = 4  # of a stretch of changing speed, each with its own step
 _BETWEEN = np.array([0.25, 0.5, 0.75])  # fractions of a step at which the interpolation is measured
 _LOST = 0.05  # error of phase in a step [rad] from which a mode is not followed
@@ -205,8 +206,9 @@ class Resolution:
         """The one to try next if the error exceeds its bound [m]."""
         from_here_up = np.cumsum((error.modes * error.lost)[::-1])[::-1]
         needed = int((from_here_up > bound / 4).sum())  # the modes above add up to little
-        if needed > self.modes:
-            return Resolution(self.radians, needed)
+        if needed > self.modes:  # the highest need not be followed more closely than its size asks for
+            share = min(bound / 4 / from_here_up[needed - 1], _LOOSEST)
+            return Resolution(max(self.radians, Resolution.of(share).radians), needed)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / (2 * STAGES)))
         return Resolution(self.radians * shrink, self.modes)
 

@@ -195,8 +195,8 @@ def test_modes_are_chosen_for_the_tolerance(tolerance) -> None:
 
 
 def test_modes_chosen_serve_a_stock_integrator_and_times_too() -> None:
-    t = np.linspace(0, 1, 11)
-    ours, stock = (bd.simulate(ROLLING, 1.0, method=m, t_eval=t, tolerance=1e-6) for m in ("auto", "DOP853"))
+    t = np.linspace(0, 0.1, 11)
+    ours, stock = (bd.simulate(ROLLING, 0.1, method=m, t_eval=t, tolerance=1e-6) for m in ("auto", "DOP853"))
     assert ours.coordinates.shape == stock.coordinates.shape
     # The stock method holds its tolerance in each step only.
     np.testing.assert_allclose(stock.tip, ours.tip, rtol=0, atol=1e-4 * ours.largest)
