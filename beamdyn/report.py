@@ -117,7 +117,9 @@ def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str
 def _errors(run: Transient) -> str:
     """The two errors in words."""
     known = math.isfinite(run.mode_error)
-    modes = f"by the modes left out {1e3 * run.mode_error:.1g} mm" if known else "by the modes left out unknown"
+    modes = (
+        f"by the modes left out {1e3 * run.mode_error:.1g} mm" if known else "by the modes left out unknown"
+    )
     if math.isnan(run.time_error):
         return (
             "The error in time is not estimated: this integrator bounds that of each step only. "

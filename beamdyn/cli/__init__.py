@@ -1,6 +1,12 @@
 """The command ``beamdyn``.  What is heavy is imported by the commands that need it."""
 
-from beamdyn.cli import motion, published, spectrum, tradeoff  # noqa: F401  (they add their commands to the app)
+from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
+    interactive,
+    motion,
+    published,
+    spectrum,
+    tradeoff,
+)
 from beamdyn.cli.program import app, main
 from beamdyn.cli.values import parse_speeds
 from beamdyn.common.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER

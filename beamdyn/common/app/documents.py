@@ -1,0 +1,189 @@
+"""What an interactive program consists of: documents, each a TOML file with screens on it. No page here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from beamdyn.common.app.entries import Entries, entries_of
+from beamdyn.common.config import parse
+from beamdyn.common.inputs import Input
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+
+@dataclass(frozen=True)
+class Sweeps:
+    """Any input of a screen against any of its results.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the results.
+    example : str
+        A sweep to begin with, such as "stop.speed=10:30:9 km/h".
+    results : str
+        Names of results to begin with, separated by commas.
+    run : callable
+        Tables, text of the sweep and names of results in; a sweep out.
+    draw : callable
+        Its picture.
+    rows : callable
+        Rows of its CSV file.
+    """
+
+    names: tuple[str, ...]
+    example: str
+    results: str
+    run: Callable[[Mapping[str, Any], str, str], Any]
+    draw: Callable[[Any], Figure]
+    rows: Callable[[Any], Iterable[Sequence[object]]]
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A number that the drawing alone follows.
+
+    Parameters
+    ----------
+    label : str
+        What it is.
+    marks : tuple of str
+        What its whole numbers from 0 on are.
+    step : float
+        Between places that are drawn.
+    """
+
+    label: str
+    marks: tuple[str, ...]
+    step: float = 0.05
+
+
+@dataclass(frozen=True)
+class Drag:
+    """A slider below a field, which writes into it.
+
+    Parameters
+    ----------
+    path : str
+        The field's input.
+    low, high, step : float
+        Its range and step, in `unit`.
+    unit : str
+        Unit in which it writes.
+    """
+
+    path: str
+    low: float
+    high: float
+    step: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Screen:
+    """A form, what follows from it, and its tables and drawing: pure functions.
+
+    Parameters
+    ----------
+    name : str
+        On its tab.
+    purpose : str
+        What it is for, in a sentence.
+    sections : tuple of str
+        Tables whose inputs stand on its form; "" for inputs outside any table.
+    needs : tuple of str
+        Tables, or inputs outside any, that its result follows from.
+    solve : callable
+        Tables in, answer out.
+    report : callable
+        The answer as tables and sentences.
+    draw : callable
+        Answer and place of the slider in, figure out.
+    notes : callable
+        Warnings and refusals of an answer, a sentence each.
+    rows : callable
+        Rows of the answer's CSV file.
+    slider : Slider, optional
+        For the drawing.
+    sweeps : Sweeps, optional
+        Its sweeps.
+    drags : tuple of Drag
+        Sliders in its form.
+    """
+
+    name: str
+    purpose: str
+    sections: tuple[str, ...]
+    needs: tuple[str, ...]
+    solve: Callable[[Mapping[str, Any]], Any]
+    report: Callable[[Any], Sequence[RenderableType]]
+    draw: Callable[[Any, float], Figure]
+    notes: Callable[[Any], Sequence[str]]
+    rows: Callable[[Any], Iterable[Sequence[object]]]
+    slider: Slider | None = None
+    sweeps: Sweeps | None = None
+    drags: tuple[Drag, ...] = ()
+
+
+@dataclass(frozen=True)
+class Document:
+    """A kind of TOML file, and the screens on it.
+
+    Parameters
+    ----------
+    name : str
+        The file's usual name, without its suffix.
+    base : str
+        Text of the file that is shown on opening.
+    inputs : callable
+        Entries in, the descriptions of the inputs out, each path once.
+    check : callable
+        Parses the text of a file; it takes the text and its name, and raises `ConfigError`.
+    screens : tuple of Screen
+        In the order in which results are handed on.
+    aside : mapping
+        Entries on opening that are not in the file, such as options of a command.
+    """
+
+    name: str
+    base: str
+    inputs: Callable[[Mapping[str, str]], list[Input]]
+    check: Callable[[str, str], Any]
+    screens: tuple[Screen, ...]
+    aside: Mapping[str, str] = field(default_factory=dict)
+
+    def opened(self, text: str, source: str) -> Entries:
+        """Entries for the text of a file, which the parser of the commands accepts.
+
+        Raises
+        ------
+        ConfigError
+            If it does not.
+        """
+        self.check(text, source)
+        tables = parse(text, source)
+        return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
+
+    @property
+    def beside(self) -> set[str]:
+        """Tables that are not in the file."""
+        return {path.partition(".")[0] for path in self.aside}
+
+    @cached_property
+    def base_entries(self) -> Entries:
+        """Entries on opening."""
+        return self.opened(self.base, self.name)
+
+
+@dataclass(frozen=True)
+class Program:
+    """An interactive program: its name, title, and documents."""
+
+    name: str
+    title: str
+    documents: tuple[Document, ...]

@@ -1,0 +1,144 @@
+"""Entries of a form and tables of a TOML file: the same inputs, one as text by path, one nested."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, get_args
+
+from beamdyn.common.inputs import Input
+from beamdyn.common.units import quantity
+
+Entries = dict[str, str]  # what stands in each field, by the path of its input; "" where nothing does
+
+_UNITS = {
+    "m": ("m", "cm", "mm", "in"),
+    "kg": ("kg", "t", "g", "lb"),
+    "rad": ("deg", "rad"),
+    "s": ("s", "ms"),
+    "m/s": ("km/h", "m/s", "mph"),
+    "N": ("N", "kN", "lbf"),
+    "N m": ("N m", "kN m"),
+    "Pa": ("Pa", "kPa", "MPa", "GPa", "bar"),
+    "rad/s": ("rad/s", "rpm"),
+    "kg m2": ("kg m2", "g mm2"),
+}
+
+
+def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
+    """What the fields say for these tables; values that no field is for are entries, too."""
+    leaves = {entry.path for entry in inputs}
+    return {entry.path: "" for entry in inputs} | dict(_flat(tables, leaves, ""))
+
+
+def _flat(tables: Mapping[str, Any], leaves: set[str], prefix: str) -> Iterator[tuple[str, str]]:
+    for key, value in tables.items():
+        path = prefix + key
+        if isinstance(value, dict) and path not in leaves:
+            yield from _flat(value, leaves, f"{path}.")
+        else:
+            yield path, value if isinstance(value, str) else toml_value(value)
+
+
+def tables_of(
+    entries: Mapping[str, str], inputs: Sequence[Input], names: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The tables that entries stand for, as the parser of files gives them; fields left empty are left out.
+
+    Parameters
+    ----------
+    entries : mapping
+        Text by path.
+    inputs : sequence of Input
+        Their descriptions, which tell numbers from words.
+    names : sequence of str
+        Tables wanted; all if empty.
+    """
+    known = {entry.path: entry for entry in inputs}
+    tables: dict[str, Any] = {}
+    for path, text in entries.items():
+        if text.strip() and (not names or path.partition(".")[0] in names):
+            *parents, key = path.split(".")
+            place = tables
+            for parent in parents:
+                place = place.setdefault(parent, {})
+            place[key] = _value(text.strip(), known.get(path))
+    return tables
+
+
+def _value(text: str, entry: Input | None) -> Any:
+    """What TOML has for a text: a number, list or table where one is meant, else the text as a string."""
+    if entry is not None and (entry.choices or _is_text(entry.kind)):
+        return text
+    if entry is not None and entry.quantity.unit and text[0] not in "[{":
+        return text
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (ValueError, RecursionError):
+        return text
+
+
+def _is_text(kind: Any) -> bool:
+    return kind is str or str in get_args(kind)
+
+
+def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
+    """Tables as the text of a TOML file."""
+    return "\n".join([*([f"# {heading}", ""] if heading else []), *_lines(tables, "")]).strip() + "\n"
+
+
+def _lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
+    for key, value in tables.items():
+        if not isinstance(value, dict):
+            yield f"{key} = {toml_value(value)}"
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            yield from ("", f"[{prefix}{key}]", *_lines(value, f"{prefix}{key}."))
+
+
+def toml_value(value: Any) -> str:
+    """A value on one line of TOML."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case list() | tuple():
+            return f"[{', '.join(toml_value(item) for item in value)}]"
+        case dict():
+            return f"{{ {', '.join(f'{key} = {toml_value(item)}' for key, item in value.items())} }}"
+    return repr(value)
+
+
+def by_field(mistakes: Sequence[str], inputs: Sequence[Input]) -> dict[str, list[str]]:
+    """Sentences by the path of the field that each is about; "" for those about no single field."""
+    paths = sorted((entry.path for entry in inputs), key=len, reverse=True)
+    found: dict[str, list[str]] = {}
+    for sentence in mistakes:
+        found.setdefault(_field(sentence, paths), []).append(sentence)
+    return found
+
+
+def _field(sentence: str, paths: Sequence[str]) -> str:
+    """The field of a mistake: by its path, by table and name ("shoe: alpha = ..."), by a name alone."""
+    said = re.sub(r"^([\w.]+): (\w+) = ", r"\1.\2 = ", sentence)
+    found = next((path for path in paths if re.match(rf"{re.escape(path)}(\[|\.| =|:)", said)), "")
+    name = re.match(r"(\w+) = ", said)
+    named = [path for path in paths if name and path.rpartition(".")[2] == name[1]]
+    return found or (named[0] if len(named) == 1 else "")
+
+
+def units_for(unit: str) -> tuple[str, ...]:
+    """Units that people use for a quantity of a unit in SI."""
+    return _UNITS.get(unit, (unit,) if unit else ())
+
+
+def in_unit(text: str, unit: str, target: str) -> str:
+    """The same quantity in another unit; the text itself where it is no quantity of this kind."""
+    try:
+        value = quantity(text, unit) / quantity(f"1 {target}", unit)
+    except ValueError:
+        return text
+    return f"{value:.10g} {target}"

@@ -1,0 +1,167 @@
+"""A form made from the descriptions of inputs: a field for each, with its symbol, unit, bounds and help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.app.documents import Drag
+from beamdyn.common.app.entries import in_unit, units_for
+from beamdyn.common.inputs import Input
+from beamdyn.common.units import show
+
+_NOT_GIVEN = "not given"
+
+
+class Form:
+    """The fields of some tables.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+        What to ask for.
+    sections : sequence of str
+        Tables shown, in this order; "" for inputs outside any.
+    entries : mapping
+        What stands in the fields at first.
+    changed : callable
+        Called with path and text when a field changes.
+    drags : sequence of Drag
+        Sliders below fields.
+    """
+
+    def __init__(
+        self,
+        inputs: Sequence[Input],
+        sections: Sequence[str],
+        entries: Mapping[str, str],
+        changed: Callable[[str, str], object],
+        drags: Sequence[Drag] = (),
+    ) -> None:
+        self.fields: dict[str, Any] = {}
+        self._changed = changed
+        self._drags = {drag.path: drag for drag in drags}
+        for section in sections:
+            chosen = [entry for entry in inputs if _table(entry.path) == section]
+            if chosen:
+                self._section(section, chosen, entries)
+
+    def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
+        optional = bool(section) and not any(entries.get(entry.path, "") for entry in inputs)
+        heading = f"[{section}]" if section else "general"
+        with ui.expansion(heading, value=not optional).classes("w-full section").props("dense"):
+            for entry in inputs:
+                self._field(entry, entries.get(entry.path, ""))
+
+    def _field(self, entry: Input, text: str) -> None:
+        with ui.row().classes("w-full no-wrap items-start gap-0"):
+            made = self._select(entry, text) if _options(entry) else self._input(entry, text)
+        made.without_auto_validation()  # mistakes are marked by the answer, not by the field
+        made.classes("grow").props(
+            f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
+        )
+        made.props["hint"] = help_of(entry)
+        self.fields[entry.path] = made
+        if (drag := self._drags.get(entry.path)) is not None:
+            self._slider(drag, entry, made)
+
+    def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
+        """A slider that writes into a field, and stands where the field says, as far as it reaches."""
+        given = in_unit(field.value or "", entry.quantity.unit, drag.unit).partition(" ")[0]
+        try:
+            at = float(given)
+        except ValueError:
+            at = drag.low
+        made = ui.slider(
+            min=drag.low, max=drag.high, step=drag.step, value=at,
+            on_change=lambda e: field.set_value(f"{e.value:g} {drag.unit}"),
+        )  # fmt: skip
+        made.props(f'dense aria-label="{label(entry)} [{drag.unit}]"').classes("q-px-md")
+
+    def _select(self, entry: Input, text: str) -> Any:
+        options = {option: option.replace("_", " ") for option in _options(entry)}
+        if not entry.required:
+            options = {"": f"{_NOT_GIVEN}: {_default(entry)}", **options}
+        value = text if text in options else None
+        return ui.select(
+            options,
+            value=value,
+            label=label(entry),
+            on_change=lambda e: self._changed(entry.path, e.value or ""),
+        )
+
+    def _input(self, entry: Input, text: str) -> Any:
+        field = ui.input(
+            label(entry),
+            value=text,
+            placeholder="" if entry.required else _default(entry),
+            on_change=lambda e: self._changed(entry.path, e.value or ""),
+        ).props("debounce=200 autocomplete=off spellcheck=false")
+        units = units_for(entry.quantity.unit)
+        if len(units) > 1:
+            with field.add_slot("append"):
+                self._units(entry, field, units)
+        return field
+
+    def _units(self, entry: Input, field: Any, units: Sequence[str]) -> None:
+        """A button whose menu, made when it is first wanted, turns what stands there into another unit."""
+
+        def put(unit: str) -> None:
+            field.set_value(in_unit(field.value or "", entry.quantity.unit, unit))
+
+        def choose() -> None:
+            button.clear()
+            with button, ui.menu(value=True).props("auto-close"):
+                for unit in units:
+                    ui.menu_item(unit, partial(put, unit))
+
+        button = ui.button(icon="straighten", on_click=choose)
+        button.props(f'flat dense round size=sm aria-label="unit of {_words(entry)}"')
+
+    def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
+        """Mark the fields that mistakes are about, and only those."""
+        for path, field in self.fields.items():
+            said = mistakes.get(path)
+            field.error = " ".join(said) if said else None
+
+
+def label(entry: Input) -> str:
+    """Name and symbol of an input."""
+    symbol = entry.quantity.symbol
+    return f"{_words(entry)}, {symbol}" if symbol and symbol != entry.name else _words(entry)
+
+
+def help_of(entry: Input) -> str:
+    """Meaning, unit and bounds; where it need not be given, what holds then."""
+    return entry.help if entry.required else f"{entry.help}; not required"
+
+
+def _words(entry: Input) -> str:
+    """Its name, after that of the tables within its table."""
+    return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
+
+
+def _table(path: str) -> str:
+    return path.partition(".")[0] if "." in path else ""
+
+
+def _options(entry: Input) -> tuple[str, ...]:
+    if entry.kind is bool:
+        return ("true", "false")
+    few = all(isinstance(choice, str) for choice in entry.choices)
+    return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
+
+
+def _default(entry: Input) -> str:
+    """What holds if it is not given."""
+    if entry.default is None or entry.default in ("", [], ()):
+        return _NOT_GIVEN
+    value = entry.default
+    numbers = value if isinstance(value, tuple) else (value,)
+    if isinstance(value, bool | str):
+        return show(value).strip('"')
+    unit = f" {entry.quantity.unit}" if entry.quantity.unit else ""
+    return ", ".join(f"{number:.6g}{unit}" for number in numbers)

@@ -1,0 +1,226 @@
+"""The page of an interactive program: tabs, opening and saving, reports; a session for each client."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.app.documents import Document, Program, Screen
+from beamdyn.common.app.panel import Panel
+from beamdyn.common.app.session import Work
+from beamdyn.common.app.shown import STYLE, drawn, html, picture, report_page
+from beamdyn.common.config import ConfigError
+
+_LARGEST = 200_000  # bytes of a file that is opened
+_LAYOUT = """
+body { font-size: 15px; }
+.q-tab-panel { padding: 0.75rem; }
+.screen { display: grid; grid-template-columns: minmax(270px, 330px) minmax(0, 1fr); gap: 1rem; width: 100%; }
+.left { max-height: calc(100vh - 130px); overflow-y: auto; padding: 4px 6px 4px 2px; position: sticky;
+  top: 0; }
+.section { border: 1px solid #c8c8c8; border-radius: 4px; }
+.section .q-item__label { font-weight: 600; }
+.status { font-size: 0.85rem; color: #444; }
+.mistake { color: #8c1c00; font-weight: 600; border-left: 4px solid #8c1c00; padding-left: 0.5rem; }
+.mistake:empty { display: none; }
+.warning { color: #5a4200; border-left: 4px solid #E69F00; padding-left: 0.5rem; }
+.greyed { opacity: 0.45; filter: grayscale(1); }
+.slider { padding: 0 3.5rem; }
+.drawing-frame { overflow-x: auto; }
+.drawing { max-width: 1000px; min-width: 560px; max-height: 72vh; object-fit: contain;
+  object-position: left; }
+.section .q-field { margin-bottom: 6px; }
+.q-field__messages { line-height: 1.25; }
+:focus-visible { outline: 3px solid #0072B2; outline-offset: 1px; }
+"""
+
+
+class Page:
+    """What one client sees; nothing in it is shared with another.
+
+    Parameters
+    ----------
+    program : Program
+        What it is.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.works = {document.name: Work(document) for document in program.documents}
+        self.panels: dict[str, Panel] = {}
+        self.places: dict[str, tuple[Document, Screen]] = {
+            screen.name: (document, screen) for document in program.documents for screen in document.screens
+        }
+        self._tabs: dict[str, Any] = {}
+        ui.add_css(_LAYOUT + STYLE)
+        ui.colors(primary="#0072B2", secondary="#444444", negative="#8c1c00")
+        ui.page_title(program.title)
+        self._header()
+        self._body()
+
+    def _header(self) -> None:
+        first: Any = next(iter(self.places))  # a tab goes by its name
+        self._bar: Any
+        with ui.header().classes("items-center gap-2 no-wrap q-py-none"):
+            with ui.tabs(value=first, on_change=self._entered).props(
+                "dense no-caps shrink stretch"
+            ) as self._bar:
+                for name in self.places:
+                    self._tabs[name] = ui.tab(name, label=name)
+            ui.space()
+            with ui.button("File").props("flat no-caps color=white"), ui.menu().props("auto-close"):
+                ui.menu_item("Open a TOML file", self._ask)
+                ui.menu_item("Save as TOML", self.save)
+                ui.menu_item("Report as HTML", self.report)
+                ui.menu_item("Back to the base case", self.reset)
+
+    def _body(self) -> None:
+        with (
+            ui.tab_panels(self._bar, value=next(iter(self.places))).classes("w-full").props("animated=false")
+        ):
+            for name, (document, screen) in self.places.items():
+                with ui.tab_panel(name):
+                    self.panels[name] = Panel(self.works[document.name], screen, self._edited)
+        with ui.dialog() as self._dialog, ui.card():
+            ui.label("Open a TOML file, as the commands read it")
+            self._upload: Any = ui.upload(
+                label="TOML file", on_upload=self._opened, auto_upload=True, max_file_size=_LARGEST,
+                max_files=1,
+                on_rejected=lambda: self._refuse(f"the file is larger than {_LARGEST} bytes"),
+            ).props('accept=".toml" aria-label="TOML file"')  # fmt: skip
+            self._refused: Any = (
+                ui.label().classes("mistake").props('role="alert"').style("white-space: pre-line")
+            )
+            ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
+        self._entered()
+
+    @property
+    def front(self) -> str:
+        """Name of the screen that is in front."""
+        return str(self._bar.value)
+
+    @property
+    def current(self) -> tuple[Document, Screen]:
+        """The document and screen that are in front."""
+        return self.places[self.front]
+
+    def _entered(self) -> None:
+        self.panels[self.front].enter()
+        self._marks()
+
+    def _edited(self) -> None:
+        """Another screen of the same document may be stale now."""
+        for panel in self.panels.values():
+            panel.state()
+        self._marks()
+        self._remember()
+
+    def _marks(self) -> None:
+        for name, (document, screen) in self.places.items():
+            stale = self.works[document.name].outdated(screen)
+            self._tabs[name].props["label"] = f"{name} (stale)" if stale else name
+            self._tabs[name].update()
+
+    def _rebuild(self, document: Document) -> None:
+        for screen in document.screens:
+            self.panels[screen.name].rebuild()
+        self.panels[self.front].enter()
+        self._edited()
+
+    # Files ------------------------------------------------------------------------------------------
+
+    def _ask(self) -> None:
+        self._refused.set_text("")
+        self._upload.reset()
+        self._dialog.open()
+
+    async def _opened(self, event: Any) -> None:
+        name = event.file.name
+        try:
+            text = (await event.file.read()).decode("utf-8")
+        except UnicodeDecodeError:
+            return self._refuse(f"{name}: it is not text in UTF-8; give a TOML file")
+        self.open(text, name)
+
+    def open(self, text: str, name: str) -> None:
+        """Open the text of a file as the document whose tables it has; else say what the command says."""
+        document = self._kind_of(text)
+        try:
+            self.works[document.name].open(text, name)
+        except ConfigError as error:
+            return self._refuse(str(error))
+        self._rebuild(document)
+        if self.current[0] is not document:
+            self._bar.set_value(document.screens[0].name)
+        self._dialog.close()
+        ui.notify(f"{name} is open")
+
+    def _kind_of(self, text: str) -> Document:
+        """The document that accepts a text; if none does, the one in front."""
+        for document in self.program.documents:
+            try:
+                document.opened(text, "")
+            except ConfigError:
+                continue
+            return document
+        return self.current[0]
+
+    def _refuse(self, sentence: str) -> None:
+        self._refused.set_text(sentence)
+
+    def save(self) -> None:
+        """Hand over the design in front as TOML."""
+        document = self.current[0]
+        ui.download.content(self.works[document.name].text(), f"{document.name}.toml")
+
+    def report(self) -> None:
+        """Hand over a report on the document in front: its good answers, each with its drawing."""
+        document = self.current[0]
+        for screen in document.screens:
+            self.panels[screen.name].enter()
+        self._marks()
+        work = self.works[document.name]
+        title = f"{self.program.title}: {document.name}"
+        ui.download.content(report_of(work, title), f"{document.name}.html")
+
+    def reset(self) -> None:
+        """The design on opening."""
+        document = self.current[0]
+        self.works[document.name].open(document.base, document.name)
+        self._rebuild(document)
+
+    # Over a reload, or a restart of the program -----------------------------------------------------
+
+    @property
+    def _key(self) -> str:
+        return json.dumps(f"{self.program.name}-designs")
+
+    def _remember(self) -> None:
+        """Keep the entries in the browser, for this tab."""
+        kept = json.dumps({name: work.entries for name, work in self.works.items()})
+        ui.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(kept)})")
+
+    async def recall(self) -> None:
+        """Put back the entries that the browser kept."""
+        await ui.context.client.connected()
+        try:
+            kept = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
+        except TimeoutError:
+            return
+        for name, entries in json.loads(kept or "{}").items():
+            if (work := self.works.get(name)) is not None and isinstance(entries, dict):
+                work.entries = {str(path): str(text) for path, text in entries.items()}
+                self._rebuild(work.document)
+
+
+def report_of(work: Work, title: str) -> str:
+    """A report on a document: what is shown of each screen that has an answer to the entries."""
+    parts = []
+    for screen in work.document.screens:
+        if not work.stale(screen):
+            answer = work.answered[screen.name].answer
+            drawing = picture(drawn(screen, answer, 1.0), screen.name)
+            parts.append((screen.name, screen.notes(answer), html(screen.report(answer)), drawing))
+    return report_page(title, work.text(), parts)

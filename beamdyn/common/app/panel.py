@@ -1,0 +1,157 @@
+"""One screen on the page: its form on the left, what follows from it on the right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.app.documents import Screen
+from beamdyn.common.app.form import Form
+from beamdyn.common.app.session import Work
+from beamdyn.common.app.shown import csv_text, drawn, html, picture, png
+from beamdyn.common.app.sweeping import SweepPanel
+
+
+class Panel:
+    """A screen of a document that is worked on.
+
+    Parameters
+    ----------
+    work : Work
+        The document.
+    screen : Screen
+        Which of its screens.
+    edited : callable
+        Called after a field of this screen has changed.
+    """
+
+    def __init__(self, work: Work, screen: Screen, edited: Callable[[], object]) -> None:
+        self.work, self.screen, self._edited = work, screen, edited
+        self._drawn = ""
+        with ui.element("div").classes("screen"):
+            self._left: Any = ui.column().classes("left gap-1")
+            with ui.column().classes("right gap-2"):
+                self._results()
+        self.rebuild()
+
+    def _results(self) -> None:
+        ui.label(self.screen.purpose).classes("text-body2")
+        self._status: Any = ui.label().classes("status").props('role="status" aria-live="polite"')
+        self._said: Any = ui.column().classes("gap-1 w-full").props('role="alert"')
+        self._good: Any = ui.column().classes("w-full gap-2 shown")
+        with self._good:
+            self._slider()
+            self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+            self._tables: Any = ui.html("", sanitize=False).classes("w-full")
+        self._exports()
+        if self.screen.sweeps is not None:
+            SweepPanel(self.work, self.screen, self.screen.sweeps)
+
+    def _slider(self) -> None:
+        slider = self.screen.slider
+        self._at: Any = None
+        if slider is None:
+            return
+        last = len(slider.marks) - 1
+        marks = ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(slider.marks))
+        self._at = ui.slider(min=0, max=last, step=slider.step, value=last, on_change=self._draw)
+        self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
+            "slider"
+        )
+
+    def _exports(self) -> None:
+        with ui.row().classes("gap-2"):
+            for kind, make in (("SVG", self._svg), ("PNG", self._png), ("CSV", self._csv)):
+                ui.button(f"{kind}", on_click=make, icon="download").props(
+                    f'flat dense no-caps aria-label="download {self.screen.name} as {kind}"'
+                )
+
+    def rebuild(self) -> None:
+        """The form anew, as after another file has been opened."""
+        self._left.clear()
+        with self._left:
+            self.form = Form(
+                self.work.inputs, self.screen.sections, self.work.entries, self._changed, self.screen.drags
+            )
+        self._shape = [entry.path for entry in self.work.inputs]
+        self.form.mark(self.work.mistakes.get(self.screen.name, {}))
+        self.state()
+
+    def _changed(self, path: str, text: str) -> None:
+        self.work.put(path, text)
+        if [entry.path for entry in self.work.inputs] != self._shape:
+            self.rebuild()
+        self.solve()
+        self._edited()
+
+    def enter(self) -> None:
+        """Answer anew if what is shown is stale: done when the screen comes to the front."""
+        if self.work.stale(self.screen) or self.work.mistakes.get(self.screen.name) or not self._drawn:
+            self.solve()
+
+    def solve(self) -> None:
+        """Answer and show it, or say why there is no answer and leave the last good one, greyed."""
+        self.work.solve(self.screen)
+        mistakes = self.work.mistakes[self.screen.name]
+        self.form.mark(mistakes)
+        if not mistakes:
+            self._show()
+        self.state()
+        self._say(mistakes)
+
+    def state(self) -> None:
+        """Grey what is shown while it is not the answer to the entries."""
+        stale = self.work.stale(self.screen)
+        self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
+        failed = self.work.mistakes.get(self.screen.name)
+        words = (
+            "Below is the last good result." if self.work.answered.get(self.screen.name) else "No result yet."
+        )
+        later = "An input has changed since: this result is stale."
+        self._status.set_text((words if failed else later) if stale else "Up to date.")
+
+    def _say(self, mistakes: dict[str, list[str]]) -> None:
+        """Sentences about no field of this form, and the warnings of a good answer."""
+        self._said.clear()
+        answered = self.work.answered.get(self.screen.name)
+        elsewhere = [s for path, said in mistakes.items() if path not in self.form.fields for s in said]
+        warnings = self.screen.notes(answered.answer) if answered and not mistakes else ()
+        with self._said:
+            for sentence in elsewhere:
+                ui.label(sentence).classes("mistake")
+            for sentence in dict.fromkeys(warnings):
+                ui.label(f"Warning: {sentence}").classes("warning")
+
+    def _show(self) -> None:
+        answer = self.work.answered[self.screen.name].answer
+        self._tables.set_content(html(self.screen.report(answer)))
+        self._draw()
+
+    def _draw(self) -> None:
+        answered = self.work.answered.get(self.screen.name)
+        if answered is None:
+            return
+        self._drawn = drawn(self.screen, answered.answer, self.progress)
+        self._picture.set_content(picture(self._drawn, f"{self.screen.name}: drawing of the result"))
+
+    @property
+    def progress(self) -> float:
+        """Place of the slider."""
+        return float(self._at.value) if self._at is not None else 1.0
+
+    def _svg(self) -> None:
+        ui.download.content(self._drawn, f"{self._name}.svg")
+
+    def _png(self) -> None:
+        if answered := self.work.answered.get(self.screen.name):
+            ui.download.content(png(self.screen.draw(answered.answer, self.progress)), f"{self._name}.png")
+
+    def _csv(self) -> None:
+        if answered := self.work.answered.get(self.screen.name):
+            ui.download.content(csv_text(self.screen.rows(answered.answer)), f"{self._name}.csv")
+
+    @property
+    def _name(self) -> str:
+        return self.screen.name.lower().replace(" ", "-")

@@ -1,0 +1,72 @@
+"""Serving an interactive program on this computer."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+
+from beamdyn.common.app.documents import Program
+
+MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
+
+
+def root_of(program: Program) -> Callable[[], Awaitable[None]]:
+    """The function that builds the page for a client."""
+    from beamdyn.common.app.page import Page
+
+    async def root() -> None:
+        await Page(program).recall()
+
+    return root
+
+
+def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -> None:
+    """Serve until interrupted.
+
+    Parameters
+    ----------
+    program : callable
+        Makes the program; it is called when it is known that it can be shown.
+    host : str
+        Address to listen on.
+    port : int
+        Port, from 1 to 65535.
+    browser : bool
+        Open the browser.
+
+    Raises
+    ------
+    ValueError
+        If NiceGUI is missing, or the port is none or taken.
+    """
+    if not 1 <= port <= 65535:
+        raise ValueError(f"--port = {port}: give a port from 1 to 65535")
+    try:
+        from nicegui import ui
+    except ImportError:
+        raise ValueError(MISSING) from None
+    _free(host, port)
+    made = program()
+    ui.run(
+        root_of(made),
+        host=host,
+        port=port,
+        title=made.title,
+        show=browser,
+        reload=False,
+        reconnect_timeout=30.0,
+    )
+
+
+def _free(host: str, port: int) -> None:
+    """Refuse an address that cannot be listened on, before the server tries."""
+    import socket
+
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family, kind, protocol) as trial:
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            trial.bind(address)
+    except OSError as error:
+        raise ValueError(
+            f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); give another --port"
+        ) from None

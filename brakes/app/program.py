@@ -1,0 +1,8 @@
+"""The program ``brakes app``."""
+
+from beamdyn.common.app.documents import Program
+from brakes.app.caliper import CALIPER
+from brakes.app.drum import DRUM
+from brakes.app.forklift import FORKLIFT
+
+BRAKES = Program("brakes", "Brakes", (FORKLIFT, DRUM, CALIPER))

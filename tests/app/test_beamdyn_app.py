@@ -1,0 +1,108 @@
+"""`beamdyn app`: pure functions, and its page used by a simulated client."""
+
+import numpy as np
+import pytest
+
+from beamdyn import frequency_locus, load_scene
+from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
+from beamdyn.common.app.session import Work
+from beamdyn.common.app.shown import csv_text, drawn, html
+from beamdyn.common.config import ConfigError
+
+
+@pytest.mark.parametrize("screen", SCENE.screens, ids=lambda s: s.name)
+def test_screen_answers_draws_and_tabulates(screen):
+    work = Work(SCENE)
+    assert work.solve(screen), work.mistakes
+    answer = work.answered[screen.name].answer
+    assert drawn(screen, answer, 1.0).startswith("<?xml")
+    assert "<table>" in html(screen.report(answer))
+    assert len(csv_text(screen.rows(answer)).splitlines()) > 100
+
+
+def test_frequencies_are_those_of_the_function():
+    work = Work(SCENE)
+    work.put("mount.setting_angle", "90 deg")
+    work.put("asked.modes", "3")
+    assert work.solve(LOCUS), work.mistakes
+    found = work.answered[LOCUS.name].answer.locus
+    (scene := SCENE.check(work.text(), "saved"))
+    assert np.array_equal(found.frequency, frequency_locus(scene, found.speeds, 3).frequency)
+
+
+def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
+    work = Work(SCENE)
+    (tmp_path / "scene.toml").write_text(work.text(), encoding="utf-8")
+    assert load_scene(tmp_path / "scene.toml") == SCENE.check(SCENE.base, "base")
+
+
+@pytest.mark.parametrize(
+    "path, text, sentence",
+    [
+        ("asked.modes", "0", "at least 1"),
+        ("asked.modes", "1.5", "whole number"),
+        ("asked.top_speed", "150", "give a unit"),
+        ("mount.setting_angle", "0.5 m", "unit of length"),
+        ("beam.thickness", "", "missing"),
+        ("beam.thickness", "{ polynomial = 1 }", "list"),
+    ],
+)
+def test_mistake_is_at_its_field(path, text, sentence):
+    work = Work(SCENE)
+    work.put(path, text)
+    assert not work.solve(LOCUS)
+    ((where, said),) = work.mistakes[LOCUS.name].items()
+    assert where == path
+    assert sentence in said[0]
+
+
+@pytest.mark.parametrize(
+    "kind, more", [("steady", {"speed"}), ("sampled", {"times"}), ("rolling", {"rolling_radius"})]
+)
+def test_motion_chooses_its_inputs(kind, more):
+    work = Work(SCENE)
+    work.put("motion.kind", kind)
+    names = {entry.path.removeprefix("motion.") for entry in work.inputs if entry.path.startswith("motion.")}
+    assert more <= names
+    assert ("road.wavelength" in names) == (kind == "rolling")
+
+
+def test_steady_response_without_motion_says_what_is_missing():
+    work = Work(SCENE)
+    work.open("\n".join(SCENE.base.partition("[motion]")[:1]), "scene")
+    assert work.solve(LOCUS), work.mistakes
+    assert not work.solve(STEADY)
+    assert "choose the motion" in str(work.mistakes[STEADY.name])
+
+
+def test_tapered_beam_is_opened_and_saved():
+    work = Work(SCENE)
+    text = SCENE.base.replace('thickness = "0.2 mm"', 'thickness = { polynomial = ["0.3 mm", "-0.1 mm"] }')
+    work.open(text, "tapered")
+    assert work.solve(LOCUS), work.mistakes
+    assert SCENE.check(work.text(), "saved") == SCENE.check(text, "tapered")
+
+
+def test_hostile_text_changes_nothing():
+    work = Work(SCENE)
+    before = dict(work.entries)
+    with pytest.raises(ConfigError):
+        work.open("[beam]\nlength = '1 m'\n__import__ = 'os'", "hostile")
+    assert work.entries == before
+
+
+def test_page_marks_a_mistake_and_slider_writes_the_field(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        assert page.tabs() == ["Frequencies", "Steady response"]
+        page.enter("mount.radius", "wide")
+        assert "not a number with a unit" in page.field("mount.radius").error
+        page.enter("mount.radius", "0.2 m")
+        assert page.field("mount.radius").error is None
+        made = page.user.client.elements.values()
+        slider = next(e for e in made if e.tag == "q-slider" and "radius" in e.props["aria-label"])
+        with page.user.client:
+            slider.set_value(250)
+        assert page.field("mount.radius").value == "250 mm"
+
+    simulate(BEAMDYN, body)

@@ -1,0 +1,247 @@
+"""The screens of `brakes app` without their page: pure functions from tables to answers and pictures."""
+
+import time
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from beamdyn.common.app.entries import by_field, entries_of, in_unit, tables_of, toml_of
+from beamdyn.common.app.page import report_of
+from beamdyn.common.app.session import Work
+from beamdyn.common.app.shown import csv_text, drawn, html, png, svg
+from beamdyn.common.config import ConfigError, parse
+from brakes.app.bases import base
+from brakes.app.caliper import CALIPER
+from brakes.app.forklift import FORCES, FORKLIFT, KINEMATICS, VEHICLE
+from brakes.app.program import BRAKES
+from brakes.calipers import NAMED
+from brakes.config.forklift import parse_forklift
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PLACES = [(document, screen) for document in BRAKES.documents for screen in document.screens]
+NAMES = [screen.name for _, screen in PLACES]
+
+
+@pytest.fixture(params=PLACES, ids=NAMES)
+def place(request):
+    document, screen = request.param
+    work = Work(document)
+    assert work.solve(screen), work.mistakes
+    return work, screen, work.answered[screen.name].answer
+
+
+@pytest.mark.parametrize("name", ["forklift", "drum"])
+def test_base_case_is_the_example(name):
+    assert base(name) == (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def test_drawing_is_svg_and_the_same_twice(place):
+    _, screen, answer = place
+    first = svg(screen.draw(answer, 1.0))
+    assert ET.fromstring(first).tag == "{http://www.w3.org/2000/svg}svg"
+    assert first == svg(screen.draw(answer, 1.0))
+    assert png(screen.draw(answer, 1.0)).startswith(b"\x89PNG")
+
+
+def test_drawing_follows_the_slider(place):
+    _, screen, answer = place
+    if screen.slider is None:
+        pytest.skip("this screen has no slider")
+    places = [i * (len(screen.slider.marks) - 1) / 4 for i in range(5)]
+    assert len({svg(screen.draw(answer, at)) for at in places}) == 5
+
+
+def test_tables_and_rows_agree(place):
+    _, screen, answer = place
+    assert "<table>" in html(screen.report(answer))
+    rows = csv_text(screen.rows(answer)).splitlines()
+    assert len(rows) > 5
+    assert len({row.count(",") for row in rows}) == 1
+
+
+def test_answer_takes_less_than_a_tenth_of_a_second(place):
+    work, screen, _ = place
+    taken = []
+    for _ in range(3):
+        start = time.perf_counter()
+        work.solve(screen)
+        taken.append(time.perf_counter() - start)
+    assert min(taken) < 0.1
+
+
+def test_saved_file_is_the_design(place):
+    work, _, _ = place
+    document = work.document
+    saved = work.text()
+    assert document.check(saved, "saved") == document.check(document.base, "base")
+    assert document.opened(saved, "saved") == work.entries
+
+
+def test_wrong_entry_gives_the_sentence_of_the_command_and_keeps_the_last_answer():
+    work = Work(FORKLIFT)
+    work.solve(VEHICLE)
+    before = work.answered["Vehicle"]
+    work.put("stop.speed", "20")
+    assert not work.solve(VEHICLE)
+    assert work.answered["Vehicle"] is before
+    with pytest.raises(ConfigError) as said:
+        parse_forklift(FORKLIFT.base.replace('"20 km/h"', '"20"'))
+    assert work.mistakes["Vehicle"] == {"stop.speed": list(said.value.mistakes)}
+
+
+def test_a_mistake_downstream_does_not_stop_what_is_upstream():
+    work = Work(FORKLIFT)
+    work.put("forces.piston_force", "much")
+    assert work.solve(VEHICLE) and work.solve(KINEMATICS) and not work.solve(FORCES)
+
+
+def test_stale_is_what_follows_from_a_change():
+    work = Work(FORKLIFT)
+    for screen in FORKLIFT.screens:
+        work.solve(screen)
+    work.put("brake.clearance", "9 mm")
+    assert [work.stale(screen) for screen in FORKLIFT.screens] == [False, True, True]
+    work.solve(KINEMATICS)
+    assert [work.stale(screen) for screen in FORKLIFT.screens] == [False, False, True]
+    work.put("brake.clearance", "10.6 mm")
+    assert not work.stale(FORCES)
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_every_named_caliper_has_a_form(name):
+    work = Work(CALIPER)
+    work.put("caliper", name)
+    assert work.solve(CALIPER.screens[0]), work.mistakes
+    assert {e.path.partition(".")[0] for e in work.inputs} >= {"caliper", "dimensions", "run"}
+
+
+def test_core_mistakes_find_their_field():
+    work = Work(FORKLIFT)
+    work.put("brake.contact_angle", "-80 deg")  # the tip meets the drum first
+    assert not work.solve(KINEMATICS)
+    assert list(work.mistakes["Kinematics"]) == ["brake.clearance"]
+
+
+def test_file_of_parts_is_refused_with_what_to_do():
+    text = (EXAMPLES / "calipers" / "toggle-clamp.toml").read_text(encoding="utf-8")
+    with pytest.raises(ConfigError, match="brakes caliper FILE"):
+        CALIPER.opened(text, "toggle-clamp.toml")
+
+
+@pytest.mark.parametrize(
+    "text", ["import os", "[truck]\nfile = '/etc/passwd'", "a = 1\n" * 2, "[[brake]]", "\x00", ""]
+)
+@pytest.mark.parametrize("document", BRAKES.documents, ids=lambda d: d.name)
+def test_hostile_file_is_refused_and_changes_nothing(document, text):
+    work = Work(document)
+    before = dict(work.entries)
+    with pytest.raises(ConfigError):
+        work.open(text, "hostile.toml")
+    assert work.entries == before
+
+
+def test_markup_in_an_entry_stays_text():
+    work = Work(CALIPER)
+    screen = CALIPER.screens[0]
+    work.put("title", "<script>alert(1)</script>")
+    assert work.solve(screen)
+    assert "<script>" not in html(screen.report(work.answered[screen.name].answer))
+    assert "<script>" not in report_of(work, "<script>")
+
+
+def test_report_holds_all_in_one_file():
+    work = Work(FORKLIFT)
+    for screen in FORKLIFT.screens:
+        work.solve(screen)
+    page = report_of(work, "Forklift")
+    assert page.count("data:image/svg+xml") == 3
+    assert "empty_mass" in page and "Warning:" in page
+    assert 'src="http' not in page and "href" not in page
+
+
+def test_sweep_gives_a_row_a_value():
+    work = Work(FORKLIFT)
+    sweeps = VEHICLE.sweeps
+    found = sweeps.run(tables_of(work.entries, work.inputs), "stop.speed=10:30:5 km/h", "distance")
+    rows = [*sweeps.rows(found)]
+    assert rows[0] == ["speed_km_per_h", "distance_m"]
+    work.put("stop.speed", "15 km/h")
+    work.solve(VEHICLE)
+    single = work.answered["Vehicle"].answer.chosen.stop.distance
+    assert rows[2] == pytest.approx([15.0, single], rel=1e-12)  # the same formula on an array
+    assert svg(sweeps.draw(found)).startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    "screen", [s for _, s in PLACES if s.sweeps], ids=[s.name for _, s in PLACES if s.sweeps]
+)
+def test_sweep_to_begin_with_works(screen):
+    document = next(d for d in BRAKES.documents if screen in d.screens)
+    work = Work(document)
+    tables = tables_of(work.needed(screen), work.inputs)
+    assert (
+        len([*screen.sweeps.rows(screen.sweeps.run(tables, screen.sweeps.example, screen.sweeps.results))])
+        > 10
+    )
+
+
+@pytest.mark.parametrize(
+    "path, given",
+    [
+        ("truck.wheelbase", "1e-300 m"),
+        ("truck.empty_mass", "1e300 kg"),
+        ("stop.slope", "89.9999 deg"),
+        ("brake.clearance", "1 um"),
+        ("brake.piston_bottom", "10 m"),
+        ("forces.piston_force", "1e-300 N"),
+        ("shoe.drum_radius", "1e200 m"),
+        ("load.force", "1e300 N"),
+        ("run.finger", "1e300 N"),
+        ("run.travel", "1 km"),
+    ],
+)
+def test_extreme_entries_give_an_answer_or_a_sentence(path, given):
+    for document, screen in PLACES:
+        work = Work(document)
+        if path in work.entries and path.partition(".")[0] in screen.needs:
+            work.put(path, given)
+            if work.solve(screen):
+                answer = work.answered[screen.name].answer
+                assert html(screen.report(answer))
+                assert isinstance(drawn(screen, answer, 1.0), str)
+            else:
+                assert all(said for said in work.mistakes[screen.name].values())
+
+
+# Entries ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("document", BRAKES.documents, ids=lambda d: d.name)
+def test_entries_and_tables_are_the_same_inputs(document):
+    tables = parse(document.base, "base")
+    inputs = document.inputs(tables)
+    assert tables_of(entries_of(tables, inputs), inputs) == tables
+    assert parse(toml_of(tables), "again") == tables
+
+
+def test_empty_fields_are_not_in_the_file():
+    assert "slope_factor" not in Work(FORKLIFT).text()
+
+
+def test_an_entry_cannot_add_a_key():
+    work = Work(FORKLIFT)
+    work.put("stop.friction", "0.7\nmodel = 'as_printed'")
+    assert not work.solve(VEHICLE) or work.answered["Vehicle"].answer.chosen.stop.model == "corrected"
+
+
+@pytest.mark.parametrize(
+    "text, unit, target, expected",
+    [("20 km/h", "m/s", "m/s", "5.555555556 m/s"), ("0.4 m", "m", "mm", "400 mm"), ("x", "m", "mm", "x")],
+)
+def test_another_unit_is_the_same_quantity(text, unit, target, expected):
+    assert in_unit(text, unit, target) == expected
+
+
+def test_mistake_about_no_field_is_kept():
+    assert by_field(["model: something is wrong"], FORKLIFT.inputs({})) == {"": ["model: something is wrong"]}
