@@ -20,7 +20,6 @@ from beamdyn.operators import Space
 FEWEST = 2  # modes that are tried first where none are asked for
 SAMPLED_TIMES = 2001  # at which the speed of a motion is looked at
 _MOST_MODES = 60  # past them the fastest modes take all the time
-_ELSEWHERE = 3  # modes at the speeds before the last
 _DEPENDENT = 1e-10  # share of a shape that is new, below which it is left out
 
 
@@ -104,8 +103,8 @@ def span(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarra
     pencil : SteadyPencil
         Of size n.
     modes : int
-        How many modes at the last speed, and at most three at each of the others: higher modes hardly
-        change with speed.
+        How many modes at the last speed; at each of the others no more than two and half as many, as
+        higher modes hardly change with speed.
     speeds : sequence of float
         Speeds [rad/s].
 
@@ -119,7 +118,7 @@ def span(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarra
     if tuple(speeds) == (0.0,):
         return found[0]
     L = np.linalg.cholesky(pencil.M)
-    all_shapes = np.concatenate([*found[:-1, :, :_ELSEWHERE], found[-1]], axis=1)
+    all_shapes = np.concatenate([*found[:-1, :, : 2 + modes // 2], found[-1]], axis=1)
     directions, size, _ = np.linalg.svd(L.T @ all_shapes, full_matrices=False)
     kept = np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
     return kept @ np.linalg.eigh(kept.T @ pencil.K0 @ kept)[1]
