@@ -133,7 +133,8 @@ def coverage(cases: Sequence[Case]) -> Iterator[Row]:
             np.array([getattr(case, which)[k] for case in answered]) for which in ("stated", "true")
         )
         covered = stated + _ROUNDING >= true
-        over = np.median(stated[true > 0] / true[true > 0])
+        known = (true > 0) & np.isfinite(true) & np.isfinite(stated)
+        over = np.median(stated[known] / true[known])
         yield f"error by {name} covered", f"{covered.mean():.1%}", f"{_BOUND:.0%}"
         yield "... median over-estimate", f"{over:.1f}", ""
         yield "... largest true error, over the largest deflection", f"{true.max():.1e}", ""
