@@ -139,16 +139,17 @@ class _Run:
         self.tips = np.empty((steps + 1, 2, C))
         self.accelerations = np.empty((steps, STAGES, C))
         self.checked = checked_steps(steps)
-        self.states = np.empty((len(self.checked), C, 2 * n + 1))
+        self.states = np.ones((len(self.checked), C, 2 * n + 1))
+        self.reached = np.empty((len(self.checked), C, 2 * n))
         self.converged, self.iterations = True, 2
 
     def advance(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Advance all cases from (q, v), shapes (C, n), to the end of the stretch."""
-        table, h, check = tableau(STAGES), self.h, set(self.checked.tolist())
+        table, h, check = tableau(STAGES), self.h, {k: i for i, k in enumerate(self.checked.tolist())}
         for k, step in enumerate(self._steps(table)):
             self.tips[k] = q @ self.tip, v @ self.tip
             if k in check:
-                self.states[np.searchsorted(self.checked, k)] = np.column_stack([np.ones(len(q)), q, v])
+                self.states[check[k], :, 1:] = np.hstack([q, v])
             if k % _SURVEY == 0:
                 self._survey(step, q, v)
             a = self._solve(step, q, v, self.iterations)[0]
@@ -156,6 +157,8 @@ class _Run:
             flat = a.reshape(STAGES, -1)
             q = q + h * v + h**2 * (table.b2 @ flat).reshape(q.shape)
             v = v + h * (table.b @ flat).reshape(v.shape)
+            if k in check:
+                self.reached[check[k]] = np.hstack([q, v])
         self.tips[self.steps] = q @ self.tip, v @ self.tip
         return q, v
 
@@ -201,7 +204,8 @@ class _Run:
 
     def checks(self, case: int) -> Checks:
         """The checked steps of a case."""
-        return Checks(self.start + self.h * self.checked, self.h, self.steps, self.states[:, case])
+        starts = self.start + self.h * self.checked
+        return Checks(starts, self.h, self.steps, self.states[:, case], self.reached[:, case])
 
 
 @dataclass(frozen=True)

@@ -166,7 +166,7 @@ def sweep(
     Raises
     ------
     ValueError
-        Before any long work: if an argument is out of its range, a speed passes the critical one, the
+        Before any long work, if an argument is out of its range, a speed passes the critical one, the
         store is foreign or cannot be written, or the motion cannot be stored or sent to workers.
     SweepInterrupted
         If the executor breaks; what is finished is in the store.
@@ -181,7 +181,7 @@ def sweep(
     _check_speeds(request := replace(request, kept=kept or _fewest(request, cases)), cases)
     if store is not None or executor is not None or workers > 1:
         _check_sendable(request, importable=workers > 1)
-    tried = _tried(request, cases, Task.run if kept else Task.cheapest)
+    tried = _tried(request, cases, Task.run) if kept else _agreed(request, cases)
     request = replace(request, kept=max((each.task.kept for each in tried), key=lambda kept: kept.modes or 0))
     run = _Run(request, _chunks(cases, chunk), None if store is None else Store(store, _KIND), progress)
     run.collect(executor, workers)
@@ -271,6 +271,17 @@ def _tried(request: Request, speeds: tuple[float, ...], run: Callable[[Task], Tr
     """Runs at the fastest speed, in the middle, and halfway between: they tell what the modes leave out."""
     some = sorted({speeds[k * (len(speeds) - 1) // 4] for k in (2, 3, 4)})
     return [run(request.task(motion)) for motion in request.motions(some)]
+
+
+def _agreed(request: Request, speeds: tuple[float, ...]) -> list[Transient]:
+    """The cheapest of these runs; if their families of modes differ, all in that which leaves out least."""
+    tried = _tried(request, speeds, Task.cheapest)
+    families = {each.task.kept.speeds for each in tried}
+    if len(families) == 1:
+        return tried
+    most = max(each.task.kept.modes or 0 for each in tried)
+    alike = (replace(request, kept=Kept(most, family)) for family in sorted(families))
+    return min((_tried(each, speeds, Task.run) for each in alike), key=_left_out)
 
 
 def _left_out(tried: Sequence[Transient]) -> float:

@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.beam_core import Row, best_time, show
-from brakes import forklift
+from brakes import calipers, forklift
 from brakes.forklift import Levers, Truck, internal_forces
 from brakes.planar import solve, stroke
 from tests import mechanisms
@@ -27,6 +27,9 @@ def planar() -> Iterator[Row]:
     yield "... of them solved away from the drawing as well", str(moved), ""
     time = best_time(lambda: strokes(100), 15)
     yield "stroke of the eeBrake, 100 positions with all reactions [ms]", f"{1e3 * time:.1f}", "50"
+    caliper = calipers.EeBrake().build()
+    time = best_time(lambda: caliper.stroke(3.5e-3, points=100), 15)
+    yield "the same by `brakes.calipers`, with pad forces and advantage [ms]", f"{1e3 * time:.1f}", "50"
 
 
 def strokes(points: int) -> None:

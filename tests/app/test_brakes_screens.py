@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn.common.app.entries import by_field, entries_of, in_unit, tables_of, toml_of
-from beamdyn.common.app.page import report_of
+from beamdyn.common.app.reporting import report_of
 from beamdyn.common.app.session import Work
 from beamdyn.common.app.shown import csv_text, drawn, html, png, svg
 from beamdyn.common.config import ConfigError, parse

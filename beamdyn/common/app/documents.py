@@ -114,6 +114,8 @@ class Screen:
         Its sweeps.
     drags : tuple of Drag
         Sliders in its form.
+    more : callable
+        Further drawings of an answer, each with its title.
     """
 
     name: str
@@ -128,6 +130,7 @@ class Screen:
     slider: Slider | None = None
     sweeps: Sweeps | None = None
     drags: tuple[Drag, ...] = ()
+    more: Callable[[Any], Sequence[tuple[str, Figure]]] = lambda _: ()
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from nicegui import ui
 
 from beamdyn.common.app.documents import Document, Program, Screen
 from beamdyn.common.app.panel import Panel
+from beamdyn.common.app.reporting import report_of
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import STYLE, drawn, html, picture, report_page
+from beamdyn.common.app.shown import STYLE
 from beamdyn.common.config import ConfigError
 
 _LARGEST = 200_000  # bytes of a file that is opened
@@ -213,14 +214,3 @@ class Page:
             if (work := self.works.get(name)) is not None and isinstance(entries, dict):
                 work.entries = {str(path): str(text) for path, text in entries.items()}
                 self._rebuild(work.document)
-
-
-def report_of(work: Work, title: str) -> str:
-    """A report on a document: what is shown of each screen that has an answer to the entries."""
-    parts = []
-    for screen in work.document.screens:
-        if not work.stale(screen):
-            answer = work.answered[screen.name].answer
-            drawing = picture(drawn(screen, answer, 1.0), screen.name)
-            parts.append((screen.name, screen.notes(answer), html(screen.report(answer)), drawing))
-    return report_page(title, work.text(), parts)

@@ -10,7 +10,7 @@ from nicegui import ui
 from beamdyn.common.app.documents import Screen
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import csv_text, drawn, html, picture, png
+from beamdyn.common.app.shown import csv_text, drawn, further, html, picture, png
 from beamdyn.common.app.sweeping import SweepPanel
 
 
@@ -45,6 +45,7 @@ class Panel:
             self._slider()
             self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
             self._tables: Any = ui.html("", sanitize=False).classes("w-full")
+            self._more: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
         self._exports()
         if self.screen.sweeps is not None:
             SweepPanel(self.work, self.screen, self.screen.sweeps)
@@ -127,6 +128,7 @@ class Panel:
     def _show(self) -> None:
         answer = self.work.answered[self.screen.name].answer
         self._tables.set_content(html(self.screen.report(answer)))
+        self._more.set_content(further(self.screen, answer))
         self._draw()
 
     def _draw(self) -> None:

@@ -8,7 +8,6 @@ import io
 import warnings
 from collections.abc import Iterable, Sequence
 from html import escape
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +33,14 @@ def drawn(screen: Screen, answer: object, place: float) -> str:
             return svg(screen.draw(answer, place))
     except (ValueError, ArithmeticError) as error:
         return f"There is no drawing: {error}"
+
+
+def further(screen: Screen, answer: object) -> str:
+    """The further drawings of an answer, each under its title, in HTML."""
+    parts = (
+        f"<h3>{escape(title)}</h3>{picture(svg(figure), title)}" for title, figure in screen.more(answer)
+    )
+    return "\n".join(parts)
 
 
 def png(figure: Figure) -> bytes:
@@ -122,39 +129,3 @@ STYLE = """
 .shown .words { text-align: left; }
 .shown tbody tr:nth-child(even) { background: #f4f4f4; }
 """
-
-
-def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:
-    """A report that needs no other file.
-
-    Parameters
-    ----------
-    title : str
-        Of the report.
-    inputs : str
-        The design as TOML.
-    parts : iterable of (name, warnings, tables, drawing)
-        Of each screen; tables are HTML, drawings are elements as `picture` makes them.
-    """
-    body = "".join(
-        f"<h2>{escape(name)}</h2>{''.join(f'<p><strong>Warning:</strong> {escape(w)}</p>' for w in said)}"
-        f"{drawing}{tables}"
-        for name, said, tables, drawing in parts
-    )
-    page = (
-        "body { font-family: sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; } "
-        "pre { background: #f4f4f4; padding: 1rem; overflow-x: auto; }"
-    )
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width"><style>{page}{STYLE}</style></head>'
-        f'<body class="shown"><h1>{escape(title)}</h1>{body}<h2>Inputs</h2><pre>{escape(inputs)}</pre>'
-        f"<p>beamdyn {escape(_version())}</p></body></html>\n"
-    )
-
-
-def _version() -> str:
-    try:
-        return version("beamdyn")
-    except PackageNotFoundError:
-        return "not installed, run from its source"
