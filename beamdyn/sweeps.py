@@ -8,25 +8,23 @@ from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
 
 from beamdyn import __version__
-from beamdyn.batch import histories
+from beamdyn.cases import DONE, Case, Request, solve
 from beamdyn.common.checks import ascending, count, positive, real, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.common.store import Store, fingerprint
 from beamdyn.common.workers import Workers, one_blas_thread
-from beamdyn.estimate import Model, choose
-from beamdyn.modal import ModalSystem
-from beamdyn.motion import Motion, check_picklable
+from beamdyn.motion import check_picklable
 from beamdyn.operators import Discretization
 from beamdyn.reduction import FEWEST, Kept, range_of_speed
 from beamdyn.scene import Scene
 from beamdyn.spectrum import LARGE_DEFLECTION
-from beamdyn.stepping import TOLERANCES, Trajectory, largest_deflection
+from beamdyn.stepping import TOLERANCES
 from beamdyn.transient import Task, Transient
 
 if TYPE_CHECKING:
@@ -35,7 +33,6 @@ if TYPE_CHECKING:
 _KIND = "beamdyn sweep"
 _VERSIONS = (__version__, np.__version__, scipy.__version__)  # whose bits are stored
 _GRAVITY = 9.81  # past this acceleration [m/s2] a wheel leaves the road
-_DONE = "done"
 
 Progress = Callable[[int, int], object]
 
@@ -197,35 +194,6 @@ def _chunks(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
 # Requests -----------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Request:
-    """What is asked of each case: see `sweep`."""
-
-    scene: Scene
-    window: tuple[float, float]
-    t_end: float
-    tolerance: float
-    discretization: str | Discretization
-    kept: Kept = field(default=Kept(FEWEST))
-
-    def task(self, motion: Motion) -> Task:
-        """One case alone."""
-        scene = replace(self.scene, motion=motion)
-        return Task(
-            scene, self.t_end, self.tolerance, "auto", self.discretization, "rest", None, {}, self.kept
-        )
-
-    def motions(self, speeds: Sequence[float]) -> list[Motion]:
-        """The motion at each speed."""
-        assert self.scene.motion is not None
-        return [self.scene.motion.with_speed(v) for v in speeds]
-
-    def model(self) -> Model:
-        """The discretized scene."""
-        wanted, target = self.kept.modes or 1, 1e-3 * self.tolerance
-        return choose(self.scene, self.discretization, np.array(self.kept.speeds), wanted, target)
-
-
 def _request(
     scene: Scene,
     window: tuple[float, float],
@@ -302,58 +270,6 @@ def _check_sendable(request: Request, importable: bool) -> None:
             "motion: it uses functions or classes defined in the script itself (__main__), which workers "
             "cannot import; define them in a module of their own, or give workers=1"
         )
-
-
-# Cases --------------------------------------------------------------------------------------------
-
-
-class Case(NamedTuple):
-    """The answer of one case: see `Sweep`."""
-
-    peak: float
-    largest: float
-    time_error: float
-    status: str
-
-
-def solve(request: Request, speeds: tuple[float, ...]) -> list[Case]:
-    """Cases of one chunk: together, and alone where that is not as accurate as is asked."""
-    motions = request.motions(speeds)
-    with one_blas_thread(), np.errstate(all="ignore"):
-        return [
-            case if case.time_error <= request.tolerance * case.largest else _alone(request, motion)
-            for case, motion in zip(_together(request, motions), motions, strict=True)
-        ]
-
-
-def _together(request: Request, motions: Sequence[Motion]) -> list[Case]:
-    modal = request.model().modal(request.kept)
-    systems = [ModalSystem(modal.equations, motion) for motion in motions]
-    try:
-        found = histories(systems, modal.tip, request.t_end, request.tolerance)
-    except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return [_failed(str(error))] * len(motions)
-    return [_case(request, *pair) for pair in zip(found.tips, found.time_error, strict=True)]
-
-
-def _alone(request: Request, motion: Motion) -> Case:
-    """One case by `simulate`, which refines its steps until the tolerance is met."""
-    try:
-        run = request.task(motion).run()
-        peak = run.peak(*request.window)
-    except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return _failed(str(error))
-    return Case(peak, run.largest, run.time_error, _DONE) if np.isfinite(peak) else _failed("not finite")
-
-
-def _case(request: Request, path: Trajectory, error: float) -> Case:
-    """The case of a trajectory whose only coordinate is the tip deflection."""
-    peak = largest_deflection(np.ones(1), path, *request.window)
-    return Case(peak, max(peak, float(np.abs(path.samples[1]).max())), float(error), _DONE)
-
-
-def _failed(reason: str) -> Case:
-    return Case(np.nan, np.nan, np.nan, f"failed: {reason}")
 
 
 # Running ------------------------------------------------------------------------------------------
@@ -496,7 +412,7 @@ def _result(
 
 def _warnings(found: Sweep, tolerance: float) -> Iterator[str]:
     speeds, motion, length = found.speeds, found.scene.motion, found.scene.beam.length
-    if (at := speeds[np.array([s != _DONE for s in found.status])]).size:
+    if (at := speeds[np.array([s != DONE for s in found.status])]).size:
         yield f"{len(at)} of {len(speeds)} cases failed, at {_range(at)}: see status"
     if (at := speeds[found.largest > LARGE_DEFLECTION * length]).size:
         yield f"the tip deflects by more than 0.1 of the length at {_range(at)}: outside linear theory"

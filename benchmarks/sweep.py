@@ -16,8 +16,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import beamdyn as bd
+from beamdyn.cases import Request, solve
 from beamdyn.reduction import Kept
-from beamdyn.sweeps import Request, solve
 from benchmarks.beam_core import Row, show
 from tests.scenes import HARVESTER
 
