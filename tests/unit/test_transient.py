@@ -30,6 +30,21 @@ def test_equilibrium_stays() -> None:
     assert np.ptp(run.tip) < 1e-9 * abs(static)
 
 
+@pytest.mark.parametrize(("angle", "initial"), [(0.0, "rest"), (0.3, "equilibrium")])
+def test_what_does_not_move_takes_no_steps(angle: float, initial: str) -> None:
+    still = replace(HARVESTER, mount=bd.Mount(0.215, angle), motion=bd.SteadyRotation(50.0))
+    run = bd.simulate(still, 1e4, initial=initial)
+    assert "no steps" in run.provenance.method
+    assert (run.largest == 0) == (initial == "rest")
+    assert np.ptp(run.tip) <= 1e-12 * run.largest  # rounding
+    for moved in (
+        replace(still, gravity=9.81),
+        replace(still, motion=bd.SpinUp(50.0, 0.1)),
+        replace(still, motion=ROLLING.motion),
+    ):
+        assert "no steps" not in bd.simulate(moved, 0.2, 2, 1e-3, initial=initial).provenance.method
+
+
 def test_energy_is_constant_at_steady_speed() -> None:
     run = bd.simulate(STEADY, 5.0, modes=3)
     piece = run.path.pieces[0]
