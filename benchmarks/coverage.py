@@ -125,15 +125,15 @@ def coverage(cases: Sequence[Case]) -> Iterator[Row]:
         yield f"not covered: scene {case.number}", f"{max(case.true):.1e} > {max(case.stated):.1e}", ""
 
 
-def run(scenes: int, workers: int, seed: int) -> list[Case]:
-    """Measure the cases 0 ... scenes - 1."""
+def run(first: int, scenes: int, workers: int, seed: int) -> list[Case]:
+    """Measure so many cases."""
     with ProcessPoolExecutor(workers) as pool:
-        return list(pool.map(partial(measured, seed=seed), range(scenes), chunksize=8))
+        return list(pool.map(partial(measured, seed=seed), range(first, first + scenes), chunksize=8))
 
 
 def sample() -> Iterator[Row]:
     """The first 200 scenes."""
-    yield from coverage(run(200, 2, SEED))
+    yield from coverage(run(0, 200, 2, SEED))
 
 
 PARTS = (sample,)
@@ -142,10 +142,11 @@ PARTS = (sample,)
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=10_000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--seed", type=int, default=SEED, help="4 was used to fit the estimate of rounding")
     options = parser.parse_args()
-    cases = run(options.scenes, options.workers, options.seed)
+    cases = run(options.first, options.scenes, options.workers, options.seed)
     show("stated errors of frequencies", lambda: coverage(cases))
 
 

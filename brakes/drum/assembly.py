@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from beamdyn.common.results import Result
 from brakes.arrays import Numbers, not_negative, numbers, positive, refuse, together
-from brakes.drum.shoe import Shoe, ShoeResult, lock_message, only_one, solve
+from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, only_one, solve
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
 
 
 @dataclass(frozen=True)
-class BrakeResult(Result):
+class BrakeResult(SlidesOrLocks):
     """Forces in a brake.
 
     Attributes
@@ -83,16 +81,6 @@ class BrakeResult(Result):
     locking_friction: Numbers
     margin: Numbers
     locked: Numbers
-
-    @property
-    def status(self) -> Any:
-        """``"slides"`` or ``"locked"``; an array of these for many cases."""
-        return np.where(self.locked, "locked", "slides")[()]
-
-    @property
-    def message(self) -> str:
-        """What the status means, in one sentence."""
-        return lock_message(self.locked, self.friction, self.locking_friction)
 
 
 def brake_torque(

@@ -156,8 +156,35 @@ def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
     return far * np.sin(angle), far * np.cos(angle)
 
 
+class SlidesOrLocks(Result):
+    """Base of what slides, or grips by itself at enough friction."""
+
+    friction: Numbers
+    locking_friction: Numbers
+    locked: Numbers
+
+    @property
+    def status(self) -> Any:
+        """``"slides"`` or ``"locked"``; an array of these for many cases."""
+        return np.where(self.locked, "locked", "slides")[()]
+
+    @property
+    def message(self) -> str:
+        """What the status means, in one sentence."""
+        locked = np.asarray(self.locked)
+        if not locked.any():
+            return "slides: the friction is below self-locking"
+        where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
+        both = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
+        mu, least = (float(values.flat[0]) for values in both)
+        return (
+            f"locked{where}: friction {mu:.4g} is at or past self-locking, {least:.4g}; the shoe grips by "
+            "itself, and no torque follows from the force"
+        )
+
+
 @dataclass(frozen=True)
-class ShoeResult(Result):
+class ShoeResult(SlidesOrLocks):
     """Forces on a shoe; vectors are in its axes, their components last.
 
     Past self-locking the formulas do not hold: forces, torque and factors are then nan, `locked` is
@@ -201,16 +228,6 @@ class ShoeResult(Result):
     locking_friction: Numbers
     margin: Numbers
     locked: Numbers
-
-    @property
-    def status(self) -> Any:
-        """``"slides"`` or ``"locked"``; an array of these for many cases."""
-        return np.where(self.locked, "locked", "slides")[()]
-
-    @property
-    def message(self) -> str:
-        """What the status means, in one sentence."""
-        return lock_message(self.locked, self.friction, self.locking_friction)
 
     def pressure(self, alpha: Numbers) -> np.ndarray:
         """Pressure at angles alpha [Pa], 0 off the lining; of one case."""
@@ -337,16 +354,3 @@ def only_one(given: dict[str, Any]) -> tuple[str, Any]:
         got = " and ".join(present) or "none"
         raise ValueError(f"give exactly one of {', '.join(given)}; got {got}")
     return next(iter(present.items()))
-
-
-def lock_message(locked: Numbers, friction: Numbers, limit: Numbers) -> str:
-    """One sentence on sliding or locking."""
-    locked = np.asarray(locked)
-    if not locked.any():
-        return "slides: the friction is below self-locking"
-    where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
-    mu, least = (float(np.broadcast_to(x, locked.shape)[locked].flat[0]) for x in (friction, limit))
-    return (
-        f"locked{where}: friction {mu:.4g} is at or past self-locking, {least:.4g}; the shoe grips by "
-        "itself, and no torque follows from the force"
-    )
