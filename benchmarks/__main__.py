@@ -18,6 +18,7 @@ from pathlib import Path
 
 from beamdyn import __version__
 from benchmarks import (
+    app,
     beam_core,
     bounds,
     brakes,
@@ -42,6 +43,7 @@ SECTIONS: dict[str, tuple[Callable[[], Iterator[Row]], ...]] = {
     "Stated errors of transients, a sample (`benchmarks.coverage_transients`)": coverage_transients.PARTS,
     "The whole range of inputs, a sample (`benchmarks.extremes`)": extremes.PARTS,
     "Brakes (`benchmarks.brakes`)": brakes.PARTS,
+    "Screens of the interactive programs (`benchmarks.app`)": app.PARTS,
 }
 README = PAGE.parents[1] / "README.md"
 MARKS = "<!-- measured -->", "<!-- end -->"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import Group
 
+from beamdyn.common.sweeps import Output, Sweep, columns, sweep_rows
 from beamdyn.common.tables import table
-from brakes.config.sweeps import Output, Sweep
 
 if TYPE_CHECKING:
     from brakes.config.forklift import ForkliftAnswer
@@ -210,28 +210,9 @@ def sweep_table(found: Sweep) -> Group:
     rows = [*sweep_rows(found)]
     shown = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), _SHOWN)).round().astype(int))
     part = "" if len(shown) == len(rows) else f" ({len(shown)} of {len(rows)} rows; --csv or --json has all)"
-    heads = [f"{n} [{u}]" if u else n for n, u in _columns(found)]
+    heads = [f"{n} [{u}]" if u else n for n, u in columns(found)]
     cells = ([number(value) for value in rows[i]] for i in shown)
     return table(f"{', '.join(found.results)} over {' and '.join(found.inputs)}{part}", heads, cells, ())
-
-
-def sweep_csv(found: Sweep) -> Iterator[Sequence[object]]:
-    """Rows of a sweep's CSV file, with its heads."""
-    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in _columns(found)]
-    yield from sweep_rows(found)
-
-
-def sweep_rows(found: Sweep) -> Iterator[list[float]]:
-    """Inputs and results, one row a case; the first input changes fastest."""
-    grids = np.meshgrid(*found.values, indexing="xy") if len(found.values) > 1 else found.values
-    columns = [np.ravel(values) for values in (*grids, *found.found)]
-    for row in zip(*(column.tolist() for column in columns), strict=True):
-        yield [*row]
-
-
-def _columns(found: Sweep) -> list[tuple[str, str]]:
-    inputs = (path.rpartition(".")[2] for path in found.inputs)
-    return [*zip(inputs, found.units, strict=True), *zip(found.results, found.result_units, strict=True)]
 
 
 # Numbers ------------------------------------------------------------------------------------------------

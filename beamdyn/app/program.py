@@ -2,112 +2,27 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import critical_speed, frequency_locus, resonance_speeds, steady_response
+from beamdyn.app.inputs import inputs_of, read
+from beamdyn.app.sweeping import frequency_outputs, steady_outputs, sweeps_of
 from beamdyn.common.app.documents import Document, Drag, Program, Screen
-from beamdyn.common.config import validated
-from beamdyn.common.inputs import Input, Quantity, Section, describe
-from beamdyn.config import (
-    RectangularInput,
-    RollingInput,
-    SampledInput,
-    SceneInput,
-    SpinUpInput,
-    SteadyInput,
-    StiffnessInput,
-    parse_scene,
-    scene_from_dict,
-)
+from beamdyn.config import parse_scene
 from beamdyn.plots import mark_critical
 from beamdyn.report import crossings_table, locus_table, steady_table
 from beamdyn.resonance import Crossings
-from beamdyn.scene import Scene
 from beamdyn.spectrum import Locus
 from beamdyn.steady import SteadyResponse
 
 _SPEEDS = 121
-_MOTIONS: dict[str, type[Section]] = {
-    "steady": SteadyInput,
-    "spin_up": SpinUpInput,
-    "sampled": SampledInput,
-    "rolling": RollingInput,
-}
-
-
-class Modes(Quantity):
-    """A number of modes: a whole number."""
-
-    def convert(self, given: object) -> float:
-        """The number."""
-        value = super().convert(given)
-        if value != int(value):
-            raise ValueError(f"{given}: give a whole number")
-        return value
-
-
-class AskedInput(Section):
-    """What is asked of a scene: on the command line these are options."""
-
-    top_speed: Annotated[
-        float, Quantity("rad/s", symbol="omega", meaning="top speed", above=0, remedy='e.g. "150 rad/s"')
-    ]
-    modes: Annotated[float, Modes(symbol="n", meaning="how many modes", least=1, most=8)]
-
-
-# Inputs -------------------------------------------------------------------------------------------------
-
-
-def inputs_of(entries: Mapping[str, str]) -> list[Input]:
-    """Inputs of the alternatives that entries choose: the beam's kind and the motion's."""
-    sections = {_beam(entries), _motion(entries, "motion"), _motion(entries, "motion.rotation")}
-    others = {RectangularInput, StiffnessInput, *_MOTIONS.values()} - sections
-    found: dict[str, Input] = {}
-    for entry in (*describe(AskedInput, "asked."), *describe(SceneInput)):
-        if not _hidden(entry, entries, others):
-            found.setdefault(entry.path, entry)
-    kinds = tuple(_MOTIONS)
-    for path, choices in (("motion.kind", kinds), ("motion.rotation.kind", kinds[:3])):
-        if path in found:
-            found[path] = dataclasses.replace(found[path], choices=choices, required=False, default=None)
-    return [*found.values()]
-
-
-def _hidden(entry: Input, entries: Mapping[str, str], others: set[Any]) -> bool:
-    if entry.path == "motion.kind":
-        return False
-    rolls = _motion(entries, "motion") is RollingInput
-    if entry.path.startswith(("motion.rotation.", "motion.road.")) and not rolls:
-        return True
-    if entry.path == "motion.rotation.kind":
-        return False
-    of_rotation = entry.path.startswith("motion.rotation.")
-    own = _motion(entries, "motion.rotation" if of_rotation else "motion")
-    if entry.section in _MOTIONS.values():
-        return entry.section is not own
-    return entry.section in others
-
-
-def _beam(entries: Mapping[str, str]) -> type[Section]:
-    given = {path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text}
-    own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
-    return StiffnessInput if given & own else RectangularInput
-
-
-def _motion(entries: Mapping[str, str], table: str) -> type[Section] | None:
-    kind = entries.get(f"{table}.kind", "")
-    moves = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-    return _MOTIONS.get(kind or ("steady" if moves else ""))
-
-
 # Screens ------------------------------------------------------------------------------------------------
 
 
@@ -121,19 +36,9 @@ class Spectrum:
     refused: str
 
 
-def _read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
-    rest = {name: table for name, table in tables.items() if name != "asked"}
-    asked = validated(_Asked, {"asked": tables.get("asked", {})}, "asked").asked
-    return scene_from_dict(rest), asked.top_speed, int(asked.modes)
-
-
-class _Asked(Section):
-    asked: AskedInput
-
-
 def solve_spectrum(tables: Mapping[str, Any]) -> Spectrum:
     """The locus, and where the scene's motion excites a mode."""
-    scene, top, modes = _read(tables)
+    scene, top, modes = read(tables)
     found = frequency_locus(scene, np.linspace(0.0, top, _SPEEDS), modes)
     crossings, refused = None, ""
     if scene.motion is not None:
@@ -174,7 +79,7 @@ def rows_spectrum(found: Spectrum) -> Iterable[Sequence[object]]:
 
 def solve_steady(tables: Mapping[str, Any]) -> SteadyResponse:
     """The steady response over speed."""
-    scene, top, modes = _read(tables)
+    scene, top, modes = read(tables)
     if scene.motion is None:
         raise ValueError("motion.kind: missing; choose the motion that excites the beam")
     return steady_response(scene, np.linspace(top / _SPEEDS, top, 2 * _SPEEDS), modes)
@@ -210,6 +115,7 @@ LOCUS = Screen(
     draw_spectrum,
     notes_spectrum,
     rows_spectrum,
+    sweeps=sweeps_of(frequency_outputs, "mount.setting_angle=0:180:31 deg", "frequency_1"),
     drags=_DRAGS,
 )
 STEADY = Screen(
@@ -222,6 +128,7 @@ STEADY = Screen(
     draw_steady,
     lambda found: found.warnings,
     rows_steady,
+    sweeps=sweeps_of(steady_outputs, "beam.thickness=0.2:0.3:21 mm", "amplitude"),
     drags=_DRAGS,
 )
 SCENE = Document(

@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from beamdyn.cli.program import app
+from beamdyn.common.app.server import add_command
+
+if TYPE_CHECKING:
+    from beamdyn.common.app.documents import Program
 
 
-@app.command(name="app")
-def interactive(
-    *,
-    port: int = 8080,
-    host: str = "127.0.0.1",
-    browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
-) -> None:
-    """The interactive program: frequencies and steady response of a beam in the browser. Ctrl-C ends it.
-
-    Parameters
-    ----------
-    port
-        Port to serve on.
-    host
-        Address to serve on; only this computer can reach the usual one.
-    browser
-        Open the browser.
-    """
-    from beamdyn.common.app.server import serve
-
-    serve(_program, host, port, browser)
-
-
-def _program():
+def _program() -> Program:
     from beamdyn.app.program import BEAMDYN
 
     return BEAMDYN
+
+
+add_command(
+    app,
+    _program,
+    port=8080,
+    about="The interactive program: frequencies and steady response of a beam in the browser.",
+)

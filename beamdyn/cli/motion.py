@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import Method, SceneFile, Text, parse_positive, parse_speeds, parse_window
-from beamdyn.common.outputs import NO_FILES, Outputs, write
+from beamdyn.common.outputs import NO_FILES, Outputs, on_axes, write
 from beamdyn.common.program import Interrupted, NoAnswer
 
 if TYPE_CHECKING:
@@ -71,7 +71,8 @@ def simulate(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from beamdyn.report import transient_table
     from beamdyn.transient import simulate
 
@@ -79,9 +80,13 @@ def simulate(
     end = parse_positive("--t-end", t_end, "s")
     stretch = None if window is None else parse_window(window, end)
     loaded = load_scene(scene)
+    asked = Question.on_file(
+        "beamdyn simulate", scene, t_end=t_end, modes=modes, tolerance=tolerance, method=method,
+        discretization=discretization, window=window,
+    )  # fmt: skip
     run = simulate(loaded, end, modes, tolerance, method, discretization)
-    console().print(transient_table(run, stretch))
-    write(run, outputs, _transient_csv(run), run.plot)
+    show(tables := [transient_table(run, stretch)])
+    write(run, outputs, _transient_csv(run), on_axes(run.plot), Report(asked, tables))
     _write_close_up(run, stretch or (0.0, end), series, animation, outputs.force)
 
 
@@ -114,14 +119,19 @@ def resonances(
         Files to write.
     """
     from beamdyn import load_scene, resonance_speeds
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from beamdyn.report import crossings_table
 
     outputs.check()
     top = parse_positive("--top-speed", top_speed, "rad/s")
+    asked = Question.on_file(
+        "beamdyn resonances", scene, top_speed=top_speed, modes=modes, order=order, method=method
+    )
     found = resonance_speeds(load_scene(scene), top, modes, order, method)
-    console().print(crossings_table(found))
-    write(found, outputs, _crossings_csv(found), found.plot)
+    show(tables := [crossings_table(found)])
+    report = Report(asked, tables, found.warnings)
+    write(found, outputs, _crossings_csv(found), on_axes(found.plot), report)
     warn(found.warnings)
 
 
@@ -154,17 +164,24 @@ def steady(
         Files to write.
     """
     from beamdyn import load_scene, steady_response
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from beamdyn.report import steady_table
 
     outputs.check()
-    asked = parse_speeds(speeds)
-    found = steady_response(load_scene(scene), asked, modes, tolerance=tolerance, method=method)
-    console().print(steady_table(found))
-    write(found, outputs, _steady_csv(found), found.plot)
+    given = parse_speeds(speeds)
+    asked = Question.on_file(
+        "beamdyn steady", scene, speeds=speeds, modes=modes, tolerance=tolerance, method=method
+    )
+    found = steady_response(load_scene(scene), given, modes, tolerance=tolerance, method=method)
+    none = f"at none of {len(given)} speeds is there a steady response: {found.status[0]}"
+    refusal = [] if found.stable.any() else [none]
+    show(tables := [steady_table(found)])
+    report = Report(asked, tables, [*found.warnings, *refusal])
+    write(found, outputs, _steady_csv(found), on_axes(found.plot), report)
     warn(found.warnings)
-    if not found.stable.any():
-        raise NoAnswer(f"at none of {len(asked)} speeds is there a steady response: {found.status[0]}")
+    if refusal:
+        raise NoAnswer(none)
 
 
 @app.command
@@ -205,16 +222,20 @@ def sweep(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from beamdyn.report import sweep_table
     from beamdyn.sweeps import sweep
 
     outputs.check()
-    asked, stretch, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
-    with _executor(scheduler) as executor, _progress(len(asked), store) as progress:
+    given, stretch, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
+    asked = Question.on_file(
+        "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
+    )
+    with _executor(scheduler) as executor, _progress(len(given), store) as progress:
         found = sweep(
             loaded,
-            asked,
+            given,
             stretch,
             modes=modes,
             tolerance=tolerance,
@@ -223,8 +244,9 @@ def sweep(
             store=store,
             progress=progress,
         )
-    console().print(sweep_table(found))
-    write(found, outputs, _sweep_csv(found), found.plot)
+    show(tables := [sweep_table(found)])
+    report = Report(asked, tables, found.warnings)
+    write(found, outputs, _sweep_csv(found), on_axes(found.plot), report)
     warn(found.warnings)
 
 

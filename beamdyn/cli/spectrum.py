@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import Method, SceneFile, Text, asked_speed, parse_positive, parse_speeds
-from beamdyn.common.outputs import NO_FILES, Flag, Outputs, write
+from beamdyn.common.outputs import NO_FILES, Flag, Outputs, on_axes, write
 from beamdyn.common.program import NoAnswer
 
 if TYPE_CHECKING:
@@ -50,18 +50,25 @@ def modes(
         Files to write.
     """
     from beamdyn import load_scene, natural_modes
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from beamdyn.report import modes_table
 
     outputs.check(shapes=shapes)
     loaded = load_scene(scene)
+    asked = Question.on_file(
+        "beamdyn modes", scene, speed=speed, modes=modes, method=method, tolerance=tolerance
+    )
     found = natural_modes(loaded, asked_speed(loaded, speed), modes, method, tolerance)
-    console().print(modes_table(found))
-    write(found, outputs, _modes_csv(found), found.plot)
+    warnings, refusal = [w for w in found.warnings if not w.startswith("unstable")], _unstable(found)
+    show(tables := [modes_table(found)])
+    report = Report(asked, tables, [*warnings, *refusal])
+    write(found, outputs, _modes_csv(found), on_axes(found.plot), report)
     if shapes is not None:
         _write_shapes(found, shapes, outputs.force)
-    warn(w for w in found.warnings if not w.startswith("unstable"))
-    _refuse_unstable(found)
+    warn(warnings)
+    if refusal:
+        raise NoAnswer(refusal[0])
 
 
 @app.command
@@ -93,14 +100,19 @@ def locus(
         Files to write.
     """
     from beamdyn import frequency_locus, load_scene
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from beamdyn.report import locus_table
 
     outputs.check()
-    asked = parse_speeds(speeds)
-    found = frequency_locus(load_scene(scene), asked, modes, method, tolerance)
-    console().print(locus_table(found))
-    write(found, outputs, _locus_csv(found), partial(_draw_locus, found))
+    given = parse_speeds(speeds)
+    asked = Question.on_file(
+        "beamdyn locus", scene, speeds=speeds, modes=modes, method=method, tolerance=tolerance
+    )
+    found = frequency_locus(load_scene(scene), given, modes, method, tolerance)
+    show(tables := [locus_table(found)])
+    report = Report(asked, tables, found.warnings)
+    write(found, outputs, _locus_csv(found), on_axes(partial(_draw_locus, found)), report)
     warn(found.warnings)
 
 
@@ -233,14 +245,14 @@ def _locus_csv(found: Locus) -> Iterator[Sequence[object]]:
         yield speed, *(value for row in rows for value in row)
 
 
-def _refuse_unstable(found: Modes) -> None:
-    """Say which mode grows, and from what speed on the beam does."""
+def _unstable(found: Modes) -> list[str]:
+    """The sentence that says which mode grows, and from what speed on the beam does; none if none grows."""
     from beamdyn import critical_speed
 
     grows = [i for i, status in enumerate(found.status) if status in ("divergence", "flutter")]
     if not grows:
-        return
+        return []
     which = ", ".join(f"mode {i + 1} ({found.status[i]}, {found.growth_rate[i]:.4g} 1/s)" for i in grows)
     critical = critical_speed(found.scene)
     where = f"; the critical speed is {critical:.6g} rad/s" if critical <= found.speed else ""
-    raise NoAnswer(f"unstable at {found.speed:g} rad/s: {which}{where}")
+    return [f"unstable at {found.speed:g} rad/s: {which}{where}"]

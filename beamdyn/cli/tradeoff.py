@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import SceneFile, Text, parse_positive, parse_speed
-from beamdyn.common.outputs import NO_FILES, Outputs, write
+from beamdyn.common.outputs import NO_FILES, Outputs, on_axes, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +46,8 @@ def tradeoff(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.common.tables import console, progress_bar
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import progress_bar, show
     from beamdyn.tradeoffs import tradeoff
 
     outputs.check()
@@ -54,12 +55,12 @@ def tradeoff(
     end = None if t_end is None else parse_positive("--t-end", t_end, "s")
     limit = parse_positive("--budget", budget, "s")
     loaded = load_scene(scene)
+    asked = Question.on_file("beamdyn tradeoff", scene, speed=speed, modes=modes, t_end=t_end, budget=budget)
     with progress_bar("measuring") as progress:
         found = tradeoff(loaded, given, modes, end, limit, progress)
-    screen = console()
-    for diagram in found.diagrams:
-        screen.print(_table(diagram))
-    write(found, outputs, _csv(found), lambda ax: _draw(found, ax))
+    show(tables := [_table(diagram) for diagram in found.diagrams])
+    report = Report(asked, tables, found.warnings)
+    write(found, outputs, _csv(found), on_axes(lambda ax: _draw(found, ax)), report)
     warn(found.warnings)
 
 

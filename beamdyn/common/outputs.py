@@ -12,13 +12,16 @@ from cyclopts import Parameter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+    from beamdyn.common.reports import Report
     from beamdyn.common.results import Result
 
 Flag = Annotated[bool, Parameter(negative="")]
 
 _SUFFIXES = {
     "plot": (".png", ".svg", ".pdf"),
+    "report": (".html", ".htm"),
     "shapes": (".vtu", ".vtk"),
     "series": (".xdmf",),
     "animation": (".gif",),
@@ -38,6 +41,8 @@ class Outputs:
         Write the result with its error estimate and provenance into this file.
     csv : Path, optional
         Write a table for other programs into this file.
+    report : Path, optional
+        Write inputs, results, drawings and warnings into this file, which needs no other: .html.
     force : bool
         Overwrite files that exist.
     """
@@ -45,11 +50,13 @@ class Outputs:
     plot: Path | None = None
     json: Path | None = None
     csv: Path | None = None
+    report: Path | None = None
     force: Flag = False
 
     def check(self, **more: Path | None) -> None:
         """Refuse, before anything is computed, a file that cannot be written."""
-        paths = {"plot": self.plot, "json": self.json, "csv": self.csv, **more}
+        own = {"plot": self.plot, "json": self.json, "csv": self.csv, "report": self.report}
+        paths = {**own, **more}
         given = {option: path for option, path in paths.items() if path is not None}
         for option, path in given.items():
             _check_output(option, path, self.force)
@@ -64,7 +71,8 @@ def write(
     found: Result,
     outputs: Outputs,
     rows: Iterable[Sequence[object]] = (),
-    draw: Callable[[Axes], object] | None = None,
+    draw: Callable[[], Figure] | None = None,
+    report: Report | None = None,
 ) -> None:
     """Write what was asked for; `rows` are those of the CSV file, `draw` makes the picture."""
     if outputs.json is not None:
@@ -74,18 +82,25 @@ def write(
     if outputs.csv is not None:
         with outputs.csv.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
+    if outputs.report is not None and draw is not None and report is not None:
+        outputs.report.write_text(report.page(draw), encoding="utf-8")
     if outputs.plot is not None and draw is not None:
-        _save(draw, outputs.plot, outputs.force)
+        from beamdyn.common.pictures import save_figure
+
+        save_figure(draw(), outputs.plot, outputs.force)
 
 
-def _save(draw: Callable[[Axes], object], path: Path, force: bool) -> None:
-    from matplotlib.figure import Figure
+def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
+    """What makes a figure of its own for something that draws on axes."""
 
-    from beamdyn.common.pictures import save_figure
+    def made() -> Figure:
+        from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-    draw(figure.subplots())
-    save_figure(figure, path, force)
+        figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+        draw(figure.subplots())
+        return figure
+
+    return made
 
 
 def _check_output(option: str, path: Path, force: bool) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 from rich import box
-from rich.console import Console, Group
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -20,6 +20,13 @@ def console() -> Console:
     """Where reports are printed: standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     return Console(width=width, markup=False, highlight=False, emoji=False)
+
+
+def show(parts: Iterable[RenderableType]) -> None:
+    """Print tables and sentences on standard output."""
+    screen = console()
+    for part in parts:
+        screen.print(part)
 
 
 @contextmanager

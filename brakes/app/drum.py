@@ -11,12 +11,12 @@ from rich.console import RenderableType
 from beamdyn.common.app.documents import Document, Screen, Sweeps
 from beamdyn.common.inputs import describe
 from brakes.app.bases import base
+from brakes.app.handles import of_drum
 from brakes.config.drum import DrumInput, drum_from_dict, parse_drum
 from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
-from brakes.drawings.curves import sweep_figure
 from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult
-from brakes.report import drum_outputs, drum_tables, outputs_csv, sweep_csv
+from brakes.report import drum_outputs, drum_tables, outputs_csv
 
 
 def solve(tables: Mapping[str, Any]) -> BrakeResult:
@@ -64,13 +64,12 @@ DRUM = Document(
             draw,
             notes,
             lambda found: outputs_csv(drum_outputs(len(found.shoes)), value=found),
+            handles=lambda found, _: of_drum(found),
             sweeps=Sweeps(
-                tuple(output.name for output in drum_outputs()),
+                lambda _: [output.name for output in drum_outputs()],
                 "brake.friction=0.1:0.6:26",
                 "torque,c_star",
                 run_sweep,
-                sweep_figure,
-                sweep_csv,
             ),
         ),
     ),

@@ -11,9 +11,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.documents import Document, Screen, Slider, Sweeps
+from beamdyn.common.app.documents import Document, Handle, Screen, Slider, Sweeps
 from beamdyn.common.inputs import describe
 from brakes.app.bases import base
+from brakes.app.handles import of_duo_servo, of_truck
 from brakes.config.forklift import (
     ForkliftAnswer,
     ForkliftInput,
@@ -22,7 +23,6 @@ from brakes.config.forklift import (
     parse_forklift,
 )
 from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
-from brakes.drawings.curves import sweep_figure
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import truck
 from brakes.report import (
@@ -30,7 +30,6 @@ from brakes.report import (
     forklift_outputs,
     kinematics_tables,
     outputs_csv,
-    sweep_csv,
     vehicle_table,
 )
 
@@ -127,6 +126,18 @@ def draw_forces(found: Both, _: float = 0.0) -> Figure:
     return figure
 
 
+def vehicle_handles(found: Both, _: float) -> Sequence[Handle]:
+    """Points of the truck."""
+    assert found.chosen.stop is not None
+    return of_truck(found.chosen.stop)
+
+
+def kinematics_handles(found: Both, progress: float) -> Sequence[Handle]:
+    """Points of the brake."""
+    assert found.chosen.motion is not None
+    return of_duo_servo(found.chosen.motion, progress)
+
+
 # Sweeps -------------------------------------------------------------------------------------------------
 
 
@@ -139,8 +150,8 @@ def run_sweep(stage: StageName, tables: Mapping[str, Any], text: str, results: s
 
 
 def _sweeps(stage: StageName, example: str, results: str) -> Sweeps:
-    names = tuple(output.name for output in forklift_outputs((stage,)))
-    return Sweeps(names, example, results, partial(run_sweep, stage), sweep_figure, sweep_csv)
+    names = [output.name for output in forklift_outputs((stage,))]
+    return Sweeps(lambda _: names, example, results, partial(run_sweep, stage))
 
 
 VEHICLE = Screen(
@@ -153,6 +164,7 @@ VEHICLE = Screen(
     draw_vehicle,
     notes,
     partial(rows, "vehicle"),
+    handles=vehicle_handles,
     sweeps=_sweeps("vehicle", "stop.speed=10:30:21 km/h", "distance"),
 )
 KINEMATICS = Screen(
@@ -165,6 +177,7 @@ KINEMATICS = Screen(
     draw_kinematics,
     notes,
     partial(rows, "kinematics"),
+    handles=kinematics_handles,
     slider=Slider("stage", ("at rest", "linings on the drum", "piston at its bottom")),
     sweeps=_sweeps("kinematics", "brake.clearance=8:11:16 mm", "drum_turn,left_travel"),
 )

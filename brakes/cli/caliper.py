@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from beamdyn.common.outputs import NO_FILES, Flag, Outputs, write
 from beamdyn.common.program import NoAnswer
 from brakes.cli.program import app, warn
+from brakes.cli.sweeps import Results, Sweeps, axes_of, show_sweep
+
+if TYPE_CHECKING:
+    from beamdyn.common.sweeps import Sweep
 
 
 @app.command
@@ -19,6 +24,8 @@ def caliper(
     *,
     free_bodies: Path | None = None,
     animation: Path | None = None,
+    sweep: Sweeps = (),
+    result: Results = None,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -34,28 +41,57 @@ def caliper(
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
         Write an animation of the stroke: .gif.
+    sweep
+        An input and its values: KEY=start:stop:count unit, e.g. "clearance=1:2:11 mm" or
+        "dimensions.pad.y=-55:-45:11 mm"; twice for two inputs.
+    result
+        Results of a sweep, separated by commas, such as "finger_travel,right_advantage"; a wrong name
+        lists all.
     list_
         List the named calipers and their dimensions instead.
     outputs
         Files to write.
     """
     from beamdyn.common.pictures import save_figure
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import console, show
     from brakes.cli import caliper_answers
+    from brakes.config.mechanism import mechanism_from_dict
 
     if list_:
         caliper_answers.write_names(console())
         return
     outputs.check(**{"free-bodies": free_bodies, "animation": animation})
-    answer = caliper_answers.answer_of(mechanism)
-    answer.show(console())
-    write(answer, outputs, answer.rows())
-    if outputs.plot is not None:
-        save_figure(answer.figure(), outputs.plot, outputs.force)
+    design, text = caliper_answers.design_of(mechanism)
+    asked = Question.of("brakes caliper", mechanism, text, sweep=sweep, result=result)
+    if sweep:
+        swept = _swept(design, mechanism, sweep, result)
+        show_sweep(swept, outputs, asked, swept.warnings)
+        warn(swept.warnings)
+        return
+    if result is not None:
+        raise ValueError("--result goes with --sweep: without one, all results are shown")
+    answer = caliper_answers.answer_to(mechanism_from_dict(design, mechanism))
+    refusal = [] if answer.status == "determined" else [answer.message]
+    show(tables := answer.tables())
+    more = [("Free bodies", answer.free_bodies)]
+    report = Report(asked, tables, [*refusal, *answer.warnings], more)
+    write(answer, outputs, answer.rows(), answer.figure, report)
     if free_bodies is not None:
         save_figure(answer.free_bodies(), free_bodies, outputs.force)
     if animation is not None:
         answer.animate(animation, outputs.force)
     warn(answer.warnings)
-    if answer.status != "determined":
+    if refusal:
         raise NoAnswer(answer.message)
+
+
+def _swept(design: Mapping[str, Any], source: str, texts: Sweeps, names: Results) -> Sweep:
+    from beamdyn.common.sweeps import chosen, numbers, one_by_one, parse_axis
+    from brakes.cli.caliper_sweeps import outputs_of, solve
+    from brakes.config.mechanism_inputs import inputs_of_tables
+
+    known = outputs_of(design, source)
+    inputs = numbers(inputs_of_tables(design))
+    axes = axes_of(texts, lambda text: parse_axis(inputs, text))
+    return one_by_one(design, axes, chosen(known, names or known[0].name), solve)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,15 +11,16 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from rich.console import Console
+from rich.console import Console, RenderableType
 
-from beamdyn.common.config import ConfigError
+from beamdyn.common.config import ConfigError, parse, read
 from beamdyn.common.program import NoAnswer
 from beamdyn.common.results import Result
 from beamdyn.common.tables import table
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction
 from brakes.cli.mechanism_answers import MechanismAnswer, animate_stroke, reactions_table, some_rows, verdict
-from brakes.config.mechanism import CaliperInput, MechanismInput, load_mechanism, named
+from brakes.config.mechanism import CaliperInput, MechanismInput
+from brakes.config.mechanism_inputs import named_text
 from brakes.drawings.caliper import caliper_figure
 from brakes.drawings.mechanism import free_body_diagrams
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
@@ -27,17 +28,14 @@ from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 
 
-def answer_of(name_or_file: str) -> CaliperAnswer | MechanismAnswer:
-    """The answer to a file or to the name of a caliper.
+def answer_to(given: CaliperInput | MechanismInput) -> Answer:
+    """The answer to a caliper or a mechanism.
 
     Raises
     ------
-    ConfigError
-        If there is no such name or file, or the file does not describe a mechanism.
     NoAnswer
         If the mechanism cannot be assembled, does not reach the end of its stroke, or has not one motion.
     """
-    given = _given(name_or_file)
     core = given.core
     try:
         return CaliperAnswer.of(core, given) if isinstance(core, Caliper) else MechanismAnswer.of(core, given)
@@ -49,13 +47,21 @@ def answer_of(name_or_file: str) -> CaliperAnswer | MechanismAnswer:
         raise
 
 
-def _given(name_or_file: str) -> CaliperInput | MechanismInput:
+def design_of(name_or_file: str) -> tuple[Mapping[str, Any], str]:
+    """Tables of a file, or of the caliper of a name, and their text.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such name or file, or it is not TOML.
+    """
     if name_or_file in NAMED:
-        return named(name_or_file)
+        return {"caliper": name_or_file}, named_text(name_or_file)
     if not name_or_file or ("." not in name_or_file and not Path(name_or_file).exists()):
         known = f"give a TOML file or one of {', '.join(NAMED)}"
         raise ConfigError(name_or_file or "no mechanism", [f"there is no such caliper; {known}"])
-    return load_mechanism(name_or_file)
+    text = read(name_or_file)
+    return parse(text, name_or_file), text
 
 
 def _mobility(core: Caliper | Mechanism) -> int:
@@ -139,18 +145,17 @@ class CaliperAnswer(Result):
             return None
         return self.given.stop.with_force(float(self.run.pad_force[-1].mean()))
 
-    def show(self, screen: Console) -> None:
-        """Print the tables."""
+    def tables(self) -> list[RenderableType]:
+        """Tables and sentences for people."""
         run = self.run
-        screen.print(
+        return [
             f"{run.caliper}: {run.finger_force:g} N on the hand lever, lever ratio {run.lever_ratio:g}, "
-            f"{run.tension:g} N in the cable"
-        )
-        screen.print(table(_STROKE, *self._stroke_table()))
-        screen.print(reactions_table(self.closed, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"))
-        for sentence in self._sentences():
-            screen.print(sentence)
-        screen.print(verdict(self.closed, run.message, run.virtual_work.max()))
+            f"{run.tension:g} N in the cable",
+            table(_STROKE, *self._stroke_table()),
+            reactions_table(self.closed, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
+            *self._sentences(),
+            verdict(self.closed, run.message, run.virtual_work.max()),
+        ]
 
     def _stroke_table(self) -> tuple[Sequence[str], list[list[str]]]:
         heads = (
@@ -167,7 +172,7 @@ class CaliperAnswer(Result):
         for k in some_rows(len(run.cable)):
             lengths = (run.cable[k], run.finger[k], *run.pad_travel[k])
             ratios = (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])
-            rows.append([f"{1e3 * v:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios])
+            rows.append([f"{np.round(1e3 * v, 4) + 0.0:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios])
         return heads, rows
 
     def _sentences(self) -> Iterator[str]:
@@ -219,3 +224,6 @@ class CaliperAnswer(Result):
     def animate(self, path: Path, force: bool) -> None:
         """Write the stroke as GIF."""
         animate_stroke(self.run.motion, path, force)
+
+
+Answer = CaliperAnswer | MechanismAnswer

@@ -7,10 +7,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.common.outputs import NO_FILES, Outputs
+from beamdyn.common.outputs import NO_FILES, Outputs, write
 from beamdyn.common.program import NoAnswer
 from brakes.cli.program import app, warn
-from brakes.cli.sweeps import Results, Sweeps, run_sweep, save, show_sweep
+from brakes.cli.sweeps import Results, Sweeps, run_sweep, show_sweep
 
 DrumFile = Annotated[Path, Parameter(name="DRUM.toml")]
 _SWEPT = "torque,c_star,peak_pressure"
@@ -35,25 +35,30 @@ def drum(
     outputs
         Files to write.
     """
-    from beamdyn.common.tables import console
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.sweeps import chosen
+    from beamdyn.common.tables import show
     from brakes.config.drum import load_drum
-    from brakes.config.sweeps import chosen
     from brakes.drawings.drum import brake_figure
     from brakes.report import drum_outputs, drum_tables, outputs_csv
 
     outputs.check()
     design = load_drum(file)
+    asked = Question.on_file("brakes drum", file, sweep=sweep, result=result)
     known = drum_outputs(len(design.core.shoes))
     wanted = chosen(known, result or _SWEPT)
     if sweep:
         swept, cases = run_sweep(design, sweep, wanted, lambda d: d.solve())
-        show_sweep(swept, outputs)
-        warn([cases.message] if cases.locked.any() else [])
+        warnings = [cases.message] if cases.locked.any() else []
+        show_sweep(swept, outputs, asked, warnings)
+        warn(warnings)
         return
     if result is not None:
         raise ValueError("--result goes with --sweep: without one, all results are shown")
     found = design.solve()
-    console().print(drum_tables(found))
-    save(found, outputs, outputs_csv(known, value=found), lambda: brake_figure(found))
-    if found.locked:
+    refusal = [found.message] if found.locked else []
+    show(tables := [drum_tables(found)])
+    report = Report(asked, tables, refusal)
+    write(found, outputs, outputs_csv(known, value=found), lambda: brake_figure(found), report)
+    if refusal:
         raise NoAnswer(found.message)

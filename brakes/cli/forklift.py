@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from beamdyn.common.outputs import NO_FILES, Outputs
+from beamdyn.common.outputs import NO_FILES, Outputs, write
 from beamdyn.common.program import NoAnswer
 from brakes.cli.program import app, warn
-from brakes.cli.sweeps import Results, Sweeps, run_sweep, save, show_sweep
+from brakes.cli.sweeps import Results, Sweeps, run_sweep, show_sweep
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from beamdyn.common.reports import Report
+    from beamdyn.common.sweeps import Sweep
     from brakes.config.forklift import ForkliftAnswer, ForkliftInput, StageName
-    from brakes.config.sweeps import Sweep
 
 ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
 StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
@@ -57,24 +60,29 @@ def forklift(
     outputs
         Files to write.
     """
+    from beamdyn.common.reports import Question, Report
+    from beamdyn.common.tables import show
     from brakes.config.forklift import load_forklift
 
     outputs.check()
     design = load_forklift(file)
+    asked = Question.on_file("brakes forklift", file, stage=stage, model=model, sweep=sweep, result=result)
     stages = design.stages if stage == "all" else (stage,)
     if sweep:
         swept, cases = _swept(design, stages, model, sweep, result)
-        show_sweep(swept, outputs)
-        warn((*cases.warnings, *cases.refusals))
+        show_sweep(swept, outputs, asked, warnings := (*cases.warnings, *cases.refusals))
+        warn(warnings)
         return
     if result is not None:
         raise ValueError("--result goes with --sweep: without one, all results are shown")
     found = _answers(design, stages, model)
-    _show(found)
-    _save(found, stages, outputs)
-    warn(dict.fromkeys(w for answer in found.values() for w in answer.warnings))
-    if refused := [sentence for answer in found.values() for sentence in answer.refusals]:
-        raise NoAnswer("; ".join(dict.fromkeys(refused)))
+    warnings = [*dict.fromkeys(w for answer in found.values() for w in answer.warnings)]
+    refusals = [*dict.fromkeys(sentence for answer in found.values() for sentence in answer.refusals)]
+    show(tables := _tables(found))
+    _write(found, stages, outputs, Report(asked, tables, [*warnings, *refusals]))
+    warn(warnings)
+    if refusals:
+        raise NoAnswer("; ".join(refusals))
 
 
 def _answers(
@@ -96,7 +104,7 @@ def _swept(
     texts: Sweeps,
     names: Results,
 ) -> tuple[Sweep, ForkliftAnswer]:
-    from brakes.config.sweeps import chosen
+    from beamdyn.common.sweeps import chosen
     from brakes.report import forklift_outputs
 
     if model == "both":
@@ -105,25 +113,26 @@ def _swept(
     return run_sweep(design, texts, wanted, lambda d: d.solve(stages, model))
 
 
-def _show(found: dict[str, ForkliftAnswer]) -> None:
-    from beamdyn.common.tables import console
+def _tables(found: dict[str, ForkliftAnswer]) -> list[RenderableType]:
     from brakes.report import forces_table, kinematics_tables, vehicle_table
 
-    answers, screen = [*found.values()], console()
+    answers, tables = [*found.values()], []
     first = answers[0]
     stops = [answer.stop for answer in answers if answer.stop is not None]
     if stops:
-        screen.print(vehicle_table(stops))
+        tables.append(vehicle_table(stops))
     if first.motion is not None and first.kinematics is not None:
-        screen.print(kinematics_tables(first.motion, first.kinematics))
+        tables.append(kinematics_tables(first.motion, first.kinematics))
     if first.forces is not None:
         differ = first.torque_from == "the stop"
-        screen.print(
-            forces_table(answers if differ else answers[:1], [name.replace("_", " ") for name in found])
-        )
+        heads = [name.replace("_", " ") for name in found]
+        tables.append(forces_table(answers if differ else answers[:1], heads))
+    return tables
 
 
-def _save(found: dict[str, ForkliftAnswer], stages: tuple[StageName, ...], files: Outputs) -> None:
+def _write(
+    found: dict[str, ForkliftAnswer], stages: tuple[StageName, ...], files: Outputs, report: Report
+) -> None:
     from brakes.config.forklift import Models
     from brakes.drawings.forklift import answer_figure
     from brakes.report import forklift_outputs, outputs_csv
@@ -131,9 +140,10 @@ def _save(found: dict[str, ForkliftAnswer], stages: tuple[StageName, ...], files
     answers = [*found.values()]
     first = answers[0]
     rows = outputs_csv(forklift_outputs(stages), **found)
-    save(
+    write(
         first if len(answers) == 1 else Models(*answers),
         files,
         rows,
         lambda: answer_figure(first.stop, first.kinematics, first.forces),
+        report,
     )

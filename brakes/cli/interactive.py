@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING
 
-from cyclopts import Parameter
-
+from beamdyn.common.app.server import add_command
 from brakes.cli.program import app
 
-
-@app.command(name="app")
-def interactive(
-    *,
-    port: int = 8081,
-    host: str = "127.0.0.1",
-    browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
-) -> None:
-    """The interactive program: forklift, drum brake and caliper in the browser. Ctrl-C ends it.
-
-    Parameters
-    ----------
-    port
-        Port to serve on.
-    host
-        Address to serve on; only this computer can reach the usual one.
-    browser
-        Open the browser.
-    """
-    from beamdyn.common.app.server import serve
-
-    serve(_program, host, port, browser)
+if TYPE_CHECKING:
+    from beamdyn.common.app.documents import Program
 
 
-def _program():
+def _program() -> Program:
     from brakes.app.program import BRAKES
 
     return BRAKES
+
+
+add_command(
+    app,
+    _program,
+    port=8081,
+    about="The interactive program: forklift, drum brake and caliper in the browser.",
+)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
@@ -10,11 +10,10 @@ from cyclopts import Parameter
 from beamdyn.common.outputs import Outputs, write
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
     from pydantic import BaseModel
 
-    from beamdyn.common.results import Result
-    from brakes.config.sweeps import Axis, Output, Sweep
+    from beamdyn.common.reports import Question
+    from beamdyn.common.sweeps import Axis, Output, Sweep
 
 Sweeps = Annotated[tuple[str, ...], Parameter(name="--sweep", negative="", consume_multiple=False)]
 Results = Annotated[str | None, Parameter(name="--result")]
@@ -27,37 +26,29 @@ def run_sweep(
     solve: Callable[[Any], Any],
 ) -> tuple[Sweep, Any]:
     """A sweep over one or two inputs, and the answer with arrays that it is from."""
-    from brakes.config.sweeps import replaced, sweep
+    from brakes.config.sweeps import parse_axis, replaced, sweep
 
-    axes = parse_axes(design, texts)
+    axes = axes_of(texts, lambda text: parse_axis(design, text))
     answer = solve(replaced(design, axes))
     return sweep(axes, outputs, answer), answer
 
 
-def parse_axes(design: BaseModel, texts: Sequence[str]) -> list[Axis]:
+def axes_of(texts: Sequence[str], parse: Callable[[str], Axis]) -> list[Axis]:
     """One or two different inputs with their values."""
-    from brakes.config.sweeps import parse_axis
-
-    axes = [parse_axis(design, text) for text in texts]
+    axes = [parse(text) for text in texts]
     if len(axes) > 2 or len({axis.input.path for axis in axes}) < len(axes):
         raise ValueError(f"--sweep is given {len(axes)} times: give it once, or twice for two inputs")
     return axes
 
 
-def show_sweep(found: Sweep, files: Outputs) -> None:
+def show_sweep(found: Sweep, files: Outputs, question: Question, warnings: Sequence[str]) -> None:
     """Print a sweep and write its files."""
-    from beamdyn.common.tables import console
-    from brakes.drawings.curves import sweep_figure
-    from brakes.report import sweep_csv, sweep_table
+    from beamdyn.common.curves import sweep_figure
+    from beamdyn.common.reports import Report
+    from beamdyn.common.sweeps import sweep_csv
+    from beamdyn.common.tables import show
+    from brakes.report import sweep_table
 
-    console().print(sweep_table(found))
-    save(found, files, sweep_csv(found), lambda: sweep_figure(found))
-
-
-def save(found: Result, files: Outputs, rows: Iterable[Sequence[object]], draw: Callable[[], Figure]) -> None:
-    """Write the files asked for; `draw` makes the picture."""
-    write(found, files, rows)
-    if files.plot is not None:
-        from beamdyn.common.pictures import save_figure
-
-        save_figure(draw(), files.plot, files.force)
+    show(tables := [sweep_table(found)])
+    report = Report(question, tables, warnings)
+    write(found, files, sweep_csv(found), lambda: sweep_figure(found), report)

@@ -7,10 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle
 
+from beamdyn.common.curves import grid
 from beamdyn.common.pictures import COLOURS
 from brakes.arrays import Numbers
 from brakes.drawings.arrows import force, frame, scale_bar, sized
-from brakes.drawings.curves import grid
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 
 _P, _N, _T, _R = COLOURS[6], COLOURS[0], COLOURS[1], COLOURS[2]
@@ -135,7 +135,11 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
     reverse : bool
         Direction of the drum.
     """
-    limit = float(np.min(brake_torque(brake, friction=0.1, force=1.0, reverse=reverse).locking_friction))
+    limits = [
+        float(np.min(shoe.locking_friction))
+        for shoe in brake_torque(brake, friction=0.1, force=1.0, reverse=reverse).shoes
+    ]
+    limit, first = min(limits), int(np.argmin(limits))
     top = 0.995 * limit if limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * (friction or 0))
     mu = np.linspace(1e-3, top, 400)
     found = brake_torque(brake, friction=mu, force=1.0, reverse=reverse)
@@ -147,7 +151,7 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
         ax.plot(mu, values, color=colour, linestyle=style, linewidth=1.8, label=label)
     ceiling = _ceiling(found.c_star, mu, friction)
     ax.set_ylim(0, ceiling)
-    _marks(ax, limit, friction, ceiling)
+    _marks(ax, limit, COLOURS[first], friction, ceiling)
     grid(ax)
     ax.set_xlim(left=0)
     ax.set_xlabel("friction of the linings")
@@ -163,11 +167,12 @@ def _ceiling(c_star: Numbers, mu: np.ndarray, friction: float | None) -> float:
     return max(2.5 * near, 1.0)
 
 
-def _marks(ax: Axes, limit: float, friction: float | None, ceiling: float) -> None:
+def _marks(ax: Axes, limit: float, colour: str, friction: float | None, ceiling: float) -> None:
+    """The friction of the case, and that at which a shoe, drawn in this colour, locks."""
     if friction:
         ax.axvline(friction, color="0.5", linewidth=1, linestyle=":")
         ax.text(friction, 0.02 * ceiling, f" {friction:g}", color="0.35", fontsize=9, va="bottom")
     if limit < _LIMIT_SHOWN:
-        ax.axvline(limit, color=COLOURS[1], linewidth=1.4, linestyle="-.")
-        ax.text(limit, 0.5 * ceiling, f"locks at {limit:.3g} ", color=COLOURS[1], fontsize=9, ha="right",
+        ax.axvline(limit, color=colour, linewidth=1.4, linestyle="-.")
+        ax.text(limit, 0.5 * ceiling, f"locks at {limit:.3g} ", color=colour, fontsize=9, ha="right",
                 rotation=90, va="center")  # fmt: skip

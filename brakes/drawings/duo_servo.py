@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from beamdyn.common.pictures import COLOURS
@@ -28,9 +29,6 @@ def positions(figure: Any, followed: Kinematics) -> None:
     for ax, progress, title in zip(panels, (0.0, 1.0, 2.0), titles, strict=True):
         duo_servo(ax, followed.geometry, followed.geometry.motion(followed.clearance), progress)
         ax.set_title(title, fontsize=10)
-    if np.any(followed.geometry.motion(followed.clearance).lining_penetration > 0):
-        figure.suptitle("thick red: here a lining that is concentric at rest would be inside the drum's wall",
-                        fontsize=10, color=_RED)  # fmt: skip
 
 
 def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float) -> Axes:
@@ -58,6 +56,7 @@ def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float)
     for side, colour in _SIDES.items():
         _shoe(ax, geometry, motion, progress, side, colour)
     _adjuster(ax, geometry, motion, progress)
+    _key(ax)
     ax.update_datalim([(-1.04 * r, -1.04 * r), (1.04 * r, 1.04 * r)])
     frame(ax, "")
     return ax
@@ -118,6 +117,19 @@ def _adjuster(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float)
     pin = np.array([geometry.adjuster], dtype=float)
     ends = np.vstack([moved(pin, geometry, motion, progress, side) for side in _SIDES])
     ax.plot(*ends.T, color="0.35", linewidth=3.5, zorder=2)
+
+
+def _key(ax: Axes) -> None:
+    """What the colours are, in the middle of the drum, where nothing else is."""
+    entries = [
+        Line2D([], [], color=_SIDES["right"], linewidth=3, label="leading shoe's lining"),
+        Line2D([], [], color=_SIDES["left"], linewidth=3, label="trailing shoe's lining"),
+        Line2D([], [], color="0.4", marker="D", linestyle="", markersize=6, label="contact of the lining"),
+    ]
+    if any(line.get_color() == _RED and np.isfinite(line.get_xdata()).any() for line in ax.lines):
+        entries.append(Line2D([], [], color=_RED, linewidth=5, label="inside the drum's wall"))
+    ax.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.0, 0.0), bbox_transform=ax.transData,
+              fontsize=8, frameon=False)  # fmt: skip
 
 
 # Free bodies ------------------------------------------------------------------------------------------------

@@ -1,15 +1,30 @@
-"""The interactive programs need NiceGUI; a client is simulated within the test, without a server."""
+"""What tests of the interactive programs start from: a simulated client without a server, or a real browser.
+
+Where NiceGUI is missing, what needs it skips; the screens themselves are pure functions, which do not.
+"""
 
 import asyncio
 
 import pytest
 
-pytest.importorskip("nicegui", reason="the interactive program needs NiceGUI: pip install 'beamdyn[app]'")
+from tests.app.serving import CHROMIUM, NO_PLAYWRIGHT, free_port, start, stop
+
+NO_NICEGUI = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """A module that imports NiceGUI skips where there is none."""
+    report = yield
+    if report.failed and "No module named 'nicegui'" in str(report.longrepr):
+        report.outcome, report.longrepr = "skipped", (str(collector.path), 0, f"Skipped: {NO_NICEGUI}")
+    return report
 
 
 @pytest.fixture
 def simulate(monkeypatch, tmp_path):
     """Run an async function with a maker of clients of a program: `simulate(program, body)`."""
+    pytest.importorskip("nicegui", reason=NO_NICEGUI)
     monkeypatch.setenv("NICEGUI_STORAGE_PATH", str(tmp_path))
 
     def run(program, body):
@@ -84,3 +99,70 @@ class Fields:
 @pytest.fixture
 def fields():
     return Fields
+
+
+# In a real browser --------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="session")
+def address():
+    """Where a program is served, as a process of its own: a function of its name."""
+    pytest.importorskip("nicegui", reason=NO_NICEGUI)
+    made = {}
+
+    def of(program):
+        if program not in made:
+            port = free_port()
+            made[program] = port, start(port, program)
+        return f"http://127.0.0.1:{made[program][0]}/"
+
+    yield of
+    for _, process in made.values():
+        stop(process)
+
+
+@pytest.fixture(scope="module")  # until it is closed no other event loop runs, such as that of `simulate`
+def browser():
+    sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
+    with sync_api.sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def opened(browser, address):
+    """Open the page of a program: a function of its name and address; no script may fail on it."""
+    yield from opening(browser, address)
+
+
+@pytest.fixture(scope="module")
+def shared(browser, address):
+    """The same for pages that several tests use."""
+    yield from opening(browser, address)
+
+
+def opening(browser, address):
+    contexts, failures = [], []
+
+    def open_page(program="brakes", at="", width=1280):
+        context = browser.new_context(viewport={"width": width, "height": 900})
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: failures.append(str(error)))
+        page.on("dialog", lambda dialog: failures.append(f"a dialog: {dialog.message}"))
+        page.set_default_timeout(15_000)
+        page.goto(at or address(program))
+        page.wait_for_selector("img.drawing")
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert failures == []
+
+
+@pytest.fixture
+def page(opened):
+    """The page of `brakes app`."""
+    return opened()

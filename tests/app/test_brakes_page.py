@@ -4,7 +4,7 @@ import pytest
 
 from brakes.app.program import BRAKES
 
-SCREENS = ("Vehicle", "Kinematics", "Internal forces", "Drum brake", "Caliper")
+SCREENS = ("Vehicle", "Kinematics", "Internal forces", "Drum brake", "Caliper", "Mechanism")
 
 
 def tables(text):

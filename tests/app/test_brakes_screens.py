@@ -1,6 +1,5 @@
 """The screens of `brakes app` without their page: pure functions from tables to answers and pictures."""
 
-import time
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -11,6 +10,8 @@ from beamdyn.common.app.reporting import report_of
 from beamdyn.common.app.session import Work
 from beamdyn.common.app.shown import csv_text, drawn, html, png, svg
 from beamdyn.common.config import ConfigError, parse
+from beamdyn.common.curves import sweep_figure
+from beamdyn.common.sweeps import sweep_csv
 from brakes.app.bases import base
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORCES, FORKLIFT, KINEMATICS, VEHICLE
@@ -31,9 +32,12 @@ def place(request):
     return work, screen, work.answered[screen.name].answer
 
 
-@pytest.mark.parametrize("name", ["forklift", "drum"])
-def test_base_case_is_the_example(name):
-    assert base(name) == (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+@pytest.mark.parametrize(
+    "name, file",
+    [("forklift", "forklift"), ("drum", "drum"), ("mechanism", "calipers/toggle-clamp")],
+)
+def test_base_case_is_the_example(name, file):
+    assert base(name) == (EXAMPLES / f"{file}.toml").read_text(encoding="utf-8")
 
 
 def test_drawing_is_svg_and_the_same_twice(place):
@@ -58,16 +62,6 @@ def test_tables_and_rows_agree(place):
     rows = csv_text(screen.rows(answer)).splitlines()
     assert len(rows) > 5
     assert len({row.count(",") for row in rows}) == 1
-
-
-def test_answer_takes_less_than_a_tenth_of_a_second(place):
-    work, screen, _ = place
-    taken = []
-    for _ in range(3):
-        start = time.perf_counter()
-        work.solve(screen)
-        taken.append(time.perf_counter() - start)
-    assert min(taken) < 0.1
 
 
 def test_saved_file_is_the_design(place):
@@ -123,12 +117,6 @@ def test_core_mistakes_find_their_field():
     assert list(work.mistakes["Kinematics"]) == ["brake.clearance"]
 
 
-def test_file_of_parts_is_refused_with_what_to_do():
-    text = (EXAMPLES / "calipers" / "toggle-clamp.toml").read_text(encoding="utf-8")
-    with pytest.raises(ConfigError, match="brakes caliper FILE"):
-        CALIPER.opened(text, "toggle-clamp.toml")
-
-
 @pytest.mark.parametrize(
     "text", ["import os", "[truck]\nfile = '/etc/passwd'", "a = 1\n" * 2, "[[brake]]", "\x00", ""]
 )
@@ -164,13 +152,13 @@ def test_sweep_gives_a_row_a_value():
     work = Work(FORKLIFT)
     sweeps = VEHICLE.sweeps
     found = sweeps.run(tables_of(work.entries, work.inputs), "stop.speed=10:30:5 km/h", "distance")
-    rows = [*sweeps.rows(found)]
+    rows = [*sweep_csv(found)]
     assert rows[0] == ["speed_km_per_h", "distance_m"]
     work.put("stop.speed", "15 km/h")
     work.solve(VEHICLE)
     single = work.answered["Vehicle"].answer.chosen.stop.distance
     assert rows[2] == pytest.approx([15.0, single], rel=1e-12)  # the same formula on an array
-    assert svg(sweeps.draw(found)).startswith("<?xml")
+    assert svg(sweep_figure(found)).startswith("<?xml")
 
 
 @pytest.mark.parametrize(
@@ -180,10 +168,10 @@ def test_sweep_to_begin_with_works(screen):
     document = next(d for d in BRAKES.documents if screen in d.screens)
     work = Work(document)
     tables = tables_of(work.needed(screen), work.inputs)
-    assert (
-        len([*screen.sweeps.rows(screen.sweeps.run(tables, screen.sweeps.example, screen.sweeps.results))])
-        > 10
-    )
+    found = screen.sweeps.run(tables, screen.sweeps.example, screen.sweeps.results)
+    assert len([*sweep_csv(found)]) > 10
+    assert not found.warnings
+    assert set(screen.sweeps.results.split(",")) <= set(screen.sweeps.names(tables))
 
 
 @pytest.mark.parametrize(

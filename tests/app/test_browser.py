@@ -1,184 +1,101 @@
-"""The interactive program in a real browser: Debian's chromium, driven by playwright."""
-
-import os
-import shutil
-import socket
-import subprocess
-import sys
-import time
-from pathlib import Path
+"""The interactive programs in a real browser (Debian's chromium, driven by playwright): their use."""
 
 import pytest
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium")
-ROOT = Path(__file__).parents[2]
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium; on Debian: apt-get install chromium"),
-]
+from beamdyn.app.program import BEAMDYN
+from brakes.app.program import BRAKES
+from tests.app.browsing import drawing, field, go, kept, redrawn, shown
+from tests.app.serving import CHROMIUM, IN_BROWSER, NO_PLAYWRIGHT, free_port, start, stop
+
+__all__ = ["CHROMIUM", "free_port", "start", "stop"]  # other modules take them from here, too
+sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
+expect = sync_api.expect
+expect.set_options(timeout=15_000)
+pytestmark = IN_BROWSER
+
+CHANGED = {"brakes": ("speed, V", "25 km/h"), "beamdyn": ("radius, r", "0.3 m")}
+SCREENS = {p.name: [s.name for d in p.documents for s in d.screens] for p in (BRAKES, BEAMDYN)}
 
 
-def free_port():
-    with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
-        return trial.getsockname()[1]
+@pytest.mark.parametrize("program", SCREENS)
+def test_every_screen_opens_and_shows_its_drawing(opened, program):
+    page = opened(program)
+    for name in reversed(SCREENS[program]):
+        go(page, name)
+        expect(shown(page, "Up to date.")).to_be_visible()
 
 
-def start(port):
-    """The program as a process of its own, when it answers."""
-    command = [sys.executable, "-m", "brakes", "app", "--no-browser", "--port", str(port)]
-    # With pytest's variables NiceGUI would think that it is tested from within.
-    clean = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
-    process = subprocess.Popen(
-        command, cwd=ROOT, env=clean, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    deadline = time.monotonic() + 30
-    while time.monotonic() < deadline and process.poll() is None:
-        with socket.socket() as trial:
-            if trial.connect_ex(("127.0.0.1", port)) == 0:
-                return process
-        time.sleep(0.1)
-    process.kill()
-    raise AssertionError("the program does not answer")
-
-
-def stop(process):
-    process.terminate()
-    process.wait(20)
-
-
-@pytest.fixture(scope="module")
-def port():
-    found = free_port()
-    process = start(found)
-    yield found
-    stop(process)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_api.sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield made
-        made.close()
-
-
-@pytest.fixture
-def page(browser, port):
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
-    made = context.new_page()
-    made.set_default_timeout(10_000)
-    made.goto(f"http://127.0.0.1:{port}/")
-    made.wait_for_selector("img.drawing")
-    yield made
-    context.close()
-
-
-def drawing(page):
-    return page.locator("img.drawing:visible").first.get_attribute("src")
-
-
-def changed(page, before):
-    page.wait_for_function("before => document.querySelector('img.drawing')?.src !== before", arg=before)
-
-
-def test_every_screen_opens_and_shows_its_drawing(page):
-    for name in ("Kinematics", "Internal forces", "Drum brake", "Caliper", "Vehicle"):
-        page.get_by_role("tab", name=name).click()
-        sync_api.expect(page.locator("img.drawing:visible")).to_be_visible()
-        sync_api.expect(page.get_by_text("Up to date.").locator("visible=true")).to_be_visible()
-
-
-def test_change_by_keyboard_mistake_and_remedy(page):
+@pytest.mark.parametrize("program", CHANGED)
+def test_change_by_keyboard_mistake_and_remedy(opened, program):
+    page = opened(program)
     before = drawing(page)
-    speed = page.get_by_label("speed, V", exact=True).locator("visible=true")
-    speed.focus()
+    label, good = CHANGED[program]
+    number = good.partition(" ")[0]
+    field(page, label).focus()
     page.keyboard.press("Control+a")
-    page.keyboard.type("25")
-    sync_api.expect(page.get_by_text('stop.speed = "25": give a unit')).to_be_visible()
-    sync_api.expect(page.locator(".greyed:visible")).to_have_count(1)
+    page.keyboard.type(number)
+    expect(shown(page, f'"{number}": give a unit')).to_be_visible()
+    expect(page.locator(".greyed:visible")).to_have_count(1)
+    expect(shown(page, "Below is the last good result.")).to_be_visible()
     assert drawing(page) == before
-    page.keyboard.type(" km/h")
-    sync_api.expect(page.locator(".greyed:visible")).to_have_count(0)
-    sync_api.expect(page.get_by_role("tab", name="Internal forces (stale)")).to_have_count(0)
-    assert drawing(page) != before
+    page.keyboard.type(good.removeprefix(number))
+    expect(page.locator(".greyed:visible")).to_have_count(0)
+    redrawn(page, before)
 
 
 def test_stage_slider_by_keyboard_moves_the_shoes(page):
-    page.get_by_role("tab", name="Kinematics").click()
-    sync_api.expect(page.locator(".slider:visible")).to_be_visible()
+    go(page, "Kinematics")
     before = drawing(page)
     page.locator(".slider:visible [tabindex='0']").first.focus()
     for _ in range(5):
         page.keyboard.press("ArrowLeft")
-    page.wait_for_timeout(500)
-    assert drawing(page) != before
+    redrawn(page, before)
 
 
-def test_save_open_and_report(page, tmp_path):
-    page.get_by_label("wheelbase, L", exact=True).fill("2.0 m")
-    page.wait_for_timeout(600)
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="File").click()
-        page.get_by_text("Save as TOML").click()
-    file = tmp_path / "mine.toml"
-    saved.value.save_as(file)
-    assert 'wheelbase = "2.0 m"' in file.read_text(encoding="utf-8")
-    file.write_text(file.read_text(encoding="utf-8").replace("2.0 m", "2.1 m"), encoding="utf-8")
-    page.get_by_role("button", name="File").click()
-    page.get_by_text("Open a TOML file", exact=True).click()
-    page.locator("input[type=file]").set_input_files(file)
-    sync_api.expect(page.get_by_label("wheelbase, L", exact=True)).to_have_value("2.1 m")
-    with page.expect_download() as report:
-        page.get_by_role("button", name="File").click()
-        page.get_by_text("Report as HTML").click()
-    report.value.save_as(tmp_path / "report.html")
-    assert (tmp_path / "report.html").read_text(encoding="utf-8").count("data:image/svg+xml") == 3
+def test_unit_of_a_field(page):
+    before = drawing(page)
+    page.get_by_role("button", name="unit of wheelbase", exact=True).click()
+    page.locator(".q-menu").get_by_text("mm", exact=True).click()
+    expect(field(page, "wheelbase, L")).to_have_value("1890 mm")
+    assert drawing(page) == before
+    field(page, "wheelbase, L").fill("2000 mm")
+    redrawn(page, before)
 
 
-def test_reload_keeps_the_design(page):
-    page.get_by_label("wheelbase, L", exact=True).fill("2.2 m")
-    page.wait_for_timeout(600)
+@pytest.mark.parametrize("name", SCREENS["beamdyn"])
+def test_slider_in_the_form_changes_its_field_and_the_drawing(opened, name):
+    page = opened("beamdyn")
+    go(page, name)
+    before, radius = drawing(page), field(page, "radius, r")
+    value = radius.input_value()
+    slider = page.get_by_role("slider", name="radius, r [mm]").locator("visible=true")
+    slider.locator("[tabindex='0']").focus()
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+    expect(radius).not_to_have_value(value)
+    redrawn(page, before)
+
+
+def test_reload_keeps_the_design_and_the_screen(page):
+    go(page, "Drum brake")
+    field(page, "drum radius, r").fill("150 mm")
+    kept(page, "150 mm")
     page.reload()
-    sync_api.expect(page.get_by_label("wheelbase, L", exact=True)).to_have_value("2.2 m")
+    expect(page.get_by_role("tab", name="Drum brake")).to_have_attribute("aria-selected", "true")
+    expect(field(page, "drum radius, r")).to_have_value("150 mm")
 
 
-def test_open_page_survives_a_restart_of_the_program(browser):
-    port = free_port()
-    process = start(port)
-    try:
-        page = browser.new_page()
-        page.goto(f"http://127.0.0.1:{port}/")
-        page.get_by_label("wheelbase, L", exact=True).fill("2.3 m")
-        page.wait_for_timeout(600)
-    finally:
-        stop(process)
-    process = start(port)
-    try:
-        sync_api.expect(page.locator("img.drawing:visible")).to_be_visible(timeout=20_000)
-        page.wait_for_timeout(3000)
-        field = page.get_by_label("wheelbase, L", exact=True)
-        sync_api.expect(field).to_have_value("2.3 m", timeout=10_000)
-    finally:
-        stop(process)
-
-
-@pytest.mark.parametrize("width", [1280, 800])
-def test_page_is_no_wider_than_the_window(page, width):
-    page.set_viewport_size({"width": width, "height": 900})
-    for name in ("Vehicle", "Internal forces", "Drum brake", "Caliper"):
-        page.get_by_role("tab", name=name).click()
-        page.wait_for_timeout(300)
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
-
-
-def test_nothing_but_this_computer_is_listened_to(port):
-    host = next(
-        (a[4][0] for a in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)), "127.0.0.1"
-    )
-    if host.startswith("127."):
-        pytest.skip("this computer has no other address")
-    with socket.socket() as trial:
-        trial.settimeout(2)
-        assert trial.connect_ex((host, port)) != 0
+def test_ten_browsers_at_once_keep_their_own_values(opened):
+    pages = [opened() for _ in range(10)]
+    speeds = [f"{10 + i} km/h" for i in range(10)]
+    before = drawing(pages[0])
+    for page, speed in zip(pages, speeds, strict=True):
+        field(page, "speed, V").fill(speed)
+    for page, speed in zip(pages, speeds, strict=True):
+        redrawn(page, before)
+        expect(field(page, "speed, V")).to_have_value(speed)
+    distance = "tr:has-text('stopping distance') td.number"
+    distances = [page.locator(distance).first.inner_text() for page in pages]
+    assert len(set(distances)) == 10
+    assert distances == sorted(distances, key=float)
+    expect(field(opened(), "speed, V")).to_have_value("20 km/h")

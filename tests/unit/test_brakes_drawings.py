@@ -13,8 +13,8 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
+from beamdyn.common.curves import curves, sweep_figure
 from brakes import drum, forklift
-from brakes.drawings.curves import curves, sweep_figure
 from brakes.drawings.drum import brake_figure, factors, free_body, pressures
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
 from brakes.drawings.forklift import answer_figure, distances, forces_over, truck
@@ -81,7 +81,9 @@ def test_factors_end_before_locking_and_say_where_it_is() -> None:
     limit = drum.brake_torque(brake, friction=0.1, force=1.0).locking_friction
     ax = factors(axes(), brake, friction=0.35)
     assert np.max(ax.lines[0].get_xdata()) < limit
-    assert any(f"locks at {limit:.3g}" in text.get_text() for text in ax.texts)
+    (said,) = [text for text in ax.texts if f"locks at {limit:.3g}" in text.get_text()]
+    (leading,) = [line for line in ax.lines if line.get_label() == "1: leading"]
+    assert said.get_color() == leading.get_color()  # of the shoe that locks
     trailing = factors(axes(), brake=drum.duplex(SHOE), reverse=True)
     assert not any("locks" in text.get_text() for text in trailing.texts)
 
@@ -136,6 +138,13 @@ def test_the_lining_drawn_enters_the_drum_as_deep_as_computed() -> None:
 def test_the_brake_on_its_way(progress: float) -> None:
     ax = duo_servo(axes(), BRAKE, BRAKE.motion(0.0106), progress)
     assert len(ax.lines) > 8
+
+
+@pytest.mark.parametrize("progress, drawn", [(0.0, False), (1.0, True), (2.0, True)])
+def test_the_key_says_what_red_is_where_there_is_any(progress: float, drawn: bool) -> None:
+    legend = duo_servo(axes(), BRAKE, BRAKE.motion(0.0106), progress).get_legend()
+    assert legend is not None
+    assert ("inside the drum's wall" in [text.get_text() for text in legend.get_texts()]) == drawn
 
 
 def test_duo_servo_shoes_balance_as_drawn() -> None:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
+    from beamdyn.common.sweeps import Sweep
+
 
 @dataclass(frozen=True)
 class Sweeps:
@@ -22,26 +24,20 @@ class Sweeps:
 
     Parameters
     ----------
-    names : tuple of str
-        Names of the results.
+    names : callable
+        Tables in, names of the results out; it may raise `ConfigError`.
     example : str
         A sweep to begin with, such as "stop.speed=10:30:9 km/h".
     results : str
         Names of results to begin with, separated by commas.
     run : callable
         Tables, text of the sweep and names of results in; a sweep out.
-    draw : callable
-        Its picture.
-    rows : callable
-        Rows of its CSV file.
     """
 
-    names: tuple[str, ...]
+    names: Callable[[Mapping[str, Any]], Sequence[str]]
     example: str
     results: str
-    run: Callable[[Mapping[str, Any], str, str], Any]
-    draw: Callable[[Any], Figure]
-    rows: Callable[[Any], Iterable[Sequence[object]]]
+    run: Callable[[Mapping[str, Any], str, str], Sweep]
 
 
 @dataclass(frozen=True)
@@ -85,6 +81,35 @@ class Drag:
 
 
 @dataclass(frozen=True)
+class Handle:
+    """A point of a drawing that is moved in it, which writes into fields.
+
+    Parameters
+    ----------
+    label : str
+        What it is.
+    at : tuple of float
+        Where it is drawn, (x, y) [m].
+    moved : callable
+        A new place (x, y) [m] in; values by the path of their input out, in SI: a number, or a pair for
+        a point.
+    scale : float
+        Units of the drawing's first axes in a metre: 1000 where these are in mm.
+    step : float
+        How far an arrow key moves it [m].
+    grain : float
+        To what a length is rounded [m].
+    """
+
+    label: str
+    at: tuple[float, float]
+    moved: Callable[[float, float], Mapping[str, float | tuple[float, float]]]
+    scale: float = 1.0
+    step: float = 5e-4
+    grain: float = 1e-4
+
+
+@dataclass(frozen=True)
 class Screen:
     """A form, what follows from it, and its tables and drawing: pure functions.
 
@@ -114,8 +139,10 @@ class Screen:
         Its sweeps.
     drags : tuple of Drag
         Sliders in its form.
-    more : callable
-        Further drawings of an answer, each with its title.
+    more : tuple of (title, callable)
+        Further drawings: answer in, figure out; drawn when they are wanted.
+    handles : callable
+        Answer and place of the slider in; points of the drawing's first axes that can be moved out.
     """
 
     name: str
@@ -130,7 +157,8 @@ class Screen:
     slider: Slider | None = None
     sweeps: Sweeps | None = None
     drags: tuple[Drag, ...] = ()
-    more: Callable[[Any], Sequence[tuple[str, Figure]]] = lambda _: ()
+    more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
+    handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
 
 
 @dataclass(frozen=True)

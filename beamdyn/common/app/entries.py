@@ -6,7 +6,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from beamdyn.common.inputs import Input
 from beamdyn.common.units import quantity
@@ -39,7 +39,18 @@ def _flat(tables: Mapping[str, Any], leaves: set[str], prefix: str) -> Iterator[
         if isinstance(value, dict) and path not in leaves:
             yield from _flat(value, leaves, f"{path}.")
         else:
-            yield path, value if isinstance(value, str) else toml_value(value)
+            yield path, value if isinstance(value, str) else _lined(value)
+
+
+def _lined(value: Any) -> str:
+    """A value as TOML; a list of tables with a line for each."""
+    if _is_tables(value):
+        return "[{}]".format(",\n ".join(toml_value(item) for item in value))
+    return toml_value(value)
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
 
 
 def tables_of(
@@ -81,7 +92,7 @@ def _value(text: str, entry: Input | None) -> Any:
 
 
 def _is_text(kind: Any) -> bool:
-    return kind is str or str in get_args(kind)
+    return kind is str or (get_origin(kind) is not list and str in get_args(kind))
 
 
 def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
@@ -91,11 +102,20 @@ def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
 
 def _lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
     for key, value in tables.items():
-        if not isinstance(value, dict):
-            yield f"{key} = {toml_value(value)}"
+        if not isinstance(value, dict) and not _is_tables(value):
+            yield f"{_key(key)} = {toml_value(value)}"
     for key, value in tables.items():
+        path = prefix + _key(key)
         if isinstance(value, dict):
-            yield from ("", f"[{prefix}{key}]", *_lines(value, f"{prefix}{key}."))
+            yield from ("", f"[{path}]", *_lines(value, f"{path}."))
+        elif _is_tables(value):
+            for item in value:
+                yield from ("", f"[[{path}]]", *_lines(item, f"{path}."))
+
+
+def _key(name: str) -> str:
+    """A key, in quotes where it needs them."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
 def toml_value(value: Any) -> str:
@@ -108,7 +128,7 @@ def toml_value(value: Any) -> str:
         case list() | tuple():
             return f"[{', '.join(toml_value(item) for item in value)}]"
         case dict():
-            return f"{{ {', '.join(f'{key} = {toml_value(item)}' for key, item in value.items())} }}"
+            return f"{{ {', '.join(f'{_key(key)} = {toml_value(item)}' for key, item in value.items())} }}"
     return repr(value)
 
 
@@ -123,7 +143,7 @@ def by_field(mistakes: Sequence[str], inputs: Sequence[Input]) -> dict[str, list
 
 def _field(sentence: str, paths: Sequence[str]) -> str:
     """The field of a mistake: by its path, by table and name ("shoe: alpha = ..."), by a name alone."""
-    said = re.sub(r"^([\w.]+): (\w+) = ", r"\1.\2 = ", sentence)
+    said = re.sub(r"^([\w.]+): (\w+) = ", r"\1.\2 = ", sentence.removeprefix("model: "))
     found = next((path for path in paths if re.match(rf"{re.escape(path)}(\[|\.| =|:)", said)), "")
     name = re.match(r"(\w+) = ", said)
     named = [path for path in paths if name and path.rpartition(".")[2] == name[1]]
@@ -136,9 +156,11 @@ def units_for(unit: str) -> tuple[str, ...]:
 
 
 def in_unit(text: str, unit: str, target: str) -> str:
-    """The same quantity in another unit; the text itself where it is no quantity of this kind."""
+    """The same quantity, or list of them, in another unit; the text itself where it is none of this kind."""
     try:
+        if text.startswith("["):
+            return toml_value([in_unit(part, unit, target) for part in tomllib.loads(f"v = {text}")["v"]])
         value = quantity(text, unit) / quantity(f"1 {target}", unit)
-    except ValueError:
+    except (ValueError, RecursionError, AttributeError):
         return text
     return f"{value:.10g} {target}"

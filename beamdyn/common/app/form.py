@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app.documents import Drag
-from beamdyn.common.app.entries import in_unit, units_for
+from beamdyn.common.app.entries import in_unit, toml_value, units_for
 from beamdyn.common.inputs import Input
 from beamdyn.common.units import show
 
@@ -42,6 +42,7 @@ class Form:
         drags: Sequence[Drag] = (),
     ) -> None:
         self.fields: dict[str, Any] = {}
+        self._tables: dict[str, Any] = {}
         self._changed = changed
         self._drags = {drag.path: drag for drag in drags}
         for section in sections:
@@ -50,17 +51,20 @@ class Form:
                 self._section(section, chosen, entries)
 
     def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
-        optional = bool(section) and not any(entries.get(entry.path, "") for entry in inputs)
+        given = any(entries.get(entry.path, "") for entry in inputs)
+        usual = all(_default(entry) != _NOT_GIVEN for entry in inputs)
         heading = f"[{section}]" if section else "general"
-        with ui.expansion(heading, value=not optional).classes("w-full section").props("dense"):
+        table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
+        with table.props("dense"):
             for entry in inputs:
-                self._field(entry, entries.get(entry.path, ""))
+                with ui.element("div"):
+                    self._field(entry, entries.get(entry.path, ""))
+        self._tables[section] = table
 
     def _field(self, entry: Input, text: str) -> None:
-        with ui.row().classes("w-full no-wrap items-start gap-0"):
-            made = self._select(entry, text) if _options(entry) else self._input(entry, text)
+        made = self._select(entry, text) if _options(entry) else self._input(entry, text)
         made.without_auto_validation()  # mistakes are marked by the answer, not by the field
-        made.classes("grow").props(
+        made.classes("w-full").props(
             f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
         )
         made.props["hint"] = help_of(entry)
@@ -84,7 +88,8 @@ class Form:
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in _options(entry)}
         if not entry.required:
-            options = {"": f"{_NOT_GIVEN}: {_default(entry)}", **options}
+            default = _default(entry)
+            options = {"": default if default == _NOT_GIVEN else f"{_NOT_GIVEN}: {default}", **options}
         value = text if text in options else None
         return ui.select(
             options,
@@ -94,7 +99,8 @@ class Form:
         )
 
     def _input(self, entry: Input, text: str) -> Any:
-        field = ui.input(
+        made = _lines if entry.kind == list[dict] else ui.input
+        field = made(
             label(entry),
             value=text,
             placeholder="" if entry.required else _default(entry),
@@ -122,10 +128,17 @@ class Form:
         button.props(f'flat dense round size=sm aria-label="unit of {_words(entry)}"')
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
-        """Mark the fields that mistakes are about, and only those."""
+        """Mark the fields that mistakes are about, and only those; they are seen, even in a folded table."""
         for path, field in self.fields.items():
             said = mistakes.get(path)
             field.error = " ".join(said) if said else None
+            if said:
+                self._tables[_table(path)].open()
+
+
+def _lines(*given: Any, **more: Any) -> Any:
+    """A field of as many lines as it has."""
+    return ui.textarea(*given, **more).props("autogrow")
 
 
 def label(entry: Input) -> str:
@@ -156,12 +169,19 @@ def _options(entry: Input) -> tuple[str, ...]:
 
 
 def _default(entry: Input) -> str:
-    """What holds if it is not given."""
+    """What holds if it is not given, as it could be given."""
     if entry.default is None or entry.default in ("", [], ()):
         return _NOT_GIVEN
-    value = entry.default
-    numbers = value if isinstance(value, tuple) else (value,)
-    if isinstance(value, bool | str):
+    value, unit = entry.default, entry.quantity.unit
+    if isinstance(value, tuple):
+        return toml_value([_said(number, unit) for number in value])
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return show(value).strip('"')
-    unit = f" {entry.quantity.unit}" if entry.quantity.unit else ""
-    return ", ".join(f"{number:.6g}{unit}" for number in numbers)
+    return _said(value, unit)
+
+
+def _said(number: float, unit: str) -> str:
+    """A number with its unit; short lengths in millimetres."""
+    if unit == "m" and abs(number) < 1:
+        number, unit = 1e3 * number, "mm"
+    return f"{number:.6g} {unit}".rstrip()

@@ -7,35 +7,59 @@ from typing import Any
 
 from nicegui import ui
 
+from beamdyn.common.app.board import STYLE as BOARD
 from beamdyn.common.app.documents import Document, Program, Screen
 from beamdyn.common.app.panel import Panel
 from beamdyn.common.app.reporting import report_of
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import STYLE
 from beamdyn.common.config import ConfigError
+from beamdyn.common.rendering import STYLE
 
 _LARGEST = 200_000  # bytes of a file that is opened
 _LAYOUT = """
 body { font-size: 15px; }
-.q-tab-panel { padding: 0.75rem; }
+.nicegui-header { padding: 0 0.75rem; }
+.nicegui-content { padding: 0.25rem 0.75rem 1rem; }
+.q-tab-panel { padding: 0.5rem 0; }
+.q-tab-panels, .q-tab-panel, .q-panel { overflow: visible; }
 .screen { display: grid; grid-template-columns: minmax(270px, 330px) minmax(0, 1fr); gap: 1rem; width: 100%; }
-.left { max-height: calc(100vh - 130px); overflow-y: auto; padding: 4px 6px 4px 2px; position: sticky;
-  top: 0; }
-.section { border: 1px solid #c8c8c8; border-radius: 4px; }
+.left { position: sticky; top: 44px; align-self: start; max-height: calc(100vh - 52px); overflow-y: auto;
+  padding: 4px 6px 4px 4px; flex-wrap: nowrap; }
+.right { min-width: 0; }
+.section { border: 1px solid #c8c8c8; border-radius: 4px; flex: none; }
 .section .q-item__label { font-weight: 600; }
+.section .nicegui-expansion-content { gap: 0.5rem; padding: 0.5rem 0.75rem 0.75rem; }
+.left .nicegui-expansion-content { display: grid;
+  grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); align-items: start; }
+.section .q-field__messages { line-height: 1.25; }
 .status { font-size: 0.85rem; color: #444; }
 .mistake { color: #8c1c00; font-weight: 600; border-left: 4px solid #8c1c00; padding-left: 0.5rem; }
 .mistake:empty { display: none; }
 .warning { color: #5a4200; border-left: 4px solid #E69F00; padding-left: 0.5rem; }
 .greyed { opacity: 0.45; filter: grayscale(1); }
-.slider { padding: 0 3.5rem; }
+.slider { padding: 0 4.5rem; }
+.slider .q-slider__marker-labels { white-space: nowrap; }
 .drawing-frame { overflow-x: auto; }
-.drawing { max-width: 1000px; min-width: 560px; max-height: 72vh; object-fit: contain;
+.drawing { max-width: 1000px; min-width: 480px; max-height: 72vh; object-fit: contain;
   object-position: left; }
-.section .q-field { margin-bottom: 6px; }
-.q-field__messages { line-height: 1.25; }
 :focus-visible { outline: 3px solid #0072B2; outline-offset: 1px; }
+.q-header :focus-visible { outline-color: white; outline-offset: -3px; }
+#popup { top: 0; bottom: auto; left: 0; right: 0; margin: 0; padding: 1rem; border: 0; border-radius: 0;
+  background: #8c1c00; color: white; text-align: center; }
+body:has(#popup[aria-hidden="false"]) #app { opacity: 0.5; pointer-events: none;
+  transition: opacity 0.5s 2s; }
+@media (max-width: 1000px) {
+  .screen { grid-template-columns: minmax(0, 1fr); }
+  .left { position: static; max-height: 42vh; border-bottom: 1px solid #c8c8c8; }
+}
 """
+# NiceGUI shows its element "popup" while it tries to reach the program; these are other words for it.
+_STOPPED = """<script type="module">
+const notice = document.getElementById("popup");
+notice.setAttribute("role", "alert");
+notice.textContent = `The program has stopped. Start "{name} app --port ${{location.port}}" again: `
+  + "this page goes on by itself.";
+</script>"""
 
 
 class Page:
@@ -55,8 +79,9 @@ class Page:
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
         self._tabs: dict[str, Any] = {}
-        ui.add_css(_LAYOUT + STYLE)
+        ui.add_css(_LAYOUT + STYLE + BOARD)
         ui.colors(primary="#0072B2", secondary="#444444", negative="#8c1c00")
+        ui.add_body_html(_STOPPED.format(name=program.name))
         ui.page_title(program.title)
         self._header()
         self._body()
@@ -65,7 +90,7 @@ class Page:
         first: Any = next(iter(self.places))  # a tab goes by its name
         self._bar: Any
         with ui.header().classes("items-center gap-2 no-wrap q-py-none"):
-            with ui.tabs(value=first, on_change=self._entered).props(
+            with ui.tabs(value=first, on_change=self._turned).props(
                 "dense no-caps shrink stretch"
             ) as self._bar:
                 for name in self.places:
@@ -106,6 +131,12 @@ class Page:
     def current(self) -> tuple[Document, Screen]:
         """The document and screen that are in front."""
         return self.places[self.front]
+
+    def _turned(self) -> None:
+        """Another screen has come to the front: show it from its top."""
+        self._entered()
+        self._remember()
+        ui.run_javascript("window.scrollTo(0, 0)")
 
     def _entered(self) -> None:
         self.panels[self.front].enter()
@@ -196,21 +227,26 @@ class Page:
 
     @property
     def _key(self) -> str:
-        return json.dumps(f"{self.program.name}-designs")
+        return json.dumps(f"{self.program.name}-page")
 
     def _remember(self) -> None:
-        """Keep the entries in the browser, for this tab."""
-        kept = json.dumps({name: work.entries for name, work in self.works.items()})
-        ui.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(kept)})")
+        """Keep the entries and which screen is in front in the browser, for this tab of it."""
+        designs = {name: work.entries for name, work in self.works.items()}
+        kept = json.dumps({"front": self.front, "designs": designs})
+        # by the page's own client: the field that has changed may be gone, of a form that was made anew
+        self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(kept)})")
 
     async def recall(self) -> None:
-        """Put back the entries that the browser kept."""
+        """Put back what the browser kept."""
         await ui.context.client.connected()
         try:
             kept = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
         except TimeoutError:
             return
-        for name, entries in json.loads(kept or "{}").items():
-            if (work := self.works.get(name)) is not None and isinstance(entries, dict):
+        page = json.loads(kept or "{}")
+        for name, entries in page.get("designs", {}).items():
+            if (work := self.works.get(name)) is not None:
                 work.entries = {str(path): str(text) for path, text in entries.items()}
                 self._rebuild(work.document)
+        if page.get("front") in self.places:
+            self._bar.set_value(page["front"])

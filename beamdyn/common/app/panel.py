@@ -7,10 +7,14 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.documents import Screen
+from beamdyn.common.app.board import Board
+from beamdyn.common.app.documents import Handle, Screen
+from beamdyn.common.app.entries import Entries
 from beamdyn.common.app.form import Form
+from beamdyn.common.app.further import Further
+from beamdyn.common.app.handles import Place, sheet, written
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import csv_text, drawn, further, html, picture, png
+from beamdyn.common.app.shown import csv_text, html, png
 from beamdyn.common.app.sweeping import SweepPanel
 
 
@@ -43,12 +47,12 @@ class Panel:
         self._good: Any = ui.column().classes("w-full gap-2 shown")
         with self._good:
             self._slider()
-            self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+            self.board = Board(f"{self.screen.name}: drawing of the result", self._moved)
             self._tables: Any = ui.html("", sanitize=False).classes("w-full")
-            self._more: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+            self._more = [Further(title, draw) for title, draw in self.screen.more]
         self._exports()
-        if self.screen.sweeps is not None:
-            SweepPanel(self.work, self.screen, self.screen.sweeps)
+        sweeps = self.screen.sweeps
+        self._sweep = None if sweeps is None else SweepPanel(self.work, self.screen, sweeps)
 
     def _slider(self) -> None:
         slider = self.screen.slider
@@ -81,6 +85,8 @@ class Panel:
         self.state()
 
     def _changed(self, path: str, text: str) -> None:
+        if self.work.entries.get(path) == text:
+            return  # written by a point of the drawing that was moved
         self.work.put(path, text)
         if [entry.path for entry in self.work.inputs] != self._shape:
             self.rebuild()
@@ -112,6 +118,8 @@ class Panel:
         )
         later = "An input has changed since: this result is stale."
         self._status.set_text((words if failed else later) if stale else "Up to date.")
+        if self._sweep is not None:
+            self._sweep.state()
 
     def _say(self, mistakes: dict[str, list[str]]) -> None:
         """Sentences about no field of this form, and the warnings of a good answer."""
@@ -128,15 +136,38 @@ class Panel:
     def _show(self) -> None:
         answer = self.work.answered[self.screen.name].answer
         self._tables.set_content(html(self.screen.report(answer)))
-        self._more.set_content(further(self.screen, answer))
         self._draw()
+        if self.board.held is None:  # while a point is moved, its drawing alone follows
+            for more in self._more:
+                more.show(answer)
 
     def _draw(self) -> None:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        self._drawn = drawn(self.screen, answered.answer, self.progress)
-        self._picture.set_content(picture(self._drawn, f"{self.screen.name}: drawing of the result"))
+        made = sheet(self.screen, answered.answer, self.progress, self.board.held)
+        self._drawn = made.text
+        self.board.show(made, self.work.entries)
+
+    def _moved(self, handle: Handle, target: Place, done: bool) -> None:
+        """A point of the drawing is to be elsewhere: write that into the fields, and answer."""
+        texts = written(handle, target, self.work.entries, self.work.inputs)
+        if texts:
+            self._write(texts)
+        if done and (not texts or self.work.mistakes.get(self.screen.name)):
+            self._show()  # all of what it shows again, where there is no new answer
+
+    def _write(self, texts: Entries) -> None:
+        """Write into fields and answer once; a field that says already what stands there is left alone."""
+        for path, text in texts.items():
+            self.work.put(path, text)
+        for path, text in texts.items():
+            self.form.fields[path].set_value(text)
+        self.solve()
+        mistakes = self.work.mistakes[self.screen.name]
+        if "" in mistakes:  # about no single field: about those written
+            self.form.mark(mistakes | dict.fromkeys(texts, mistakes[""]))
+        self._edited()
 
     @property
     def progress(self) -> float:

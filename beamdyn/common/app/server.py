@@ -3,10 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Annotated
 
-from beamdyn.common.app.documents import Program
+from cyclopts import App, Parameter
+
+if TYPE_CHECKING:
+    from beamdyn.common.app.documents import Program
 
 MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
+_HOME = "127.0.0.1"
+
+
+def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
+    """Give a program's command line the command `app`.
+
+    Parameters
+    ----------
+    app : App
+        The command line.
+    program : callable
+        Makes the interactive program; it is called when it is known that it can be shown.
+    port : int
+        Port, if no other is asked for.
+    about : str
+        What the interactive program shows, in a sentence.
+    """
+    usual = port
+
+    @app.command(name="app", help=f"{about} Ctrl-C ends it.")
+    def interactive(
+        *,
+        port: int = usual,
+        host: str = _HOME,
+        browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
+    ) -> None:
+        """Serve the interactive program.
+
+        Parameters
+        ----------
+        port
+            Port to serve on.
+        host
+            Address to serve on; only this computer can reach the usual one.
+        browser
+            Open the browser.
+        """
+        serve(program, host, port, browser)
 
 
 def root_of(program: Program) -> Callable[[], Awaitable[None]]:
@@ -67,6 +109,7 @@ def _free(host: str, port: int) -> None:
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(address)
     except OSError as error:
+        remedy = "give another --port" if host == _HOME else "give another --port, or leave --host out"
         raise ValueError(
-            f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); give another --port"
+            f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); {remedy}"
         ) from None

@@ -1,131 +1,17 @@
-"""Figures as SVG and PNG, tables as HTML, rows as CSV, and the report that holds all: text in, text out."""
+"""What is shown of a screen's answer: text out, no page."""
 
 from __future__ import annotations
 
-import base64
-import csv
-import io
-import warnings
-from collections.abc import Iterable, Sequence
-from html import escape
 from typing import TYPE_CHECKING
 
-import numpy as np
+from beamdyn.common.rendering import csv_text, drawing, html, picture, png, svg
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from rich.console import RenderableType
-    from rich.table import Table
-
     from beamdyn.common.app.documents import Screen
 
-
-def svg(figure: Figure) -> str:
-    """A figure as the text of an SVG file; the same figure gives the same text."""
-    return _saved(figure, "svg").decode()
+__all__ = ["csv_text", "drawn", "html", "picture", "png", "svg"]
 
 
 def drawn(screen: Screen, answer: object, place: float) -> str:
-    """The SVG of an answer, or the sentence why there is none: of numbers too large to draw."""
-    try:
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)
-            return svg(screen.draw(answer, place))
-    except (ValueError, ArithmeticError) as error:
-        return f"There is no drawing: {error}"
-
-
-def further(screen: Screen, answer: object) -> str:
-    """The further drawings of an answer, each under its title, in HTML."""
-    parts = (
-        f"<h3>{escape(title)}</h3>{picture(svg(figure), title)}" for title, figure in screen.more(answer)
-    )
-    return "\n".join(parts)
-
-
-def png(figure: Figure) -> bytes:
-    """A figure as a PNG file."""
-    return _saved(figure, "png")
-
-
-def _saved(figure: Figure, kind: str) -> bytes:
-    from matplotlib import rc_context
-
-    file = io.BytesIO()
-    metadata = {"Date": None} if kind == "svg" else {}
-    with rc_context({"svg.hashsalt": "beamdyn"}), np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of a layout that has too little room
-        figure.savefig(file, format=kind, dpi=150, metadata=metadata)
-    return file.getvalue()
-
-
-def picture(text: str, words: str) -> str:
-    """An SVG as an HTML element that runs nothing; a sentence in its place as a paragraph.
-
-    Parameters
-    ----------
-    text : str
-        The SVG.
-    words : str
-        What it shows, for those who do not see it.
-    """
-    if not text.startswith("<?xml"):
-        return f"<p>{escape(text)}</p>"
-    data = base64.b64encode(text.encode()).decode()
-    return f'<img class="drawing" alt="{escape(words)}" src="data:image/svg+xml;base64,{data}">'
-
-
-def html(parts: Iterable[RenderableType]) -> str:
-    """Tables and sentences, as the commands print them, in HTML."""
-    return "\n".join(_html(part) for part in parts)
-
-
-def _html(part: RenderableType) -> str:
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    if isinstance(part, Group):
-        return html(part.renderables)
-    if isinstance(part, Table):
-        return _table(part)
-    if isinstance(part, Text) and part.style == "bold":
-        return f"<h3>{escape(part.plain)}</h3>"
-    return f"<p>{escape(str(part))}</p>"
-
-
-def _table(made: Table) -> str:
-    words = [column.justify == "left" for column in made.columns]
-    heads = [str(column.header) for column in made.columns]
-    rows = zip(*(column.cells for column in made.columns), strict=True)
-    body = "".join(_row([str(cell) for cell in row], words, "td") for row in rows)
-    head = _row(heads, words, "th")
-    return f'<div class="scrolls"><table><thead>{head}</thead><tbody>{body}</tbody></table></div>'
-
-
-def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    made = (
-        f'<{tag} class="{"words" if w else "number"}">{escape(cell)}</{tag}>'
-        for cell, w in zip(cells, words, strict=True)
-    )
-    return f"<tr>{''.join(made)}</tr>"
-
-
-def csv_text(rows: Iterable[Sequence[object]]) -> str:
-    """Rows as the text of a CSV file."""
-    file = io.StringIO()
-    csv.writer(file, lineterminator="\n").writerows(rows)
-    return file.getvalue()
-
-
-STYLE = """
-.drawing { width: 100%; height: auto; background: white; }
-.scrolls { overflow-x: auto; }
-.shown h3 { font-size: 1rem; font-weight: 600; margin: 0.8rem 0 0.2rem; line-height: 1.4; }
-.shown table { border-collapse: collapse; font-size: 0.875rem; }
-.shown th { border-bottom: 1px solid #555; font-weight: 600; }
-.shown td, .shown th { padding: 0.1rem 0.8rem 0.1rem 0; vertical-align: top; }
-.shown .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.shown .words { text-align: left; }
-.shown tbody tr:nth-child(even) { background: #f4f4f4; }
-"""
+    """The SVG of an answer, or the sentence why there is none."""
+    return drawing(lambda: screen.draw(answer, place))

@@ -21,7 +21,7 @@ def sweep_figure(found: Any) -> Figure:
     Parameters
     ----------
     found : Sweep
-        See `brakes.config.sweeps.Sweep`.
+        See `beamdyn.common.sweeps.Sweep`.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def sweep_figure(found: Any) -> Figure:
         ax.set_ylabel(heading)
         if len(labels) > 1:
             ax.legend(title=_second(found), fontsize=9, title_fontsize=9)
-    panels[-1].set_xlabel(_named(found.inputs[0].rpartition(".")[2], found.units[0]))
+    panels[-1].set_xlabel(_input(found, 0))
     return figure
 
 
@@ -61,7 +61,13 @@ def _groups(found: Any) -> list[tuple[str, list[str], np.ndarray]]:
 
 def _second(found: Any) -> str | None:
     """Heading of the legend: the second input."""
-    return _named(found.inputs[1].rpartition(".")[2], found.units[1]) if len(found.values) > 1 else None
+    return _input(found, 1) if len(found.values) > 1 else None
+
+
+def _input(found: Any, place: int) -> str:
+    """An input, without its table."""
+    path = found.inputs[place]
+    return _named((path.partition(".")[2] or path).replace(".", " "), found.units[place])
 
 
 def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:

@@ -1,0 +1,164 @@
+"""A drawing on the page, with handles over it that the pointer, a finger or the arrow keys move."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.app.documents import Handle
+from beamdyn.common.app.handles import Place, Sheet, View
+from beamdyn.common.rendering import address
+
+STYLE = """
+.board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
+.board .drawing { display: block; width: 100%; min-width: 0; max-height: none; user-select: none; }
+.handle { position: absolute; width: 16px; height: 16px; margin: -8px; border-radius: 50%; cursor: grab;
+  border: 2px solid #0072B2; background: rgb(255 255 255 / 0.35); box-shadow: 0 0 0 1px white;
+  touch-action: none; }
+.handle::after { content: ""; position: absolute; inset: -7px; }
+.handle.away { visibility: hidden; }
+.handle:hover { background: rgb(86 180 233 / 0.6); }
+.handle:active { cursor: grabbing; background: rgb(86 180 233 / 0.9); }
+"""
+_OFTEN = 0.1  # least time between two places of a moving handle that are sent [s]
+_PAUSE = 0.01  # time in which what was drawn is sent, and later places come in [s]
+_FAR = 10  # arrow keys' steps with shift
+
+# Sends where in the picture, in parts of its width and height, the handle would be under the pointer that
+# holds it, and whether it has been let go; by one listener, so that this comes last. The picture's place is
+# that at the start: one that a new sentence above it shifts would pull the point along.
+_HOLD = """(down) => {
+  if (down.button) return;
+  const handle = down.currentTarget, board = handle.parentElement;
+  const own = handle.getBoundingClientRect();
+  const aside = [down.clientX - own.x - own.width / 2, down.clientY - own.y - own.height / 2];
+  const box = board.getBoundingClientRect();
+  const send = (event, done) => {
+    const part = (at, size) => Math.min(Math.max(at / size, 0), 1);
+    emit(part(event.clientX - aside[0] - box.x, box.width),
+         part(event.clientY - aside[1] - box.y, box.height), done);
+  };
+  handle.setPointerCapture(down.pointerId);
+  handle.onpointermove = (event) => send(event, false);
+  handle.onpointerup = handle.onpointercancel = (event) => {
+    handle.onpointermove = handle.onpointerup = handle.onpointercancel = null;
+    send(event, true);
+  };
+}"""
+_KEY = """(event) => {
+  const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
+  if (!way || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  emit(way[0], way[1], event.shiftKey);
+}"""
+
+
+class Board:
+    """A drawing with its handles.
+
+    Parameters
+    ----------
+    words : str
+        What the drawing shows, for those who do not see it.
+    moved : callable
+        Called when a handle is to be elsewhere: handle, its new place (x, y) [m], whether it is let go.
+
+    Attributes
+    ----------
+    held : View, optional
+        How the drawing is to stay while a handle is held.
+    """
+
+    def __init__(self, words: str, moved: Callable[[Handle, Place, bool], object]) -> None:
+        self.held: View | None = None
+        self._moved = moved
+        self._sheet = Sheet("")
+        self._wanted: tuple[int, Place, bool] | None = None
+        self._follows = False
+        self._handles: list[Any] = []
+        self._said: Any = ui.label()
+        with ui.element("div").classes("w-full drawing-frame"):
+            self._board: Any = ui.element("div").classes("board")
+        with self._board:
+            self._picture: Any = ui.element("img").classes("drawing").props("draggable=false")
+            self._picture.props["alt"] = words
+        self._how: Any = ui.label("Drag the round points, or choose one by Tab and move it by arrow keys.")
+        self._how.classes("status")
+        self._board.set_visibility(False)
+        self._how.set_visibility(False)
+
+    def show(self, sheet: Sheet, entries: Mapping[str, str]) -> None:
+        """Show a drawing."""
+        self._show(sheet)
+        self._how.set_visibility(bool(sheet.handles))
+        for element in self._handles:
+            element.classes(add="" if sheet.handles else "away", remove="away" if sheet.handles else "")
+        if sheet.handles:  # of a drawing without, those before it stay: one of them may be held
+            self._make([handle.label for handle in sheet.handles])
+            self._sheet = sheet
+            for element, handle in zip(self._handles, sheet.handles, strict=True):
+                self._put(element, handle, entries)
+
+    def _show(self, sheet: Sheet) -> None:
+        drawn = sheet.view is not None
+        self._said.set_text("" if drawn else sheet.text)
+        self._board.set_visibility(drawn)
+        if drawn:
+            self._board.style(f"--ratio: {sheet.ratio:.6g}")
+            self._picture.props["src"] = address(sheet.text)
+
+    def _make(self, labels: list[str]) -> None:
+        """Handles for these points; where they are there already, they stay."""
+        if labels == [handle.label for handle in self._sheet.handles]:
+            return
+        for element in self._handles:
+            element.delete()
+        with self._board:
+            self._handles = [self._handle(i, label) for i, label in enumerate(labels)]
+
+    def _handle(self, i: int, label: str) -> Any:
+        made: Any = ui.element("div").classes("handle")
+        made.props('role="slider" tabindex=0 aria-roledescription="point that can be moved"')
+        made.props["aria-label"] = made.props["title"] = label
+        made.on("pointerdown", partial(self._pulled, i), throttle=_OFTEN, js_handler=_HOLD)
+        made.on("keydown", partial(self._stepped, i), js_handler=_KEY)
+        return made
+
+    def _put(self, element: Any, handle: Handle, entries: Mapping[str, str]) -> None:
+        x, y = self._sheet.place(handle)
+        element.style(f"left: {100 * x:.3f}%; top: {100 * y:.3f}%")
+        values = (f"{path.rpartition('.')[2]} {entries.get(path)}" for path in handle.moved(*handle.at))
+        element.props["aria-valuenow"] = round(100 * x)
+        element.props["aria-valuetext"] = ", ".join(values)
+
+    def _stepped(self, i: int, event: Any) -> None:
+        across, up, far = event.args
+        handle = self._sheet.handles[i]
+        step = handle.step * (_FAR if far else 1)
+        self._moved(handle, (handle.at[0] + step * across, handle.at[1] + step * up), True)
+
+    async def _pulled(self, i: int, event: Any) -> None:
+        """Follow to the place that is wanted last: those that come in meanwhile are left out."""
+        x, y, done = event.args
+        self._wanted = (i, (x, y), done)
+        if self._follows:
+            return
+        self._follows = True
+        try:
+            while self._wanted is not None:
+                wanted, self._wanted = self._wanted, None
+                self._follow(*wanted)
+                await asyncio.sleep(_PAUSE)
+        finally:
+            self._follows = False
+
+    def _follow(self, i: int, place: Place, done: bool) -> None:
+        handle, view = self._sheet.handles[i], self._sheet.view
+        assert view is not None
+        x, y = view.point(place)
+        self.held = None if done else view
+        self._moved(handle, (x / handle.scale, y / handle.scale), done)

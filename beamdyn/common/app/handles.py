@@ -1,0 +1,196 @@
+"""Points of a drawing that are moved: where they lie in its picture, and what a new place writes. No page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamdyn.common.app.documents import Handle, Screen
+from beamdyn.common.app.entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.inputs import Input
+from beamdyn.common.rendering import drawing
+from beamdyn.common.units import quantity
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Place = tuple[float, float]
+_UNITS = {"m": "mm", "rad": "deg"}  # where a field does not say in which
+_ANGLE = math.radians(0.1)  # to what an angle is rounded
+
+
+# In the picture -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the first axes of a drawing lie in its picture.
+
+    Parameters
+    ----------
+    limits : ndarray, shape (2, 2)
+        Lower left and upper right corner of the axes, in their own coordinates.
+    corners : ndarray, shape (2, 2)
+        The same corners in the picture: part of its width from the left, of its height from the top.
+    boxes : tuple
+        Places that the layout gave to all axes of the figure.
+    """
+
+    limits: np.ndarray
+    corners: np.ndarray
+    boxes: tuple[Any, ...] = ()
+
+    @classmethod
+    def of(cls, figure: Figure) -> View:
+        """That of a figure that has been drawn: only then its layout is made."""
+        ax = figure.axes[0]
+        limits = np.array([ax.get_xlim(), ax.get_ylim()], dtype=float).T
+        parts = ax.transData.transform(limits) / figure.bbox.size
+        boxes = tuple(axes.get_position(original=True) for axes in figure.axes)
+        return cls(limits, np.abs(parts - (0.0, 1.0)), boxes)
+
+    def keep(self, figure: Figure) -> None:
+        """Have a like figure drawn in the same way: its first axes show the same, and all stay in place."""
+        for axes, box in zip(figure.axes, self.boxes, strict=True):
+            axes.set_position(box)
+        (left, low), (right, high) = self.limits.tolist()
+        figure.axes[0].set(xlim=(left, right), ylim=(low, high))
+
+    def place(self, point: Place) -> Place:
+        """Where a point of the axes is in the picture."""
+        return _carried(point, self.limits, self.corners)
+
+    def point(self, place: Place) -> Place:
+        """The point of the axes at a place of the picture."""
+        return _carried(place, self.corners, self.limits)
+
+
+def _carried(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
+    x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
+    return float(x), float(y)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A drawing and its handles.
+
+    Parameters
+    ----------
+    text : str
+        Its SVG, or the sentence why there is none.
+    handles : tuple of Handle
+        Its points that can be moved.
+    view : View, optional
+        Where its axes lie; None if there is no drawing.
+    ratio : float
+        Its width over its height.
+    """
+
+    text: str
+    handles: tuple[Handle, ...] = ()
+    view: View | None = None
+    ratio: float = 1.0
+
+    def place(self, handle: Handle) -> Place:
+        """Where a handle is in the picture."""
+        assert self.view is not None
+        x, y = handle.at
+        return self.view.place((handle.scale * x, handle.scale * y))
+
+
+def sheet(screen: Screen, answer: Any, progress: float, view: View | None = None) -> Sheet:
+    """The drawing of an answer with its handles.
+
+    Parameters
+    ----------
+    screen : Screen
+        Whose answer it is.
+    answer : object
+        The answer.
+    progress : float
+        Place of the slider.
+    view : View, optional
+        Draw it in the same way as that one: a picture stays in place while a point of it moves.
+    """
+    handles: list[Handle] = []
+    figures: list[Figure] = []
+
+    def draw() -> Figure:
+        handles.extend(screen.handles(answer, progress))
+        figures.append(screen.draw(answer, progress))
+        if view is not None and handles:
+            view.keep(figures[0])
+        return figures[0]
+
+    text = drawing(draw)
+    if not text.startswith("<?xml"):
+        return Sheet(text)
+    width, height = figures[0].get_size_inches()
+    return Sheet(text, tuple(handles), View.of(figures[0]), float(width / height))
+
+
+# In the fields ------------------------------------------------------------------------------------------
+
+
+def written(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
+    """What a handle at a new place writes into fields: the texts that change, by path.
+
+    Parameters
+    ----------
+    handle : Handle
+        The handle.
+    target : tuple of float
+        Its new place (x, y) [m].
+    entries : mapping
+        What stands in the fields; a field keeps its unit.
+    inputs : sequence of Input
+        Descriptions of the fields.
+    """
+    known = {entry.path: entry for entry in inputs}
+    found = {
+        path: _text(value, entries.get(path, ""), known[path], handle.grain)
+        for path, value in handle.moved(*target).items()
+        if path in known  # the drawing may be that of another kind, the last good one
+    }
+    return {path: text for path, text in found.items() if text != entries.get(path, "")}
+
+
+def _text(value: float | Place, text: str, entry: Input, grain: float) -> str:
+    """A value as its field has it; as much of the text as says the same stays as it is."""
+    unit = entry.quantity.unit
+    if not isinstance(value, tuple):
+        return _number(value, text, unit, grain)
+    there = _coordinates(text, entry)
+    return toml_value([_number(v, t, unit, grain) for v, t in zip(value, there, strict=True)])
+
+
+def _coordinates(text: str, entry: Input) -> Sequence[str]:
+    """Texts of a point's coordinates: as given, or those that hold if nothing is given."""
+    if not text.strip() and isinstance(entry.default, tuple):
+        return [f"{1e3 * value:.6g} mm" for value in entry.default]
+    found = tables_of({"point": text}, ()).get("point")
+    return [str(part) for part in found] if isinstance(found, list) and len(found) == 2 else ["", ""]
+
+
+def _number(value: float, text: str, unit: str, grain: float) -> str:
+    """A quantity in the unit of a text, rounded; the text itself if it says the same within rounding."""
+    grain = grain if unit == "m" else _ANGLE
+    try:
+        if abs(quantity(text, unit) - value) <= grain / 2:
+            return text
+    except ValueError:
+        pass
+    shown = _unit_of(text, unit)
+    size = quantity(f"1 {shown}", unit)
+    decimals = max(0, -math.floor(math.log10(grain / size) + 1e-9))
+    return f"{round(value / size, decimals) + 0.0:.{decimals}f} {shown}"
+
+
+def _unit_of(text: str, unit: str) -> str:
+    """The unit in which a text is given, if it is a usual one."""
+    by_length = sorted(units_for(unit), key=len, reverse=True)
+    return next((u for u in by_length if text.rstrip().endswith(u)), _UNITS.get(unit, unit))

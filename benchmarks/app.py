@@ -1,0 +1,63 @@
+"""Speed of the interactive programs' screens, without their page.  Run: python -m benchmarks.app
+
+Prints how long each screen takes to answer a change of its form, and to draw the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from statistics import median
+from time import perf_counter
+
+from beamdyn.app.program import BEAMDYN
+from beamdyn.common.app.documents import Program
+from beamdyn.common.app.session import Work
+from beamdyn.common.app.shown import drawn
+from benchmarks.beam_core import Row, show
+from brakes.app.program import BRAKES
+
+RUNS, BOUND = 9, 100  # how often each is done, and what "at once" is [ms]
+
+
+def screens(program: Program) -> Iterator[Row]:
+    """Every screen of a program, on the design that it opens with."""
+    for document in program.documents:
+        work = Work(document)
+        for screen in document.screens:
+            time = _median(lambda screen=screen, work=work: work.solve(screen))
+            yield f"{screen.name}: answer to a change [ms]", f"{1e3 * time:.1f}", f"{BOUND}"
+            answer = work.answered[screen.name].answer
+            time = _median(lambda screen=screen, answer=answer: drawn(screen, answer, 1.0))
+            yield f"{screen.name}: drawing as SVG [ms]", f"{1e3 * time:.0f}", ""
+
+
+def _median(action: Callable[[], object]) -> float:
+    """Usual time of an action, the first time left out [s]."""
+    action()
+    times = []
+    for _ in range(RUNS):
+        start = perf_counter()
+        action()
+        times.append(perf_counter() - start)
+    return median(times)
+
+
+def brakes() -> Iterator[Row]:
+    """Screens of `brakes app`."""
+    return screens(BRAKES)
+
+
+def beamdyn() -> Iterator[Row]:
+    """Screens of `beamdyn app`."""
+    return screens(BEAMDYN)
+
+
+PARTS = brakes, beamdyn
+
+
+def main() -> None:
+    show("interactive programs", *PARTS)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+"""The inputs of calipers and mechanisms as forms and sweeps need them, and named designs as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from beamdyn.common.inputs import Input, Quantity, describe
+from beamdyn.common.units import show
+from brakes.calipers import NAMED
+from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, named
+from brakes.planar.rows import Point as Coordinates
+
+PARTS = {
+    "pin": "pins: name, body, other (the ground if not given), at; radius, friction",
+    "bar": "bars: name, body, other, at, to; length",
+    "slot": "slots: name, body, other, at, along; on, friction",
+    "contact": "contacts: name, body, other, at, normal; on, friction",
+    "rotation_lock": "bodies that turn together: name, body, other; ratio",
+    "cable": "cables of fixed length: name, bodies, points; length",
+    "force": "forces: name, body, at, direction; magnitude (unknown if not given), follows",
+    "moment": "moments: name, body, other; magnitude",
+    "cable_pair": "cables with their housing: name, body, other, at, to; magnitude",
+    "spring": "springs: name, body, other, at, to, stiffness, free_length",
+    "torsion_spring": "torsion springs: name, body, other, stiffness, free_angle",
+}
+_TABLES = ("points", *PARTS)
+
+
+def caliper_inputs(name: str) -> list[Input]:
+    """Inputs of the caliper of a name; those without dimensions where there is no such name."""
+    return describe(type(named(name)) if name in NAMED else CaliperInput)
+
+
+def mechanism_inputs(points: Iterable[str]) -> list[Input]:
+    """Inputs of a mechanism: one for each of its points, one for each list of parts."""
+    rest = {entry.path: entry for entry in describe(MechanismInput) if _table(entry.path) not in _TABLES}
+    place = PointQuantity("m", meaning="point in the drawing")
+    return [
+        rest.pop("title"),
+        rest.pop("bodies"),
+        *(_input(f"points.{name}", Coordinates, place, required=True) for name in points),
+        *(_input(part, list[dict], Quantity(meaning=words)) for part, words in PARTS.items()),
+        *rest.values(),
+    ]
+
+
+def _table(path: str) -> str:
+    return path.partition(".")[0]
+
+
+def _input(path: str, kind: Any, asked: Quantity, required: bool = False) -> Input:
+    return Input(path, MechanismInput, kind, asked, (), required, None if required else [])
+
+
+def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
+    """Inputs of what tables describe."""
+    name, points = tables.get("caliper"), tables.get("points")
+    if isinstance(name, str):
+        return caliper_inputs(name)
+    return mechanism_inputs(points if isinstance(points, dict) else ())
+
+
+def named_text(name: str) -> str:
+    """The file of a named caliper with all its dimensions."""
+    given = named(name)
+    inputs = [entry for entry in caliper_inputs(name) if entry.path.startswith("dimensions.")]
+    lines = [f"{entry.name} = {_shown(entry)}" for entry in inputs]
+    return "\n".join([f"caliper = {show(given.caliper)}", "", "[dimensions]", *lines]) + "\n"
+
+
+def _shown(entry: Input) -> str:
+    """A dimension as a file gives it, lengths in mm."""
+    value: Any = entry.default
+    if isinstance(value, tuple):
+        return f"[{', '.join(_length(part) for part in value)}]"
+    return _length(value) if entry.quantity.unit == "m" else show(value)
+
+
+def _length(metres: float) -> str:
+    return f'"{1e3 * metres:.12g} mm"'

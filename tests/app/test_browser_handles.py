@@ -1,0 +1,149 @@
+"""Points that are dragged in a real browser: with the mouse, too far and back, and by the arrow keys."""
+
+import pytest
+
+from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT
+
+sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
+expect = sync_api.expect
+pytestmark = IN_BROWSER
+NEAR = 2.0  # [px]: a picture is a tenth of a millimetre or less a pixel, to which what is written is rounded
+
+
+def go(page, name):
+    page.get_by_role("tab", name=name).click()
+    expect(page.locator("img.drawing:visible")).to_have_count(1)
+    page.wait_for_timeout(500)
+
+
+def handle(page, label):
+    return page.get_by_role("slider", name=label, exact=True).locator("visible=true")
+
+
+def field(page, path):
+    return page.locator(f"input[data-path='{path}'], [data-path='{path}'] input").first
+
+
+def middle(found):
+    box = found.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def pull(page, found, across, down):
+    """Take hold of a handle beside its middle, and pull it in a few steps; it is not let go."""
+    x, y = middle(found)
+    page.mouse.move(x + 3, y + 2)
+    page.mouse.down()
+    page.mouse.move(x + 3 + across, y + 2 + down, steps=12)
+    return x + across, y + down
+
+
+def follows(page, found, x, y):
+    """Wait until a handle is under the pointer that holds it."""
+    for _ in range(50):
+        at = middle(found)
+        if abs(at[0] - x) < NEAR and abs(at[1] - y) < NEAR:
+            return
+        page.wait_for_timeout(100)
+    raise AssertionError(f"the handle is at {at}, the pointer holds it at {(x, y)}")
+
+
+def drawing(page):
+    return page.locator("img.drawing:visible").get_attribute("src")
+
+
+@pytest.mark.parametrize(
+    "screen, label, path, way",
+    [
+        ("Vehicle", "centre of gravity of the load", "truck.load_cg_y", (0, -30)),
+        ("Kinematics", "tip of the shoe", "brake.tip_x", (-30, 20)),
+        ("Drum brake", "pin of the shoe", "shoe.pivot_offset", (15, -20)),
+        ("Caliper", "pivot of the arm of the right pad", "dimensions.side_pivot", (-25, 20)),
+    ],
+)
+def test_point_follows_the_mouse_and_writes_its_field(page, screen, label, path, way):
+    go(page, screen)
+    before, picture = field(page, path).input_value(), drawing(page)
+    found = handle(page, label)
+    x, y = pull(page, found, *way)
+    follows(page, found, x, y)
+    assert field(page, path).input_value() != before
+    held = drawing(page)
+    assert held != picture
+    page.mouse.up()
+    page.wait_for_timeout(1500)
+    written = field(page, path).input_value()
+    assert written not in ("", before)
+    expect(page.get_by_text("Up to date.").locator("visible=true")).to_be_visible()
+    page.mouse.move(x + 100, y + 100, steps=4)  # it has been let go
+    page.wait_for_timeout(500)
+    assert field(page, path).input_value() == written
+
+
+def test_dragged_too_far_marks_the_field_and_greys_and_back_recovers(page):
+    go(page, "Kinematics")
+    found = handle(page, "tip of the shoe")
+    start = middle(found)
+    pull(page, found, 200, -40)  # out of the drum
+    expect(page.locator(".greyed:visible")).to_have_count(1)
+    expect(page.locator(".q-field--error:visible")).not_to_have_count(0)
+    page.mouse.move(start[0] - 20, start[1] + 10, steps=5)
+    expect(page.locator(".greyed:visible")).to_have_count(0)
+    expect(page.locator(".q-field--error:visible")).to_have_count(0)
+    page.mouse.up()
+    pull(page, found, 200, -40)
+    page.wait_for_timeout(500)
+    page.mouse.up()
+    expect(page.locator(".greyed:visible")).to_have_count(1)
+    x, y = pull(page, found, -10, 10)  # from where the last good result has it
+    expect(page.locator(".greyed:visible")).to_have_count(0)
+    follows(page, found, x, y)
+    page.mouse.up()
+
+
+def test_dragged_until_the_brake_locks_and_back(page):
+    """A locked brake is not drawn: its handle is away, but still held."""
+    go(page, "Drum brake")
+    friction = field(page, "brake.friction")
+    friction.fill("1.0")
+    page.wait_for_timeout(1000)
+    found = handle(page, "end of the lining")
+    x, y = pull(page, found, -90, -90)
+    expect(page.locator(".handle:visible")).to_have_count(0)
+    page.mouse.move(x + 93, y + 92, steps=5)
+    expect(page.locator(".handle:visible")).to_have_count(5)
+    page.mouse.up()
+
+
+def test_arrow_keys_move_the_point_that_has_the_focus(page):
+    go(page, "Caliper")
+    found = handle(page, "roller between the arms")
+    found.focus()
+    page.keyboard.press("ArrowRight")
+    expect(field(page, "dimensions.roller")).to_have_value('["13.5 mm", "1 mm"]')
+    page.keyboard.press("Shift+ArrowDown")
+    expect(field(page, "dimensions.roller")).to_have_value('["13.5 mm", "-4.0 mm"]')
+    expect(found).to_be_focused()
+    expect(found).to_have_attribute("aria-valuetext", 'roller ["13.5 mm", "-4.0 mm"]')
+
+
+def test_a_field_moves_its_point(page):
+    go(page, "Kinematics")
+    x, _ = middle(handle(page, "adjuster's pin"))
+    field(page, "brake.adjuster_x").fill("45 mm")
+    page.wait_for_timeout(1500)
+    assert middle(handle(page, "adjuster's pin"))[0] < x - 5
+
+
+@pytest.mark.parametrize("width", [1280, 800])
+def test_handles_stay_on_the_drawing_at_any_width(page, width):
+    page.set_viewport_size({"width": width, "height": 900})
+    for name in ("Vehicle", "Kinematics", "Drum brake", "Caliper"):
+        go(page, name)
+        box = page.locator("img.drawing:visible").bounding_box()
+        board = page.locator(".board:visible").bounding_box()
+        assert box == pytest.approx(board, abs=1)
+        for found in page.locator(".handle:visible").all():
+            x, y = middle(found)
+            assert box["x"] < x < box["x"] + box["width"]
+            assert box["y"] < y < box["y"] + box["height"]

@@ -1,0 +1,132 @@
+"""The page of the interactive programs in a real browser: layout, keyboard, names, a program that stops."""
+
+import pytest
+
+from beamdyn.app.program import BEAMDYN
+from brakes.app.program import BRAKES
+from tests.app.browsing import DRAWING, drawing, field, go, kept, redrawn, shown
+from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, free_port, start, stop
+
+sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
+expect = sync_api.expect
+expect.set_options(timeout=15_000)
+pytestmark = IN_BROWSER
+
+SCREENS = [(p.name, s.name) for p in (BRAKES, BEAMDYN) for d in p.documents for s in d.screens]
+NAMED = ("textbox", "combobox", "slider", "button", "tab", "image", "checkbox")
+
+
+@pytest.fixture(scope="module")
+def pages(shared):
+    """One page a program, for tests that only look."""
+    return {program: shared(program) for program in ("brakes", "beamdyn")}
+
+
+@pytest.mark.parametrize("program, name", SCREENS)
+def test_screen_fits_at_1280_and_at_800_pixels(pages, program, name):
+    page = pages[program]
+    for width in (1280, 800):
+        page.set_viewport_size({"width": width, "height": 900})
+        go(page, name)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        box = page.locator(f"{DRAWING}:visible").bounding_box()
+        assert box["width"] > 0.5 * width
+        assert box["x"] >= 0 and box["x"] + box["width"] <= width
+
+
+@pytest.mark.parametrize("program, name", SCREENS)
+def test_everything_that_is_used_has_a_name(pages, program, name):
+    page = pages[program]
+    go(page, name)
+    found = used(page)
+    assert len(found) > 10
+    assert [node for node in found if not node["name"].get("value", "").strip()] == []
+
+
+def test_everything_in_the_dialog_has_a_name(page):
+    page.get_by_role("button", name="File").click()
+    page.get_by_text("Open a TOML file", exact=True).click()
+    expect(page.get_by_role("button", name="Close")).to_be_visible()
+    names = [node["name"].get("value", "") for node in used(page)]
+    assert "Close" in names
+    assert "" not in names
+
+
+def used(page):
+    """What a page offers to those who use it without seeing it, or by keyboard."""
+    nodes = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
+    return [node for node in nodes if not node["ignored"] and node["role"]["value"] in NAMED]
+
+
+def test_form_stays_while_results_scroll_and_another_screen_starts_at_its_top(page):
+    page.mouse.move(900, 500)
+    page.mouse.wheel(0, 10_000)
+    page.wait_for_function("scrollY > 100")
+    expect(field(page, "empty mass, m")).to_be_in_viewport()
+    assert field(page, "empty mass, m").bounding_box()["y"] > 40  # below the tabs
+    go(page, "Drum brake")
+    page.wait_for_function("scrollY === 0")
+
+
+def focused(page):
+    """Label of what has the focus, and how wide its mark is."""
+    return page.evaluate(
+        "(e => [e.getAttribute('aria-label') || e.innerText, getComputedStyle(e).outlineWidth])"
+        "(document.activeElement)"
+    )
+
+
+def test_keyboard_goes_from_tabs_to_the_form_to_the_results(page):
+    page.get_by_role("tab", name="Vehicle").focus()
+    page.keyboard.press("ArrowRight")
+    assert focused(page) == ["Kinematics", "3px"]
+    page.keyboard.press("ArrowLeft")
+    order = []
+    while "download Vehicle as CSV" not in order and len(order) < 80:
+        page.keyboard.press("Tab")
+        order.append(focused(page)[0])
+    labels = ["File", "empty mass, m", "wheelbase, L", "speed, V", "download Vehicle as SVG"]
+    places = [order.index(label) for label in labels]
+    assert places == sorted(places)
+
+
+def test_screen_is_chosen_by_keyboard(page):
+    page.get_by_role("tab", name="Vehicle").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(f"{DRAWING}[alt^='Kinematics']")
+
+
+def test_mistake_in_a_folded_table_is_seen(page):
+    go(page, "Vehicle")
+    field(page, "friction, mu").fill("much")
+    expect(page.get_by_text("stop.friction").locator("visible=true")).to_be_visible()
+    page.get_by_role("button", name="[stop]").click()
+    expect(page.get_by_text("stop.friction").locator("visible=true")).to_have_count(0)
+    field(page, "wheelbase, L").fill("2 m")
+    expect(page.get_by_text("stop.friction").locator("visible=true")).to_be_visible()
+
+
+@pytest.mark.parametrize("program, label", [("brakes", "front wheel radius, r1"), ("beamdyn", "radius, r")])
+def test_page_that_is_open_while_its_program_stops_says_so_and_goes_on(opened, program, label):
+    port = free_port()
+    process = start(port, program)
+    try:
+        page = opened(at=f"http://127.0.0.1:{port}/")
+        field(page, label).fill("0.42 m")
+        kept(page, "0.42 m")
+    finally:
+        stop(process)
+    banner = shown(page, f'Start "{program} app --port {port}" again: this page goes on by itself.')
+    expect(banner).to_be_visible()
+    expect(banner).to_be_in_viewport()
+    process = start(port, program)
+    try:
+        expect(banner).not_to_be_visible(timeout=20_000)
+        expect(field(page, label)).to_have_value("0.42 m")
+        expect(shown(page, "Up to date.")).to_be_visible()
+        before = drawing(page)
+        field(page, label).fill("0.41 m")
+        redrawn(page, before)
+    finally:
+        stop(process)

@@ -1,0 +1,229 @@
+"""The screen of mechanisms that files describe part by part."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beamdyn.common.app.entries import entries_of, tables_of, toml_of
+from beamdyn.common.app.session import Work
+from beamdyn.common.app.shown import drawn, html
+from beamdyn.common.config import ConfigError, parse
+from beamdyn.common.rendering import svg
+from brakes.app.caliper import CALIPER
+from brakes.app.mechanism import MECHANISM
+from brakes.app.program import BRAKES
+from brakes.cli import main
+from brakes.config.mechanism import parse_mechanism
+
+EXAMPLES = Path(__file__).parents[2] / "examples" / "calipers"
+SCREEN = MECHANISM.screens[0]
+FILES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.toml"))}
+OF_PARTS = ("own-caliper", "toggle-clamp")
+
+
+def opened(text):
+    work = Work(MECHANISM)
+    work.open(text, "mine.toml")
+    return work
+
+
+def answer(work):
+    assert work.solve(SCREEN), work.mistakes
+    return work.answered[SCREEN.name].answer
+
+
+@pytest.mark.parametrize("name", OF_PARTS)
+def test_file_of_parts_opens_solves_and_is_saved(name):
+    work = opened(FILES[name])
+    found = answer(work)
+    assert "<table>" in html(SCREEN.report(found))
+    assert drawn(SCREEN, found, 0.5).startswith("<?xml")
+    assert not SCREEN.notes(found)
+    assert parse_mechanism(work.text()) == parse_mechanism(FILES[name])
+    assert MECHANISM.opened(work.text(), "saved") == work.entries
+
+
+def test_screen_shows_what_the_command_prints(capsys):
+    """Hibbeler, Statics, 14th edition, problem 6-80: the work takes 3.6427 times the hand's force."""
+    assert main(["caliper", str(EXAMPLES / "toggle-clamp.toml")]) == 0
+    printed = capsys.readouterr().out
+    shown = html(SCREEN.report(answer(opened(FILES["toggle-clamp"]))))
+    assert "364.27" in printed and ">364.27<" in shown
+    words = {word for line in printed.splitlines() for word in line.split() if any(map(str.isdigit, word))}
+    missing = {word for word in words if word not in shown}
+    assert not missing
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_each_file_opens_on_one_screen(name):
+    accepted = []
+    for document in BRAKES.documents:
+        try:
+            document.opened(FILES[name], f"{name}.toml")
+        except ConfigError as error:
+            assert "screen of its own" in str(error) or document not in (CALIPER, MECHANISM)
+        else:
+            accepted.append(document)
+    assert accepted == [MECHANISM if name in OF_PARTS else CALIPER]
+
+
+def test_a_moved_point_moves_what_names_it():
+    work = opened(FILES["toggle-clamp"])
+    work.put("points.C", '["18 mm", "20 mm"]')
+    text = FILES["toggle-clamp"].replace('C = ["20 mm", "20 mm"]', 'C = ["18 mm", "20 mm"]')
+    one, other = answer(work), answer(opened(text))
+    assert np.array_equal(one.over.amplitudes["work"], other.over.amplitudes["work"])
+    assert parse_mechanism(work.text()) == parse_mechanism(text)
+
+
+def test_handles_are_the_points_as_drawn():
+    found = answer(opened(FILES["toggle-clamp"]))
+    handles = {handle.label: handle for handle in SCREEN.handles(found, 1.0)}
+    assert set(handles) == {"A", "B", "C", "D", "E", "grip"}
+    assert handles["grip"].at == pytest.approx((0.080, 0.012), rel=1e-12)
+    assert handles["grip"].moved(0.01, 0.02) == {"points.grip": (0.01, 0.02)}
+    low, high = np.array(
+        [SCREEN.draw(found, 1.0).axes[0].get_xlim(), SCREEN.draw(found, 1.0).axes[0].get_ylim()]
+    ).T
+    places = 1e3 * np.array([handle.at for handle in handles.values()])
+    assert ((low < places) & (places < high)).all()
+
+
+def test_slider_goes_from_the_drawing_to_the_end_of_the_stroke():
+    found = answer(opened(FILES["toggle-clamp"]))
+    places = [svg(SCREEN.draw(found, part)) for part in (0.0, 0.5, 1.0)]
+    assert len(set(places)) == 3
+    assert places[2] == svg(found.figure())
+
+
+def test_without_a_stroke_the_slider_has_nothing_to_move():
+    found = answer(opened(FILES["toggle-clamp"].partition("[run]")[0]))
+    assert found.motion is None
+    assert svg(SCREEN.draw(found, 0.0)) == svg(SCREEN.draw(found, 1.0))
+
+
+# Entries that are wrong ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "path, text, sentence",
+    [
+        ("pin", '[{ name = "A" ', "not valid TOML"),
+        ("pin", "A", "not valid TOML"),
+        ("pin", '"A"', "give a list of tables"),
+        ("pin", '[{ name = "A", body = "arm", at = "X" }]', "no such point in [points]"),
+        ("pin", '[{ name = "A", body = "arm" }]', "missing; give the point"),
+        (
+            "force",
+            '[{ name = "F", body = "arm", at = "E", direction = [0, 1], magnitude = "1 m" }]',
+            "length",
+        ),
+        ("bodies", "arm, handle", "give a list in brackets"),
+        ("bodies", "", "missing"),
+        ("points.A", '["1 mm"]', "give two values"),
+        ("points.A", "here", "no such point"),
+        ("run.driver", "foot", "no such load; name one of hand, work"),
+        ("run.travel", "10 deg", "moves by a length"),
+        ("caliper.pads", '["a", "b"]', "caliper.cable: missing"),
+    ],
+)
+def test_mistake_is_a_sentence(path, text, sentence):
+    work = opened(FILES["toggle-clamp"])
+    before = answer(work)
+    work.put(path, text)
+    assert not work.solve(SCREEN)
+    said = [s for sentences in work.mistakes[SCREEN.name].values() for s in sentences]
+    assert any(sentence in s for s in said), said
+    assert work.answered[SCREEN.name].answer is before
+    if path not in ("caliper.pads", "bodies"):
+        assert path in work.mistakes[SCREEN.name]
+
+
+@pytest.mark.parametrize("travel", ["15 mm", "1 km"])
+def test_a_stroke_past_the_toggle_is_refused_as_the_command_does(travel, tmp_path, capsys):
+    work = opened(FILES["toggle-clamp"])
+    work.put("run.travel", travel)
+    assert not work.solve(SCREEN)
+    (said,) = work.mistakes[SCREEN.name].values()
+    file = tmp_path / "far.toml"
+    file.write_text(work.text(), encoding="utf-8")
+    assert main(["caliper", str(file)]) == 1
+    assert said[0] in capsys.readouterr().err
+
+
+def test_what_statics_does_not_determine_is_a_note():
+    work = opened(FILES["toggle-clamp"].partition("[run]")[0])
+    held = work.entries["pin"].replace("]", ',\n { name = "extra", body = "arm", at = "E" }]')
+    work.put("pin", held)
+    (note,) = SCREEN.notes(answer(work))[:1]
+    assert "not determined" in note or "indeterminate" in note or "determine" in note
+
+
+def test_names_with_spaces_are_kept_and_names_with_dots_refused():
+    spaced = FILES["toggle-clamp"].replace('grip = ["80', '"the grip" = ["80').replace('"grip"', '"the grip"')
+    work = opened(spaced)
+    assert work.entries["points.the grip"] == '["80 mm", "12 mm"]'
+    assert parse_mechanism(work.text()) == parse_mechanism(spaced)
+    dotted = spaced.replace("the grip", "the.grip")
+    with pytest.raises(ConfigError, match=r'points: "the\.grip" has a dot'):
+        opened(dotted)
+    assert parse_mechanism(dotted)  # which the command does read
+
+
+# Lists of tables as entries -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", OF_PARTS)
+def test_lists_are_entries_of_a_line_a_part_and_come_back(name):
+    tables = parse(FILES[name], name)
+    inputs = MECHANISM.inputs(entries_of(tables, ()))
+    entries = entries_of(tables, inputs)
+    assert tables_of(entries, inputs) == tables
+    assert len(entries["pin"].splitlines()) == len(tables["pin"]) == 2
+    assert parse(toml_of(tables), "again") == tables
+    assert toml_of(tables).count("[[pin]]") == 2
+
+
+# On the page --------------------------------------------------------------------------------------------
+
+
+def test_a_file_of_parts_opens_on_its_screen_and_a_caliper_on_its_own(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        page.go("Mechanism")
+        assert page.field("bodies").value == '["handle", "arm"]'
+        assert page.field("pin").__class__.__name__ == "Textarea"
+        page.enter("points.C", "here")
+        assert "no such point" in page.field("points.C").error
+        page.enter("points.C", '["20 mm", "20 mm"]')
+        assert page.field("points.C").error is None
+
+    simulate(BRAKES, body)
+
+
+def test_free_bodies_are_drawn_when_they_are_opened(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        page.go("Mechanism")
+        folds = [e for e in page.user.client.elements.values() if e.props.get("label") == "Free bodies"]
+        assert len(folds) == 2  # of the caliper and of the mechanism
+
+        def drawings():
+            return sum(
+                'alt="Free bodies"' in str(e.props.get("innerHTML"))
+                for e in page.user.client.elements.values()
+            )
+
+        assert drawings() == 0
+        with page.user.client:
+            folds[1].set_value(True)
+        assert drawings() == 1
+        before = [str(e.props["innerHTML"]) for e in page.user.client.elements.values()
+                  if 'alt="Free bodies"' in str(e.props.get("innerHTML"))]  # fmt: skip
+        page.enter("points.C", '["18 mm", "20 mm"]')
+        after = [str(e.props["innerHTML"]) for e in page.user.client.elements.values()
+                 if 'alt="Free bodies"' in str(e.props.get("innerHTML"))]  # fmt: skip
+        assert before != after
+
+    simulate(BRAKES, body)

@@ -1,0 +1,76 @@
+"""The report on a document of an interactive program."""
+
+import re
+import tomllib
+from html import unescape
+
+import pytest
+
+from beamdyn import __version__
+from beamdyn.app.program import BEAMDYN
+from beamdyn.common.app.reporting import report_of
+from beamdyn.common.app.session import Work
+from beamdyn.common.rendering import html
+from brakes.app.caliper import CALIPER
+from brakes.app.drum import DRUM
+from brakes.app.program import BRAKES
+
+DOCUMENTS = [*BRAKES.documents, *BEAMDYN.documents]
+
+
+def solved(document):
+    work = Work(document)
+    for screen in document.screens:
+        assert work.solve(screen), work.mistakes
+    return work
+
+
+def inputs(page):
+    (text,) = re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)
+    return tomllib.loads(unescape(text))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda d: d.name)
+def test_report_has_inputs_results_drawings_and_version(document):
+    work = solved(document)
+    page = report_of(work, "Mine")
+    drawings = sum(1 + len(screen.more) for screen in document.screens)
+    assert page.count("data:image/svg+xml;base64,") == drawings
+    assert inputs(page) == tomllib.loads(work.text()) == tomllib.loads(document.base)
+    assert f"beamdyn {__version__}" in page
+    assert all(f"# {path} = {text}" in page for path, text in document.aside.items())
+    for screen in document.screens:
+        found = work.answered[screen.name].answer
+        assert f"<h2>{screen.name}</h2>" in page
+        assert html(screen.report(found)) in page
+        assert all(f"Warning:</strong> {note}" in unescape(page) for note in screen.notes(found))
+
+
+def test_report_has_a_warning_once():
+    """The forklift's lining enters the drum: a warning of kinematics and of forces, but once each."""
+    work = solved(BRAKES.documents[0])
+    page = report_of(work, "Mine")
+    for part in page.split("<h2>")[1:]:
+        said = re.findall(r"Warning:</strong> (.*?)</p>", part)
+        assert len(said) == len(set(said))
+    assert page.count("the lining enters the drum by") >= 1
+
+
+def test_refused_answer_is_reported_with_its_reason():
+    work = Work(DRUM)
+    work.put("brake.friction", "1.2")
+    assert work.solve(DRUM.screens[0])
+    assert "Warning:</strong> locked: friction 1.2" in report_of(work, "Mine")
+
+
+def test_free_bodies_are_in_the_report_of_a_caliper():
+    page = report_of(solved(CALIPER), "Mine")
+    assert "<h3>Free bodies</h3>" in page and 'alt="Free bodies"' in page
+
+
+def test_answer_that_is_stale_is_left_out():
+    work = solved(CALIPER)
+    work.put("run.finger", "much")
+    assert not work.solve(CALIPER.screens[0])
+    page = report_of(work, "Mine")
+    assert "<table>" not in page and inputs(page)["run"]["finger"] == "much"
