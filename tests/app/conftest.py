@@ -151,7 +151,7 @@ def opening(browser, address):
         page = context.new_page()
         page.on("pageerror", lambda error: failures.append(str(error)))
         page.on("dialog", lambda dialog: failures.append(f"a dialog: {dialog.message}"))
-        page.set_default_timeout(15_000)
+        page.set_default_timeout(30_000)  # when the machine does much else
         page.goto(at or address(program))
         page.wait_for_selector("img.drawing")
         return page

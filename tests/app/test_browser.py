@@ -10,7 +10,7 @@ from tests.app.serving import CHROMIUM, IN_BROWSER, NO_PLAYWRIGHT, free_port, st
 __all__ = ["CHROMIUM", "free_port", "start", "stop"]  # other modules take them from here, too
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
-expect.set_options(timeout=15_000)
+expect.set_options(timeout=30_000)
 pytestmark = IN_BROWSER
 
 CHANGED = {"brakes": ("speed, V", "25 km/h"), "beamdyn": ("radius, r", "0.3 m")}

@@ -10,7 +10,7 @@ from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, free_port, start, stop
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
-expect.set_options(timeout=15_000)
+expect.set_options(timeout=30_000)
 pytestmark = IN_BROWSER
 
 

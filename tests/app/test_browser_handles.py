@@ -2,18 +2,13 @@
 
 import pytest
 
+from tests.app.browsing import DRAWING, drawing, go
 from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
 pytestmark = IN_BROWSER
 NEAR = 2.0  # [px]: a picture is a tenth of a millimetre or less a pixel, to which what is written is rounded
-
-
-def go(page, name):
-    page.get_by_role("tab", name=name).click()
-    expect(page.locator("img.drawing:visible")).to_have_count(1)
-    page.wait_for_timeout(500)
 
 
 def handle(page, label):
@@ -48,10 +43,6 @@ def follows(page, found, x, y):
     raise AssertionError(f"the handle is at {at}, the pointer holds it at {(x, y)}")
 
 
-def drawing(page):
-    return page.locator("img.drawing:visible").get_attribute("src")
-
-
 @pytest.mark.parametrize(
     "screen, label, path, way",
     [
@@ -78,6 +69,20 @@ def test_point_follows_the_mouse_and_writes_its_field(page, screen, label, path,
     page.mouse.move(x + 100, y + 100, steps=4)  # it has been let go
     page.wait_for_timeout(500)
     assert field(page, path).input_value() == written
+
+
+def test_picture_is_fitted_when_the_point_is_let_go(page):
+    go(page, "Caliper")
+    found = handle(page, "stop of the housing, on the arm of the left pad")
+    x, y = pull(page, found, 30, -60)
+    follows(page, found, x, y)
+    held = drawing(page)
+    page.mouse.up()
+    page.wait_for_function(
+        "([wanted, held]) => document.querySelector(wanted).src != held",
+        arg=[f"{DRAWING}[alt^='Caliper']", held],
+    )
+    assert middle(found)[1] > y + 5  # [px] the picture reaches farther up
 
 
 def test_dragged_too_far_marks_the_field_and_greys_and_back_recovers(page):
@@ -140,7 +145,8 @@ def test_handles_stay_on_the_drawing_at_any_width(page, width):
     page.set_viewport_size({"width": width, "height": 900})
     for name in ("Vehicle", "Kinematics", "Drum brake", "Caliper"):
         go(page, name)
-        box = page.locator("img.drawing:visible").bounding_box()
+        expect(page.locator(".board:visible")).to_have_count(1)
+        box = page.locator(f"{DRAWING}:visible").bounding_box()
         board = page.locator(".board:visible").bounding_box()
         assert box == pytest.approx(board, abs=1)
         for found in page.locator(".handle:visible").all():

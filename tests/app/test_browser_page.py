@@ -9,7 +9,7 @@ from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, free_port, start, stop
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
-expect.set_options(timeout=15_000)
+expect.set_options(timeout=30_000)
 pytestmark = IN_BROWSER
 
 SCREENS = [(p.name, s.name) for p in (BRAKES, BEAMDYN) for d in p.documents for s in d.screens]
@@ -122,7 +122,7 @@ def test_page_that_is_open_while_its_program_stops_says_so_and_goes_on(opened, p
     expect(banner).to_be_in_viewport()
     process = start(port, program)
     try:
-        expect(banner).not_to_be_visible(timeout=20_000)
+        expect(banner).not_to_be_visible()
         expect(field(page, label)).to_have_value("0.42 m")
         expect(shown(page, "Up to date.")).to_be_visible()
         before = drawing(page)

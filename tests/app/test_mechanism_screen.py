@@ -86,7 +86,8 @@ def test_handles_are_the_points_as_drawn():
     low, high = np.array(
         [SCREEN.draw(found, 1.0).axes[0].get_xlim(), SCREEN.draw(found, 1.0).axes[0].get_ylim()]
     ).T
-    places = 1e3 * np.array([handle.at for handle in handles.values()])
+    places = np.array([np.multiply(handle.scale, handle.at) for handle in handles.values()])
+    assert np.ptp(places, axis=0) == pytest.approx([80.0, 94.641], abs=1e-3)  # A to D, and the grip: in mm
     assert ((low < places) & (places < high)).all()
 
 

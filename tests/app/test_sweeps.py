@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from nicegui import ui
+from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn import frequency_locus, resonance_speeds, steady_response
 from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
@@ -21,7 +22,6 @@ from beamdyn.common.sweeps import numbers, sweep_csv
 from brakes.app.caliper import CALIPER
 from brakes.app.mechanism import MECHANISM
 from brakes.app.program import BRAKES
-from brakes.calipers import NAMED
 from brakes.cli import main
 
 CALIPER_SCREEN, MECHANISM_SCREEN = CALIPER.screens[0], MECHANISM.screens[0]
@@ -100,11 +100,11 @@ def test_largest_steady_amplitude_is_that_of_a_dense_search():
         work = Work(SCENE)
         work.put("model.damping_ratio", str(ratio))
         scene = SCENE.check(work.text(), "one")
-        coarse = steady_response(scene, np.linspace(0.5, 150.0, 1500), 2)
+        coarse = steady_response(scene, np.linspace(0.25, 150.0, 600), 2)
         near = coarse.speeds[np.nanargmax(coarse.amplitude)]
-        dense = steady_response(scene, np.linspace(near - 0.2, near + 0.2, 2001), 2)
+        dense = steady_response(scene, np.linspace(near - 0.25, near + 0.25, 501), 2)
         assert largest[i] == pytest.approx(1e3 * np.nanmax(dense.amplitude), rel=1e-6)
-        assert speed[i] == pytest.approx(dense.speeds[np.nanargmax(dense.amplitude)], abs=1e-3)
+        assert speed[i] == pytest.approx(dense.speeds[np.nanargmax(dense.amplitude)], abs=2e-3)  # its steps
         assert amplitude[i] == pytest.approx(1e3 * coarse.amplitude[-1], rel=1e-9)
 
 
@@ -124,13 +124,18 @@ def test_no_answer_anywhere_is_refused():
         swept(MECHANISM, MECHANISM_SCREEN, "run.travel=15:20:3 mm", "work")
 
 
-def test_pads_that_would_pull_are_no_answer():
-    caliper = 'caliper = "centre-pull"\n[run]\ntravel = "3 mm"\n'
-    work = Work(CALIPER)
-    work.open(caliper, "mine")
-    tables = tables_of(work.needed(CALIPER_SCREEN), work.inputs)
-    found = CALIPER_SCREEN.sweeps.run(tables, "run.travel=1:60:8 mm", "right_pad_force")
-    assert found.warnings and (found.found[0][np.isfinite(found.found[0])] > 0).all()
+def test_what_statics_does_not_determine_is_no_answer():
+    pins = Work(MECHANISM).entries["pin"].replace("]", ',\n { name = "extra", body = "arm", at = "E" }]')
+    with pytest.raises(NoAnswer, match="at none of 2 values"):
+        swept(
+            MECHANISM,
+            MECHANISM_SCREEN,
+            "points.C.x=18:20:2 mm",
+            "work",
+            pin=pins,
+            run__driver="",
+            run__travel="",
+        )
 
 
 def test_without_damping_a_resonance_has_no_largest_amplitude():
@@ -160,10 +165,11 @@ def test_mistakes_are_refused_by_name(text, results, sentence):
 # What is offered ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", NAMED)
-def test_every_number_of_every_caliper_can_be_swept(name):
+@pytest.mark.parametrize("name", ["eebrake", "dual-pivot", "v-brake"])
+def test_every_number_of_a_caliper_can_be_swept(name):
     work = Work(CALIPER)
     work.put("caliper", name)
+    work.put("run.points", "5")
     tables = tables_of(work.needed(CALIPER_SCREEN), work.inputs)
     offered = [e for e in numbers(work.inputs) if not e.path.startswith(("stop.", "run.travel"))]
     assert len(offered) > 6
@@ -215,16 +221,16 @@ def test_sweep_is_shown_and_handed_over_as_csv_svg_and_png(simulate):
             values.set_value("10:20:3 N")
             results.set_value(["right_pad_force", "finger_travel"])
         user.find("Sweep as CSV").click()
-        rows = [*csv.reader(io.StringIO((await user.download.next()).text))]
+        rows = [*csv.reader(io.StringIO((await user.download.next(timeout=30.0)).text))]
         assert rows[0] == ["finger_N", "right_pad_force_N", "finger_travel_mm"]
         forces = [float(row[1]) for row in rows[1:]]
         assert forces[2] == pytest.approx(
             2 * forces[0], rel=1e-9
         )  # without friction forces are as the finger's
         user.find("Sweep as SVG").click()
-        assert ET.fromstring((await user.download.next()).text).tag.endswith("svg")
+        assert ET.fromstring((await user.download.next(timeout=30.0)).text).tag.endswith("svg")
         user.find("Sweep as PNG").click()
-        assert (await user.download.next()).content.startswith(b"\x89PNG")
+        assert (await user.download.next(timeout=30.0)).content.startswith(b"\x89PNG")
 
     simulate(Program("calipers", "Calipers", (CALIPER,)), body)
 
@@ -235,8 +241,11 @@ def test_sweep_of_another_design_is_greyed_and_offers_are_those_of_the_design(si
         page = fields(user)
         with user.client:
             element(user, "Sweep an input").set_value(True)
-        user.find("Sweep", kind=ui.button).click()
-        for _ in range(50):
+        (button,) = [
+            e for e in user.client.elements.values() if isinstance(e, ui.button) and e.text == "Sweep"
+        ]
+        UserInteraction(user, {button}, None).click()
+        for _ in range(300):
             await asyncio.sleep(0.1)
             if any(
                 "finger_travel over" in str(e.props.get("innerHTML")) for e in user.client.elements.values()

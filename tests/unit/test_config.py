@@ -220,6 +220,7 @@ def test_rolling():
         ("beam.thickness", "60 mm", "beam: thickness = 0.06 m exceeds length = 0.05 m"),
         ("beam.thicknes", "0.2 mm", "beam.thicknes: unknown key; did you mean thickness?"),
         ("beam.colour", "red", "beam.colour: unknown key; known are length, tip, breakpoints, width"),
+        ("beam.<b>", "red", "beam.<b>: unknown key"),
         (
             "beam.bending_stiffness",
             "1 N m2",

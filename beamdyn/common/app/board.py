@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -91,8 +91,8 @@ class Board:
         self._board.set_visibility(False)
         self._how.set_visibility(False)
 
-    def show(self, sheet: Sheet, entries: Mapping[str, str]) -> None:
-        """Show a drawing."""
+    def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
+        """Show a drawing, and say by a function where each of its handles is."""
         self._show(sheet)
         self._how.set_visibility(bool(sheet.handles))
         for element in self._handles:
@@ -101,7 +101,7 @@ class Board:
             self._make([handle.label for handle in sheet.handles])
             self._sheet = sheet
             for element, handle in zip(self._handles, sheet.handles, strict=True):
-                self._put(element, handle, entries)
+                self._put(element, handle, words(handle))
 
     def _show(self, sheet: Sheet) -> None:
         drawn = sheet.view is not None
@@ -128,12 +128,11 @@ class Board:
         made.on("keydown", partial(self._stepped, i), js_handler=_KEY)
         return made
 
-    def _put(self, element: Any, handle: Handle, entries: Mapping[str, str]) -> None:
+    def _put(self, element: Any, handle: Handle, words: str) -> None:
         x, y = self._sheet.place(handle)
         element.style(f"left: {100 * x:.3f}%; top: {100 * y:.3f}%")
-        values = (f"{path.rpartition('.')[2]} {entries.get(path)}" for path in handle.moved(*handle.at))
         element.props["aria-valuenow"] = round(100 * x)
-        element.props["aria-valuetext"] = ", ".join(values)
+        element.props["aria-valuetext"] = words
 
     def _stepped(self, i: int, event: Any) -> None:
         across, up, far = event.args

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -49,7 +50,8 @@ class View:
         """That of a figure that has been drawn: only then its layout is made."""
         ax = figure.axes[0]
         limits = np.array([ax.get_xlim(), ax.get_ylim()], dtype=float).T
-        parts = ax.transData.transform(limits) / figure.bbox.size
+        with np.errstate(all="ignore"):
+            parts = ax.transData.transform(limits) / figure.bbox.size
         boxes = tuple(axes.get_position(original=True) for axes in figure.axes)
         return cls(limits, np.abs(parts - (0.0, 1.0)), boxes)
 
@@ -70,7 +72,8 @@ class View:
 
 
 def _carried(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
-    x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
+    with np.errstate(all="ignore"):  # of numbers that are too large, inf or nan
+        x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
     return float(x), float(y)
 
 
@@ -130,7 +133,9 @@ def sheet(screen: Screen, answer: Any, progress: float, view: View | None = None
     if not text.startswith("<?xml"):
         return Sheet(text)
     width, height = figures[0].get_size_inches()
-    return Sheet(text, tuple(handles), View.of(figures[0]), float(width / height))
+    made = Sheet(text, tuple(handles), View.of(figures[0]), float(width / height))
+    places = [made.place(handle) for handle in handles]
+    return made if np.all(np.isfinite(places)) else dataclasses.replace(made, handles=())
 
 
 # In the fields ------------------------------------------------------------------------------------------
@@ -150,13 +155,23 @@ def written(handle: Handle, target: Place, entries: Mapping[str, str], inputs: S
     inputs : sequence of Input
         Descriptions of the fields.
     """
+    found = _texts(handle, target, entries, inputs)
+    return {path: text for path, text in found.items() if text != entries.get(path, "")}
+
+
+def told(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
+    """Where a handle is, in words: what it would write there."""
+    found = _texts(handle, handle.at, entries, inputs)
+    return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in found.items())
+
+
+def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
     known = {entry.path: entry for entry in inputs}
-    found = {
+    return {
         path: _text(value, entries.get(path, ""), known[path], handle.grain)
         for path, value in handle.moved(*target).items()
         if path in known  # the drawing may be that of another kind, the last good one
     }
-    return {path: text for path, text in found.items() if text != entries.get(path, "")}
 
 
 def _text(value: float | Place, text: str, entry: Input, grain: float) -> str:

@@ -16,6 +16,7 @@ from beamdyn.common.config import ConfigError
 from beamdyn.common.rendering import STYLE
 
 _LARGEST = 200_000  # bytes of a file that is opened
+_TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 _LAYOUT = """
 body { font-size: 15px; }
 .nicegui-header { padding: 0 0.75rem; }
@@ -114,7 +115,7 @@ class Page:
             self._upload: Any = ui.upload(
                 label="TOML file", on_upload=self._opened, auto_upload=True, max_file_size=_LARGEST,
                 max_files=1,
-                on_rejected=lambda: self._refuse(f"the file is larger than {_LARGEST} bytes"),
+                on_rejected=lambda: self._refuse(_TOO_LARGE),
             ).props('accept=".toml" aria-label="TOML file"')  # fmt: skip
             self._refused: Any = (
                 ui.label().classes("mistake").props('role="alert"').style("white-space: pre-line")
@@ -169,9 +170,11 @@ class Page:
         self._dialog.open()
 
     async def _opened(self, event: Any) -> None:
-        name = event.file.name
+        name, content = event.file.name, await event.file.read()
+        if len(content) > _LARGEST:  # whatever the browser has let through
+            return self._refuse(_TOO_LARGE)
         try:
-            text = (await event.file.read()).decode("utf-8")
+            text = content.decode("utf-8")
         except UnicodeDecodeError:
             return self._refuse(f"{name}: it is not text in UTF-8; give a TOML file")
         self.open(text, name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from nicegui import ui
@@ -12,7 +13,7 @@ from beamdyn.common.app.documents import Handle, Screen
 from beamdyn.common.app.entries import Entries
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.further import Further
-from beamdyn.common.app.handles import Place, sheet, written
+from beamdyn.common.app.handles import Place, sheet, told, written
 from beamdyn.common.app.session import Work
 from beamdyn.common.app.shown import csv_text, html, png
 from beamdyn.common.app.sweeping import SweepPanel
@@ -147,7 +148,7 @@ class Panel:
             return
         made = sheet(self.screen, answered.answer, self.progress, self.board.held)
         self._drawn = made.text
-        self.board.show(made, self.work.entries)
+        self.board.show(made, partial(told, entries=self.work.entries, inputs=self.work.inputs))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
         """A point of the drawing is to be elsewhere: write that into the fields, and answer."""
