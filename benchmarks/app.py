@@ -11,8 +11,8 @@ from time import perf_counter
 
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.documents import Program
+from beamdyn.common.app.reporting import drawn
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import drawn
 from benchmarks.beam_core import Row, show
 from brakes.app.program import BRAKES
 

@@ -130,7 +130,9 @@ def _sentence(model: type[BaseModel], error: ErrorDetails) -> str:
         case "missing":
             return f"{path}: missing; {_how_to_give(model, path)}"
         case "extra_forbidden":
-            path = f"{_path(error['loc'][:-1])}.{error['loc'][-1]}".removeprefix(".")  # whatever it begins with
+            path = f"{_path(error['loc'][:-1])}.{error['loc'][-1]}".removeprefix(
+                "."
+            )  # whatever it begins with
             return f"{path}: unknown key; {_nearest(model, path)}"
         case "value_error":
             reason = str(error.get("ctx", {}).get("error"))

@@ -160,6 +160,11 @@ class Screen:
     more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
 
+    @property
+    def last(self) -> float:
+        """Place of the slider at its end."""
+        return len(self.slider.marks) - 1.0 if self.slider is not None else 0.0
+
 
 @dataclass(frozen=True)
 class Document:

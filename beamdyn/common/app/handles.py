@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -50,8 +49,7 @@ class View:
         """That of a figure that has been drawn: only then its layout is made."""
         ax = figure.axes[0]
         limits = np.array([ax.get_xlim(), ax.get_ylim()], dtype=float).T
-        with np.errstate(all="ignore"):
-            parts = ax.transData.transform(limits) / figure.bbox.size
+        parts = ax.transData.transform(limits) / figure.bbox.size
         boxes = tuple(axes.get_position(original=True) for axes in figure.axes)
         return cls(limits, np.abs(parts - (0.0, 1.0)), boxes)
 
@@ -72,8 +70,7 @@ class View:
 
 
 def _carried(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
-    with np.errstate(all="ignore"):  # of numbers that are too large, inf or nan
-        x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
+    x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
     return float(x), float(y)
 
 
@@ -133,9 +130,7 @@ def sheet(screen: Screen, answer: Any, progress: float, view: View | None = None
     if not text.startswith("<?xml"):
         return Sheet(text)
     width, height = figures[0].get_size_inches()
-    made = Sheet(text, tuple(handles), View.of(figures[0]), float(width / height))
-    places = [made.place(handle) for handle in handles]
-    return made if np.all(np.isfinite(places)) else dataclasses.replace(made, handles=())
+    return Sheet(text, tuple(handles), View.of(figures[0]), float(width / height))
 
 
 # In the fields ------------------------------------------------------------------------------------------

@@ -15,8 +15,8 @@ from beamdyn.common.app.form import Form
 from beamdyn.common.app.further import Further
 from beamdyn.common.app.handles import Place, sheet, told, written
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import csv_text, html, png
 from beamdyn.common.app.sweeping import SweepPanel
+from beamdyn.common.rendering import csv_text, html, png
 
 
 class Panel:
@@ -60,8 +60,8 @@ class Panel:
         self._at: Any = None
         if slider is None:
             return
-        last = len(slider.marks) - 1
         marks = ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(slider.marks))
+        last = self.screen.last
         self._at = ui.slider(min=0, max=last, step=slider.step, value=last, on_change=self._draw)
         self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
             "slider"
@@ -173,7 +173,7 @@ class Panel:
     @property
     def progress(self) -> float:
         """Place of the slider."""
-        return float(self._at.value) if self._at is not None else 1.0
+        return float(self._at.value) if self._at is not None else self.screen.last
 
     def _svg(self) -> None:
         ui.download.content(self._drawn, f"{self._name}.svg")

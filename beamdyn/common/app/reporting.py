@@ -1,13 +1,18 @@
-"""The report on a document that is worked on."""
+"""The report on a document that is worked on, and the drawing of an answer as it has it."""
 
 from __future__ import annotations
 
 from functools import partial
 
+from beamdyn.common.app.documents import Screen
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.shown import drawn
-from beamdyn.common.rendering import html, picture
+from beamdyn.common.rendering import drawing, html, picture
 from beamdyn.common.reports import further, report_page
+
+
+def drawn(screen: Screen, answer: object, place: float) -> str:
+    """The SVG of an answer with the slider at a place, or the sentence why there is none."""
+    return drawing(lambda: screen.draw(answer, place))
 
 
 def report_of(work: Work, title: str) -> str:
@@ -16,7 +21,7 @@ def report_of(work: Work, title: str) -> str:
     for screen in work.document.screens:
         if not work.stale(screen):
             answer = work.answered[screen.name].answer
-            made = picture(drawn(screen, answer, 1.0), screen.name)
+            made = picture(drawn(screen, answer, screen.last), screen.name)
             more = further((name, partial(draw, answer)) for name, draw in screen.more)
             parts.append((screen.name, screen.notes(answer), html(screen.report(answer)) + more, made))
     asked = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
