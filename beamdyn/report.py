@@ -210,4 +210,4 @@ def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
 def _part(shown: np.ndarray, all_: np.ndarray) -> str:
     if len(shown) == len(all_):
         return ""
-    return f" ({len(shown)} of {len(all_)} speeds; --csv or --json has all)"
+    return f" ({len(shown)} of {len(all_)} speeds; CSV and JSON have all)"

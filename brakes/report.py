@@ -209,7 +209,7 @@ def sweep_table(found: Sweep) -> Group:
     """The table of a sweep: some of its rows, if there are many."""
     rows = [*sweep_rows(found)]
     shown = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), _SHOWN)).round().astype(int))
-    part = "" if len(shown) == len(rows) else f" ({len(shown)} of {len(rows)} rows; --csv or --json has all)"
+    part = "" if len(shown) == len(rows) else f" ({len(shown)} of {len(rows)} rows; CSV and JSON have all)"
     heads = [f"{n} [{u}]" if u else n for n, u in columns(found)]
     cells = ([number(value) for value in rows[i]] for i in shown)
     return table(f"{', '.join(found.results)} over {' and '.join(found.inputs)}{part}", heads, cells, ())
