@@ -31,7 +31,8 @@ from beamdyn.stepping import (
 )
 
 _ITERATIONS = 40
-_CONVERGED = 1e-10  # change of the stage displacements relative to the largest
+_CONVERGED = 1e-12  # change of the stage displacements relative to the largest
+_AT_RESIDUE = 1e-6  # error over the largest deflection from which what the iteration leaves may be all of it
 _SURVEY = 16  # steps between counts of the iterations that are needed
 
 
@@ -77,14 +78,16 @@ def histories(
         If the iteration does not converge, as with very strong coupling of the modes.
     """
     systems, tip = _turned(systems, tip)
-    resolution = Resolution.of(tolerance)
+    resolution, last = Resolution.of(tolerance), np.inf
     while True:
         tips, errors = _advanced(systems, tip, t_end, resolution)
         bounds = [tolerance * max(_largest(p) for p in path.pieces) for path in tips]
         worst = int(np.argmax([e.total / max(b, 1e-300) for e, b in zip(errors, bounds, strict=True)]))
-        if errors[worst].total <= bounds[worst] or resolution.exhausted:
+        total, bound = errors[worst].total, bounds[worst]
+        at_residue = last / 2 < total < _AT_RESIDUE / tolerance * bound
+        if total <= bound or at_residue or resolution.exhausted:
             return Histories(tuple(tips), tuple(e.total for e in errors))
-        resolution = resolution.finer(errors[worst], bounds[worst])
+        resolution, last = resolution.finer(errors[worst], bound), total
 
 
 def _largest(piece: Piece) -> float:

@@ -28,6 +28,8 @@ _CHECKS = 16  # steps at which the local error is measured
 _GOLDEN = 0.6180339887498949  # spreads them so that no rhythm of the motion is missed
 _COMPARED = 257  # times at which equations are held against those at the start
 _ROUNDING = 1e-13  # of forces in balance, over the largest
+_AT_ROUNDING = 1e-9  # error over the largest deflection from which finer steps may gain nothing
+_NOISE = 1e-14  # of a step, over the sum of its terms
 _CANDIDATES = 12  # maxima that are refined: sampled ones differ by less than 1e-3 from the true
 
 
@@ -166,15 +168,17 @@ def integrate(
     if stays(system, y0, t_end):
         path = _propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance)
         return path, 0.0, "no steps: it stays as it begins"
+    last = np.inf
     while True:
         steps = [resolution.steps(system, a, b) for a, b in pairwise(edges)]
         check_steps(sum(steps), t_end)
         path = _propagate(system, edges, steps, y0, tolerance)
         error = time_error(tip, system, [_checks(p) for p in path.pieces])
-        bound = tolerance * max(float(np.abs(tip_deflection(tip, p.state[:, 1:])).max()) for p in path.pieces)
-        if error.total <= bound or resolution.exhausted:
+        largest = max(float(np.abs(tip_deflection(tip, p.state[:, 1:])).max()) for p in path.pieces)
+        at_rounding = last / 2 < error.total < _AT_ROUNDING * largest
+        if error.total <= tolerance * largest or at_rounding or resolution.exhausted:
             return path, error.total, f"Gauss collocation of order {2 * STAGES}, {sum(steps)} steps"
-        resolution = resolution.finer(error, bound)
+        resolution, last = resolution.finer(error, tolerance * largest), error.total
 
 
 def stays(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
@@ -363,7 +367,7 @@ def time_error(tip: np.ndarray, system: ModalSystem, checks: Sequence[Checks]) -
     total, between, lost = np.zeros(len(tip)), 0.0, np.zeros(len(tip), dtype=bool)
     for check in checks:
         own, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
-        local = _local_errors(system, finer.step, check, len(tip))
+        local = _local_errors(system, own.step, finer.step, check, len(tip))
         delta = _lost_phase(system, finer.step - own.step, len(tip))
         total += np.minimum(check.steps, 2 / np.maximum(delta, 1e-30)) * local
         lost |= delta > _LOST
@@ -373,10 +377,15 @@ def time_error(tip: np.ndarray, system: ModalSystem, checks: Sequence[Checks]) -
     return TimeError(total * np.abs(tip), between, lost)
 
 
-def _local_errors(system: ModalSystem, exact: np.ndarray, check: Checks, modes: int) -> np.ndarray:
-    """Mean local error of each mode as an amplitude."""
+def _local_errors(
+    system: ModalSystem, own: np.ndarray, exact: np.ndarray, check: Checks, modes: int
+) -> np.ndarray:
+    """Mean local error of each mode as an amplitude: the method's, and that of steps only nearly its own."""
     n = system.size
-    error = np.einsum("kij,kj->ki", exact, check.state) - check.reached
+    left = np.einsum("kij,kj->ki", own, check.state) - check.reached
+    size = np.einsum("kij,kj->ki", np.abs(own), np.abs(check.state))
+    left[np.abs(left) <= _NOISE * size] = 0  # rounding, which does not add up
+    error = np.abs(np.einsum("kij,kj->ki", exact - own, check.state)) + np.abs(left)
     return np.hypot(error[:, :modes], error[:, n : n + modes] / _frequency(system, modes)).mean(axis=0)
 
 
