@@ -235,3 +235,27 @@ def test_a_beam_that_its_weight_buckles_is_refused() -> None:
     scene = bd.Scene(rope, bd.Mount(0.3, np.pi), bd.SteadyRotation(0.01), gravity=9.81)
     with pytest.raises(ArithmeticError, match="grows without bound"):
         bd.simulate(scene, 300.0, modes=2)
+
+
+def test_time_error_sees_what_the_series_for_a_modulated_beam_leaves_out() -> None:
+    """Against DOP853, which shares no code: also where interpolation between few steps is most of it."""
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    road = bd.RoadWave(wavelength=0.3, height=1e-3)
+    scene = bd.Scene(beam, bd.Mount(0.215), bd.RollingWheel(0.2, bd.SteadyRotation(66.0), road))
+    for tolerance in (1e-3, 1e-5, 1e-7, 1e-9):
+        run = bd.simulate(scene, 0.5, 1, tolerance)
+        t = np.linspace(0, 0.5, 2001)
+        exact = bd.simulate(scene, 0.5, 1, method="DOP853", t_eval=t, rtol=3e-13, atol=1e-13 * run.largest)
+        true = np.abs(run.deflection(t) - exact.tip).max()
+        assert true <= run.time_error + 1e-10 * run.largest  # DOP853's own
+        assert run.time_error <= tolerance * run.largest
+
+
+def test_tolerance_below_rounding_ends() -> None:
+    """Finer steps only add rounding there: the run ends with the error that it has, and says it."""
+    run = bd.simulate(ROLLING, 10.0, 5, tolerance=1e-12)
+    t = np.linspace(0, 10, 501)
+    finer = bd.simulate(ROLLING, 10.0, 5, tolerance=1e-10)
+    assert 1e-12 < run.time_error / run.largest < 1e-9
+    assert len(run.path.samples[0]) < 3e6
+    assert np.abs(run.deflection(t) - finer.deflection(t)).max() <= run.time_error + finer.time_error
