@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from beamdyn._version import __version__ as __version__
 
 __all__ = [
     "Beam",
@@ -52,54 +52,53 @@ __all__ = [
 ]
 
 _HOME = {
-    "Beam": "beam",
-    "Crossing": "resonance",
-    "Crossings": "resonance",
-    "Fem": "fem",
-    "FrequencyBounds": "bounds",
-    "GaussCollocation": "integrators",
-    "Locus": "spectrum",
-    "Modes": "spectrum",
-    "Mount": "scene",
-    "Ritz": "ritz",
-    "RoadWave": "motion",
-    "RollingWheel": "motion",
-    "RotationFunction": "motion",
-    "SampledRotation": "motion",
-    "Scene": "scene",
-    "SpinUp": "motion",
-    "SteadyResponse": "steady",
-    "SteadyRotation": "motion",
-    "Sweep": "sweeps",
-    "SweepInterrupted": "sweeps",
-    "Table": "profile",
-    "TipMass": "beam",
+    "Beam": "scene.beam",
+    "Crossing": "steady.resonance",
+    "Crossings": "steady.resonance",
+    "Fem": "equations.fem",
+    "FrequencyBounds": "spectrum.bounds",
+    "GaussCollocation": "transient.gauss",
+    "Locus": "spectrum.modes",
+    "Modes": "spectrum.modes",
+    "Mount": "scene.scene",
+    "Ritz": "equations.ritz",
+    "RoadWave": "scene.motion",
+    "RollingWheel": "scene.motion",
+    "RotationFunction": "scene.motion",
+    "SampledRotation": "scene.motion",
+    "Scene": "scene.scene",
+    "SpinUp": "scene.motion",
+    "SteadyResponse": "steady.response",
+    "SteadyRotation": "scene.motion",
+    "Sweep": "transient.sweep",
+    "SweepInterrupted": "transient.sweep",
+    "Table": "scene.profile",
+    "TipMass": "scene.beam",
     "Tradeoff": "tradeoffs",
-    "Transient": "transient",
-    "UserMotion": "motion",
-    "critical_point": "stability",
-    "critical_speed": "stability",
-    "frequency_bounds": "bounds",
-    "frequency_locus": "spectrum",
+    "Transient": "transient.simulate",
+    "UserMotion": "scene.motion",
+    "critical_point": "spectrum.critical",
+    "critical_speed": "spectrum.critical",
+    "frequency_bounds": "spectrum.bounds",
+    "frequency_locus": "spectrum.modes",
     "load_scene": "config",
-    "natural_modes": "spectrum",
-    "resonance_speeds": "resonance",
-    "setting_angle_limits": "stability",
-    "simulate": "transient",
-    "steady_response": "steady",
-    "sweep": "sweeps",
-    "terms": "inventory",
+    "natural_modes": "spectrum.modes",
+    "resonance_speeds": "steady.resonance",
+    "setting_angle_limits": "spectrum.critical",
+    "simulate": "transient.simulate",
+    "steady_response": "steady.response",
+    "sweep": "transient.sweep",
+    "terms": "equations.terms",
     "tradeoff": "tradeoffs",
 }
 
 if TYPE_CHECKING:
-    from beamdyn.beam import Beam, TipMass
-    from beamdyn.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.config import load_scene
-    from beamdyn.fem import Fem
-    from beamdyn.integrators import GaussCollocation
-    from beamdyn.inventory import terms
-    from beamdyn.motion import (
+    from beamdyn.equations.fem import Fem
+    from beamdyn.equations.ritz import Ritz
+    from beamdyn.equations.terms import terms
+    from beamdyn.scene.beam import Beam, TipMass
+    from beamdyn.scene.motion import (
         RoadWave,
         RollingWheel,
         RotationFunction,
@@ -108,16 +107,17 @@ if TYPE_CHECKING:
         SteadyRotation,
         UserMotion,
     )
-    from beamdyn.profile import Table
-    from beamdyn.resonance import Crossing, Crossings, resonance_speeds
-    from beamdyn.ritz import Ritz
-    from beamdyn.scene import Mount, Scene
-    from beamdyn.spectrum import Locus, Modes, frequency_locus, natural_modes
-    from beamdyn.stability import critical_point, critical_speed, setting_angle_limits
-    from beamdyn.steady import SteadyResponse, steady_response
-    from beamdyn.sweeps import Sweep, SweepInterrupted, sweep
+    from beamdyn.scene.profile import Table
+    from beamdyn.scene.scene import Mount, Scene
+    from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
+    from beamdyn.spectrum.critical import critical_point, critical_speed, setting_angle_limits
+    from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
+    from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
+    from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.tradeoffs import Tradeoff, tradeoff
-    from beamdyn.transient import Transient, simulate
+    from beamdyn.transient.gauss import GaussCollocation
+    from beamdyn.transient.simulate import Transient, simulate
+    from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep
 
 
 def __getattr__(name: str) -> Any:

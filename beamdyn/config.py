@@ -12,13 +12,13 @@ from numpy.polynomial import Polynomial
 from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema, core_schema
 
-from beamdyn.beam import Beam, TipMass
-from beamdyn.common.config import ConfigError, CoreSection, parse, read, validated
-from beamdyn.common.inputs import Quantity, Section
-from beamdyn.common.units import quantity
-from beamdyn.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
-from beamdyn.profile import Table
-from beamdyn.scene import Mount, Scene
+from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
+from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.units import quantity
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
+from beamdyn.scene.profile import Table
+from beamdyn.scene.scene import Mount, Scene
 
 __all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from_dict"]
 

@@ -10,8 +10,8 @@ from statistics import median
 from time import perf_counter
 
 from beamdyn.app.program import BEAMDYN
+from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.documents import Program
-from beamdyn.common.app.reporting import drawn
 from beamdyn.common.app.session import Work
 from benchmarks.beam_core import Row, show
 from brakes.app.program import BRAKES

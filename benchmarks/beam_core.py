@@ -16,8 +16,8 @@ from rich.markup import escape
 from rich.table import Table
 
 import beamdyn as bd
+from benchmarks.cases.scenes import HARVESTER, generated_cases, of_case, published_cases
 from tests.convergence.test_ritz import five_lowest, solved
-from tests.scenes import HARVESTER, generated_cases, of_case, published_cases
 
 Row = tuple[str, str, str]  # what, measured, bound
 

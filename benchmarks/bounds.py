@@ -12,7 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn.bounds import frequency_bounds
+from beamdyn.spectrum.bounds import frequency_bounds
 from benchmarks.beam_core import Row, show
 from tests.invariants.test_bounds import draw, encloses, relative_width
 

@@ -11,10 +11,10 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.beam_core import Row, best_time, show
+from benchmarks.cases import mechanisms
 from brakes import calipers, forklift
 from brakes.forklift import Levers, Truck, internal_forces
 from brakes.planar import solve, stroke
-from tests import mechanisms
 
 MECHANISMS, LEVERS, TRUCKS = 10_000, 100_000, 10_000
 

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.operators import tension
+from beamdyn.equations.operators import tension
 from benchmarks.beam_core import Row, show
-from tests.reference.of_scene import exact, relative_errors
+from benchmarks.cases.reference.of_scene import exact, relative_errors
 
 _MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))  # Young's modulus [Pa], density [kg/m3]
 _BOUND, _OVER = 0.999, 30.0

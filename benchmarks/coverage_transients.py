@@ -19,8 +19,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.reduction import Kept, range_of_speed
-from beamdyn.transient import Transient
+from beamdyn.modal.modal_basis import Kept, range_of_speed
+from beamdyn.transient.simulate import Transient
 from benchmarks.beam_core import Row, show
 from benchmarks.coverage import random_beam
 

@@ -24,8 +24,8 @@ from scipy.optimize import brentq
 
 import beamdyn as bd
 from benchmarks.beam_core import Row, show
+from benchmarks.cases.reference.of_scene import exact, relative_errors
 from benchmarks.coverage import MOST_TENSION, largest_tension, time_unit
-from tests.reference.of_scene import exact, relative_errors
 
 _EPS = float(np.finfo(float).eps)
 

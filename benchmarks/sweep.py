@@ -16,10 +16,10 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import beamdyn as bd
-from beamdyn.cases import Request, solve
-from beamdyn.reduction import Kept
+from beamdyn.modal.modal_basis import Kept
+from beamdyn.transient.chunks import Request, solve
 from benchmarks.beam_core import Row, show
-from tests.scenes import HARVESTER
+from benchmarks.cases.scenes import HARVESTER
 
 WORKERS = 2
 SCENE = replace(

@@ -21,8 +21,8 @@ import scipy
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.common.workers import one_blas_thread
-from beamdyn.estimate import Model, estimated
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.modal.error_estimate import Model, estimated
 from beamdyn.tradeoffs import (
     Diagram,
     frequency_diagram,
@@ -32,9 +32,9 @@ from beamdyn.tradeoffs import (
     transient_modes_diagram,
 )
 from beamdyn.tradeoffs.transients import OURS
+from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
 from benchmarks.peers.tables import grid, seconds
 from benchmarks.transient import lean, system
-from tests.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -285,7 +285,7 @@ RULES = """The rules follow from the fronts:
 
 - **Legendre functions.** They alone make {legendre:.0%} of the {points} points of the frequency fronts above.
   Elements make {elements:.0%}: their assembly takes longer than a whole Ritz solution. So `tolerance=` never
-  chooses elements by itself; `method="fem"` is for a second opinion.
+  chooses elements by itself; `discretization="fem"` is for a second opinion.
 - **A function too many costs little, a model too many costs much.** At one speed {large} functions take
   {dear:.2f} times as long as {small}: the time goes into building the matrices, not into their size. Each
   model that is tried on the way costs as much as the answer.

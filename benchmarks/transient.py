@@ -13,12 +13,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.estimate import Model
-from beamdyn.integrators import propagate
-from beamdyn.modal import ModalSystem
+from beamdyn.modal.error_estimate import Model
+from beamdyn.transient.gauss import propagate
+from beamdyn.transient.system import ModalSystem
 from benchmarks.beam_core import Row, best_time, show
+from benchmarks.cases.scenes import ROLLING
 from tests.convergence.test_integrators import Oscillator
-from tests.scenes import ROLLING
 
 T_END, MODES = 30.0, 5
 STOCK = [  # rtol, and atol in the modal coordinates, which are some 1e-5 kg^1/2 m

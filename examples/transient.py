@@ -6,9 +6,9 @@ Writes transient.png (Fig. 5) and, for ParaView, transient.xdmf into the current
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.export import write_series
-from beamdyn.plots import save_figure
-from beamdyn.transient import simulate
+from beamdyn.output.export import write_series
+from beamdyn.output.plots import save_figure
+from beamdyn.transient.simulate import simulate
 
 beam = bd.Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0)
 motion = bd.RollingWheel(

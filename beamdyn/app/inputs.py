@@ -6,8 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from beamdyn.common.config import validated
-from beamdyn.common.inputs import Input, Quantity, Section, describe
+from beamdyn.common.edge.config import validated
+from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.config import (
     RectangularInput,
     RollingInput,
@@ -18,7 +18,7 @@ from beamdyn.config import (
     StiffnessInput,
     scene_from_dict,
 )
-from beamdyn.scene import Scene
+from beamdyn.scene.scene import Scene
 
 _MOTIONS: dict[str, type[Section]] = {
     "steady": SteadyInput,

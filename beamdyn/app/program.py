@@ -13,14 +13,14 @@ from rich.console import RenderableType
 
 from beamdyn import critical_speed, frequency_locus, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
-from beamdyn.app.sweeping import frequency_outputs, steady_outputs, sweeps_of
+from beamdyn.app.sweeps import frequency_outputs, steady_outputs, sweeps_of
 from beamdyn.common.app.documents import Document, Drag, Program, Screen
 from beamdyn.config import parse_scene
-from beamdyn.plots import mark_critical
-from beamdyn.report import crossings_table, locus_table, steady_table
-from beamdyn.resonance import Crossings
-from beamdyn.spectrum import Locus
-from beamdyn.steady import SteadyResponse
+from beamdyn.output.plots import mark_critical
+from beamdyn.result_tables import crossings_table, locus_table, steady_table
+from beamdyn.spectrum.modes import Locus
+from beamdyn.steady.resonance import Crossings
+from beamdyn.steady.response import SteadyResponse
 
 _SPEEDS = 121
 # Screens ------------------------------------------------------------------------------------------------

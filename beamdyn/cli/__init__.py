@@ -9,6 +9,6 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
 )
 from beamdyn.cli.program import app, main
 from beamdyn.cli.values import parse_speeds
-from beamdyn.common.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
+from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
 __all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "app", "main", "parse_speeds"]

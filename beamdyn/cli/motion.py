@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from beamdyn.cli.program import app, warn
-from beamdyn.cli.values import Method, SceneFile, Text, parse_positive, parse_speeds, parse_window
-from beamdyn.common.outputs import NO_FILES, Outputs, on_axes, write
-from beamdyn.common.program import Interrupted, NoAnswer
+from beamdyn.cli.values import Discretization, SceneFile, Text, parse_positive, parse_speeds, parse_window
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes, write
+from beamdyn.common.edge.program import Interrupted, NoAnswer
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from beamdyn.resonance import Crossings
-    from beamdyn.steady import SteadyResponse
-    from beamdyn.sweeps import Sweep
-    from beamdyn.transient import Transient
+    from beamdyn.steady.resonance import Crossings
+    from beamdyn.steady.response import SteadyResponse
+    from beamdyn.transient.simulate import Transient
+    from beamdyn.transient.sweep import Sweep
 
 Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 
@@ -39,7 +39,7 @@ def simulate(
     modes: Modes = "auto",
     tolerance: float = 1e-5,
     method: Integrator = "auto",
-    discretization: Method = "ritz",
+    discretization: Discretization = "ritz",
     window: Text | None = None,
     series: Path | None = None,
     animation: Path | None = None,
@@ -71,10 +71,10 @@ def simulate(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
-    from beamdyn.report import transient_table
-    from beamdyn.transient import simulate
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.result_tables import transient_table
+    from beamdyn.transient.simulate import simulate
 
     outputs.check(series=series, animation=animation)
     end = parse_positive("--t-end", t_end, "s")
@@ -98,7 +98,7 @@ def resonances(
     top_speed: Text,
     modes: int = 3,
     order: int = 1,
-    method: Method = "ritz",
+    discretization: Discretization = "ritz",
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Speeds at which what the scene excites meets a natural frequency.
@@ -113,22 +113,27 @@ def resonances(
         How many modes.
     order
         1: what the load excites; more: also the combinations made by the stiffness that turns.
-    method
+    discretization
         Assumed modes or finite elements: each checks the other.
     outputs
         Files to write.
     """
     from beamdyn import load_scene, resonance_speeds
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
-    from beamdyn.report import crossings_table
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.result_tables import crossings_table
 
     outputs.check()
     top = parse_positive("--top-speed", top_speed, "rad/s")
     asked = Question.on_file(
-        "beamdyn resonances", scene, top_speed=top_speed, modes=modes, order=order, method=method
+        "beamdyn resonances",
+        scene,
+        top_speed=top_speed,
+        modes=modes,
+        order=order,
+        discretization=discretization,
     )
-    found = resonance_speeds(load_scene(scene), top, modes, order, method)
+    found = resonance_speeds(load_scene(scene), top, modes, order, discretization)
     show(tables := [crossings_table(found)])
     report = Report(asked, tables, found.warnings)
     write(found, outputs, _crossings_csv(found), on_axes(found.plot), report)
@@ -143,7 +148,7 @@ def steady(
     speeds: Text,
     modes: Modes = "auto",
     tolerance: float = 1e-5,
-    method: Method = "ritz",
+    discretization: Discretization = "ritz",
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Steady response over speed: what is left when the start has died away.
@@ -158,22 +163,29 @@ def steady(
         How many modes at rest; auto: as few as leave no more than the tolerance out.
     tolerance
         Largest error by neglected harmonics, relative to the sum of the lines.
-    method
+    discretization
         Assumed modes or finite elements: each checks the other.
     outputs
         Files to write.
     """
     from beamdyn import load_scene, steady_response
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
-    from beamdyn.report import steady_table
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.result_tables import steady_table
 
     outputs.check()
     given = parse_speeds(speeds)
     asked = Question.on_file(
-        "beamdyn steady", scene, speeds=speeds, modes=modes, tolerance=tolerance, method=method
+        "beamdyn steady",
+        scene,
+        speeds=speeds,
+        modes=modes,
+        tolerance=tolerance,
+        discretization=discretization,
     )
-    found = steady_response(load_scene(scene), given, modes, tolerance=tolerance, method=method)
+    found = steady_response(
+        load_scene(scene), given, modes, tolerance=tolerance, discretization=discretization
+    )
     none = f"at none of {len(given)} speeds is there a steady response: {found.status[0]}"
     refusal = [] if found.stable.any() else [none]
     show(tables := [steady_table(found)])
@@ -222,10 +234,10 @@ def sweep(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
-    from beamdyn.report import sweep_table
-    from beamdyn.sweeps import sweep
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.result_tables import sweep_table
+    from beamdyn.transient.sweep import sweep
 
     outputs.check()
     given, stretch, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
@@ -256,7 +268,7 @@ def sweep(
 def _write_close_up(
     run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
-    from beamdyn.export import animate, write_series
+    from beamdyn.output.export import animate, write_series
 
     if series is None and animation is None:
         return
@@ -272,7 +284,7 @@ def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, 
     import numpy as np
 
     from beamdyn import natural_modes
-    from beamdyn.report import time_of_peak
+    from beamdyn.result_tables import time_of_peak
 
     middle, _ = time_of_peak(run, *window)
     speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0
@@ -306,8 +318,8 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
     """A bar with the remaining time; where the sweep is interrupted, say what is done."""
-    from beamdyn.common.tables import progress_bar
-    from beamdyn.sweeps import SweepInterrupted
+    from beamdyn.common.edge.tables import progress_bar
+    from beamdyn.transient.sweep import SweepInterrupted
 
     finished = 0
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from cyclopts import App
 
-from beamdyn import __version__
-from beamdyn.common import program
+from beamdyn._version import __version__
+from beamdyn.common.edge import program
 
 app = App(
     name="beamdyn",
@@ -22,7 +22,7 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; see `beamdyn.common.program.run`."""
+    """Run the command; see `beamdyn.common.edge.program.run`."""
     return program.run(app, arguments)
 
 

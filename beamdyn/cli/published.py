@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from beamdyn.cli.program import app
-from beamdyn.common.outputs import Flag
-from beamdyn.common.program import NoAnswer
+from beamdyn.common.edge.outputs import Flag
+from beamdyn.common.edge.program import NoAnswer
 
 
 @app.command
@@ -20,7 +20,7 @@ def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False)
     tables
         Compare with the tables of rotating beams of other sources too; takes some ten seconds.
     """
-    from beamdyn.common.tables import console
+    from beamdyn.common.edge.tables import console
     from beamdyn.reproduce import report
 
     if output.exists() and not output.is_dir():

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beamdyn.cli.program import app, warn
-from beamdyn.cli.values import Method, SceneFile, Text, asked_speed, parse_positive, parse_speeds
-from beamdyn.common.outputs import NO_FILES, Flag, Outputs, on_axes, write
-from beamdyn.common.program import NoAnswer
+from beamdyn.cli.values import Discretization, SceneFile, Text, asked_speed, parse_positive, parse_speeds
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
+from beamdyn.common.edge.program import NoAnswer
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from beamdyn.spectrum import Locus, Modes
+    from beamdyn.spectrum.modes import Locus, Modes
 
 
 @app.command
@@ -25,7 +25,7 @@ def modes(
     *,
     speed: Text | None = None,
     modes: int = 3,
-    method: Method = "ritz",
+    discretization: Discretization = "ritz",
     tolerance: float | None = None,
     shapes: Path | None = None,
     outputs: Outputs = NO_FILES,
@@ -40,7 +40,7 @@ def modes(
         With its unit, e.g. "50 rad/s" or "525 rpm"; if not given, that of the scene's motion, or rest.
     modes
         How many modes.
-    method
+    discretization
         Assumed modes or finite elements: each checks the other.
     tolerance
         Relative error that is allowed: the cheapest model that keeps it is chosen.
@@ -50,16 +50,16 @@ def modes(
         Files to write.
     """
     from beamdyn import load_scene, natural_modes
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
-    from beamdyn.report import modes_table
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.result_tables import modes_table
 
     outputs.check(shapes=shapes)
     loaded = load_scene(scene)
     asked = Question.on_file(
-        "beamdyn modes", scene, speed=speed, modes=modes, method=method, tolerance=tolerance
+        "beamdyn modes", scene, speed=speed, modes=modes, discretization=discretization, tolerance=tolerance
     )
-    found = natural_modes(loaded, asked_speed(loaded, speed), modes, method, tolerance)
+    found = natural_modes(loaded, asked_speed(loaded, speed), modes, discretization, tolerance)
     warnings, refusal = [w for w in found.warnings if not w.startswith("unstable")], _unstable(found)
     show(tables := [modes_table(found)])
     report = Report(asked, tables, [*warnings, *refusal])
@@ -78,7 +78,7 @@ def locus(
     *,
     speeds: Text,
     modes: int = 3,
-    method: Method = "ritz",
+    discretization: Discretization = "ritz",
     tolerance: float | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -92,7 +92,7 @@ def locus(
         With their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50, 100 rad/s".
     modes
         How many modes.
-    method
+    discretization
         Assumed modes or finite elements: each checks the other.
     tolerance
         Relative error that is allowed: the cheapest model that keeps it is chosen.
@@ -100,16 +100,16 @@ def locus(
         Files to write.
     """
     from beamdyn import frequency_locus, load_scene
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
-    from beamdyn.report import locus_table
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.result_tables import locus_table
 
     outputs.check()
     given = parse_speeds(speeds)
     asked = Question.on_file(
-        "beamdyn locus", scene, speeds=speeds, modes=modes, method=method, tolerance=tolerance
+        "beamdyn locus", scene, speeds=speeds, modes=modes, discretization=discretization, tolerance=tolerance
     )
-    found = frequency_locus(load_scene(scene), given, modes, method, tolerance)
+    found = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
     show(tables := [locus_table(found)])
     report = Report(asked, tables, found.warnings)
     write(found, outputs, _locus_csv(found), on_axes(partial(_draw_locus, found)), report)
@@ -118,7 +118,12 @@ def locus(
 
 @app.command
 def critical(
-    scene: SceneFile, /, *, method: Method = "ritz", json: Path | None = None, force: Flag = False
+    scene: SceneFile,
+    /,
+    *,
+    discretization: Discretization = "ritz",
+    json: Path | None = None,
+    force: Flag = False,
 ) -> None:
     """Speed at which the rotating beam buckles.
 
@@ -126,7 +131,7 @@ def critical(
     ----------
     scene
         The scene.
-    method
+    discretization
         Assumed modes or finite elements: each checks the other.
     json
         Write the result with its error estimate and provenance into this file.
@@ -134,11 +139,11 @@ def critical(
         Overwrite a file that exists.
     """
     from beamdyn import critical_point, load_scene
-    from beamdyn.common.tables import console, supported
+    from beamdyn.common.edge.tables import console, supported
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
-    found = critical_point(load_scene(scene), method)
+    found = critical_point(load_scene(scene), discretization)
     value = supported(found.speed, found.error * found.speed, 12)
     stiff = "no critical speed: at no speed does the beam buckle"
     console().print(stiff if value == "inf" else f"critical speed: {value} rad/s; above it the beam buckles")
@@ -151,7 +156,7 @@ def limits(
     /,
     *,
     top_speed: Text,
-    method: Method = "ritz",
+    discretization: Discretization = "ritz",
     json: Path | None = None,
     force: Flag = False,
 ) -> None:
@@ -163,7 +168,7 @@ def limits(
         The scene; its own setting angle is not used.
     top_speed
         Speed up to which the second limit holds, with its unit, e.g. "400 rad/s".
-    method
+    discretization
         Assumed modes or finite elements: each checks the other.
     json
         Write the result with its error estimate and provenance into this file.
@@ -173,13 +178,13 @@ def limits(
     from math import isnan
 
     from beamdyn import load_scene, setting_angle_limits
-    from beamdyn.common.tables import console
-    from beamdyn.report import limits_table
+    from beamdyn.common.edge.tables import console
+    from beamdyn.result_tables import limits_table
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
     asked = parse_positive("--top-speed", top_speed, "rad/s")
-    found = setting_angle_limits(load_scene(scene), asked, method)
+    found = setting_angle_limits(load_scene(scene), asked, discretization)
     write(found, outputs)
     if isnan(found.first) or isnan(found.second):
         raise NoAnswer(found.warnings[0])
@@ -201,8 +206,8 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
         Overwrite a file that exists.
     """
     from beamdyn import load_scene
-    from beamdyn.common.tables import console, table
-    from beamdyn.inventory import terms
+    from beamdyn.common.edge.tables import console, table
+    from beamdyn.equations.terms import terms
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
@@ -215,7 +220,7 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
 
 def _draw_locus(found: Locus, ax: Axes) -> None:
     from beamdyn import critical_speed
-    from beamdyn.plots import mark_critical
+    from beamdyn.output.plots import mark_critical
 
     mark_critical(found.plot(ax), critical_speed(found.scene))
 
@@ -223,7 +228,7 @@ def _draw_locus(found: Locus, ax: Axes) -> None:
 def _write_shapes(found: Modes, path: Path, force: bool) -> None:
     import numpy as np
 
-    from beamdyn.export import write_shapes
+    from beamdyn.output.export import write_shapes
 
     x = np.linspace(0, found.scene.beam.length, 101)
     write_shapes(path, x, np.real(found.shape(x)), found.labels(), force=force)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import SceneFile, Text, parse_positive, parse_speed
-from beamdyn.common.outputs import NO_FILES, Outputs, on_axes, write
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes, write
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,8 +46,8 @@ def tradeoff(
         Files to write.
     """
     from beamdyn import load_scene
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import progress_bar, show
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import progress_bar, show
     from beamdyn.tradeoffs import tradeoff
 
     outputs.check()
@@ -69,7 +69,7 @@ def _table(diagram: Diagram) -> Group:
     from rich.console import Group
     from rich.text import Text as Line
 
-    from beamdyn.common.tables import table
+    from beamdyn.common.edge.tables import table
 
     rows = [
         (f"{d.error:.0e}", d.family, d.setting, f"{1e3 * d.time:.3g}", "" if i == 0 else f"{d.ratio:.2f}")

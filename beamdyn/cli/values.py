@@ -13,11 +13,11 @@ from cyclopts import Parameter
 if TYPE_CHECKING:
     import numpy as np
 
-    from beamdyn.scene import Scene
+    from beamdyn.scene.scene import Scene
 
 SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
-Method = Literal["ritz", "fem"]
+Discretization = Literal["ritz", "fem"]
 
 _MOST_SPEEDS = 100_000
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
@@ -26,7 +26,7 @@ _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 def parse_quantity(option: str, text: str, unit: str) -> float:
     """A number with its unit, in SI, or a ValueError that names the option."""
-    from beamdyn.common.units import quantity
+    from beamdyn.common.edge.units import quantity
 
     try:
         return quantity(text, unit)

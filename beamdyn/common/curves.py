@@ -21,7 +21,7 @@ def sweep_figure(found: Any) -> Figure:
     Parameters
     ----------
     found : Sweep
-        See `beamdyn.common.sweeps.Sweep`.
+        See `beamdyn.common.edge.input_sweep.Sweep`.
 
     Returns
     -------

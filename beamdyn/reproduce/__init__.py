@@ -8,13 +8,13 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from rich.console import Console
 
-from beamdyn.common.comparison import Comparison, comparison_table
+from beamdyn.common.edge.comparison import Comparison, comparison_table
+from beamdyn.common.edge.tables import progress_bar
 from beamdyn.common.pictures import save_figure
-from beamdyn.common.tables import progress_bar
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, motion, others
 from beamdyn.reproduce.others import Summary
-from beamdyn.sweeps import Sweep
+from beamdyn.transient.sweep import Sweep
 
 _INTRODUCTION = """
 A cantilever on the rim of a wheel points at the axis (input: Table 1 of the paper). Below, each number that

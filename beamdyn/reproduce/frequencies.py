@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.comparison import Comparison
-from beamdyn.plots import mark_points, plot_loci_by_angle, plot_locus
+from beamdyn.common.edge.comparison import Comparison
+from beamdyn.equations.ritz import Ritz
+from beamdyn.output.plots import mark_points, plot_loci_by_angle, plot_locus
 from beamdyn.published import load
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
-from beamdyn.ritz import Ritz
-from beamdyn.scene import Scene
-from beamdyn.spectrum import frequency_locus, natural_modes
-from beamdyn.stability import critical_point, setting_angle_limits
+from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.critical import critical_point, setting_angle_limits
+from beamdyn.spectrum.modes import frequency_locus, natural_modes
 
 _ANSYS = "ANSYS (4)"
 _ROUNDING = 1e-12  # relative, of a value that is defined by a basis of given size
@@ -33,8 +33,8 @@ def first_frequencies() -> Iterator[Comparison]:
     )
     for row, exact in zip(paper["first_frequency"], paper["reference"]["first_frequency"], strict=True):
         speed = row["speed"]["value"]
-        for name, model, method in models:
-            found = natural_modes(model, speed, 1, method)
+        for name, model, discretization in models:
+            found = natural_modes(model, speed, 1, discretization)
             ours = float(found.frequency[0])
             error = float(found.error[0]) * ours
             what = f"{speed:g} rad/s, {name}"
@@ -56,8 +56,8 @@ def limits_of_setting_angle() -> Iterator[Comparison]:
 def buckling_speed() -> Iterator[Comparison]:
     """The speed at which the inward beam buckles, of which the paper has no number."""
     entry = load("lee_yoo_2019")["reference"]["critical_speed"]
-    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
-        found = critical_point(published_scene(), method)
+    for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
+        found = critical_point(published_scene(), discretization)
         yield Comparison(
             f"critical speed, {name}", OWN, entry["value"], found.speed, found.error * found.speed, 4
         )
@@ -65,8 +65,8 @@ def buckling_speed() -> Iterator[Comparison]:
 
 def _first_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
     printed, exact = paper["setting_angle_limits"]["first"], paper["reference"]["first_setting_angle_limit"]
-    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
-        found = setting_angle_limits(scene, TOP, method)
+    for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
+        found = setting_angle_limits(scene, TOP, discretization)
         what, ours, error = (
             f"first limit, {name}",
             float(np.degrees(found.first)),
@@ -171,17 +171,19 @@ def fig_9() -> Figure:
         (12000.0, Ritz(5, "eigenfunctions"), "five clamped-free modes: one turns, the other rises on"),
         (5000.0, "ritz", "converged: both turn"),
     )
-    for ax, (top, method, title) in zip(figure.subplots(1, 2), cases, strict=True):
+    for ax, (top, discretization, title) in zip(figure.subplots(1, 2), cases, strict=True):
         speeds = np.linspace(0, top, 501)
-        plot_loci_by_angle(speeds, _first_by_angle(angles, speeds, method), angles, ax)
+        plot_loci_by_angle(speeds, _first_by_angle(angles, speeds, discretization), angles, ax)
         ax.set_title(title)
     figure.suptitle(f"Fig. 9: first natural frequency on either side of the paper's second limit {_OUTSIDE}")
     return figure
 
 
-def _first_by_angle(angles: Sequence[float], speeds: np.ndarray, method: str | Ritz = "ritz") -> np.ndarray:
+def _first_by_angle(
+    angles: Sequence[float], speeds: np.ndarray, discretization: str | Ritz = "ritz"
+) -> np.ndarray:
     """First frequency at setting angles [deg] over speeds: shape (angles, speeds)."""
     scene = published_scene()
     mounts = [replace(scene.mount, setting_angle=float(np.radians(angle))) for angle in angles]
-    loci = [frequency_locus(replace(scene, mount=mount), speeds, 1, method) for mount in mounts]
+    loci = [frequency_locus(replace(scene, mount=mount), speeds, 1, discretization) for mount in mounts]
     return np.array([locus.frequency[:, 0] for locus in loci])

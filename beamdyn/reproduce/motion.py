@@ -10,16 +10,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from beamdyn.common.comparison import Comparison
+from beamdyn.common.edge.comparison import Comparison
 from beamdyn.common.pictures import COLOURS
 from beamdyn.published import load
-from beamdyn.report import sweep_peaks
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, rolling_scene
-from beamdyn.resonance import Crossings, resonance_speeds
-from beamdyn.scene import Scene
-from beamdyn.steady import steady_response
-from beamdyn.sweeps import Sweep, sweep
-from beamdyn.transient import Transient, simulate
+from beamdyn.result_tables import sweep_peaks
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.resonance import Crossings, resonance_speeds
+from beamdyn.steady.response import steady_response
+from beamdyn.transient.simulate import Transient, simulate
+from beamdyn.transient.sweep import Sweep, sweep
 
 _MODES = 5
 _TOLERANCE = 1e-6
@@ -33,8 +33,8 @@ def largest_deflections() -> Iterator[Comparison]:
     paper = load("lee_yoo_2019")
     printed, exact = paper["largest_deflection"], paper["reference"]["largest_deflection"]
     known = dict(zip(exact["modes"], exact["in_window"]["value"], strict=True))
-    for modes, name, method in [*((n, "Ritz", "ritz") for n in range(1, 7)), (_MODES, "FE", "fem")]:
-        run = _published_run(modes, method)
+    for modes, name, discretization in [*((n, "Ritz", "ritz") for n in range(1, 7)), (_MODES, "FE", "fem")]:
+        run = _published_run(modes, discretization)
         what = f"{modes} mode{'s' * (modes > 1)}, {name}"
         ours, error = _MM * run.peak(*_window()), _MM * run.time_error
         few = "too few modes (7)" if modes < 3 else ""
@@ -50,8 +50,8 @@ def resonances() -> Iterator[Comparison]:
     reference = load("lee_yoo_2019")["reference"]
     further = reference["further_resonance_speeds"]
     forced, parametric = reference["resonance_speeds"]["value"], further["parametric"]["value"]
-    for name, method in (("Ritz", "ritz"), ("FE", "fem")):
-        found = _crossings(rolling_scene(), method)
+    for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
+        found = _crossings(rolling_scene(), discretization)
         yield from _crossing_rows(found, "forced", forced, name)
         yield from _crossing_rows(found, "parametric", parametric, name)
     heavy = _crossings(replace(rolling_scene(), gravity=9.81))
@@ -175,12 +175,12 @@ def fig_7() -> Figure:
     return figure
 
 
-def _crossings(scene: Scene, method: str = "ritz") -> Crossings:
-    return resonance_speeds(scene, TOP, 1, method=method)
+def _crossings(scene: Scene, discretization: str = "ritz") -> Crossings:
+    return resonance_speeds(scene, TOP, 1, discretization=discretization)
 
 
-def _published_run(modes: int = _MODES, method: str = "ritz") -> Transient:
-    return simulate(rolling_scene(), _t_end(), modes, _TOLERANCE, discretization=method)
+def _published_run(modes: int = _MODES, discretization: str = "ritz") -> Transient:
+    return simulate(rolling_scene(), _t_end(), modes, _TOLERANCE, discretization=discretization)
 
 
 def _window() -> tuple[float, float]:

@@ -10,23 +10,23 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from rich.console import Group
 
-from beamdyn.beam import Beam, TipMass
-from beamdyn.common.tables import table
+from beamdyn.common.edge.tables import table
 from beamdyn.published import load
 from beamdyn.reproduce.common import decimals
-from beamdyn.scene import Mount, Scene
-from beamdyn.spectrum import natural_modes
-from beamdyn.stability import critical_point
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.scene import Mount, Scene
+from beamdyn.spectrum.critical import critical_point
+from beamdyn.spectrum.modes import natural_modes
 
 
 @dataclass(frozen=True)
 class Summary:
-    """Many values of one source against one method.
+    """Many values of one source against one discretization.
 
     Parameters
     ----------
-    source, method : str
-        Of which values, by which method.
+    source, discretization : str
+        Of which values, by which discretization.
     values : int
         How many.
     printed : float
@@ -38,7 +38,7 @@ class Summary:
     """
 
     source: str
-    method: str
+    discretization: str
     values: int
     printed: float
     deviation: float
@@ -54,26 +54,26 @@ class Summary:
         """Its row of the table."""
         numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
         verdict = f"differs: {self.outside} value(s)" if self.outside else "agrees"
-        return [self.source, self.method, str(self.values), *numbers, verdict]
+        return [self.source, self.discretization, str(self.values), *numbers, verdict]
 
 
 def summaries() -> Iterator[Summary]:
-    """All cases of the published tables, and the critical speeds, by source and method."""
+    """All cases of the published tables, and the critical speeds, by source and discretization."""
     data = load("rotating_beams")
     groups: dict[str, list[dict[str, Any]]] = {}
     for case in data["case"]:
         groups.setdefault(case["source"], []).append(case)
     groups["critical speeds, computed"] = [c for c in data["critical"] if np.isfinite(c["gamma"])]
     for source, cases in groups.items():
-        for name, method in (("Ritz", "ritz"), ("FE", "fem")):
-            yield summary(source, name, [solved(case, method) for case in cases])
+        for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
+            yield summary(source, name, [solved(case, discretization) for case in cases])
 
 
 def summary_table(rows: Sequence[Summary]) -> Group:
     """The table of summaries."""
     heads = (
         "source",
-        "method",
+        "discretization",
         "values",
         "printed to",
         "worst deviation",
@@ -84,22 +84,24 @@ def summary_table(rows: Sequence[Summary]) -> Group:
     return table(title, heads, (row.cells() for row in rows), (0, 1, 6))
 
 
-def summary(source: str, method: str, parts: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> Summary:
+def summary(
+    source: str, discretization: str, parts: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]
+) -> Summary:
     """Many values against ours; `parts` are as from `solved`."""
     printed, ours, error = (np.concatenate(column) for column in zip(*parts, strict=True))
     rounding = np.array([0.5 * 10.0 ** -decimals(value) for value in printed]) / printed
     deviation = np.abs(ours / printed - 1)
     outside = int((deviation > rounding + error).sum())
-    return Summary(source, method, len(ours), rounding.max(), deviation.max(), error.max(), outside)
+    return Summary(source, discretization, len(ours), rounding.max(), deviation.max(), error.max(), outside)
 
 
-def solved(case: dict[str, Any], method: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def solved(case: dict[str, Any], discretization: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Published values, ours, and our relative errors."""
     scene = nondimensional(case)
     if "frequency" in case:
-        found = natural_modes(scene, case["gamma"], len(case["frequency"]), method)
+        found = natural_modes(scene, case["gamma"], len(case["frequency"]), discretization)
         return np.array(case["frequency"]), np.abs(found.eigenvalue), found.error
-    point = critical_point(scene, method)
+    point = critical_point(scene, discretization)
     return np.array([case["gamma"]]), np.array([point.speed]), np.array([point.error])
 
 

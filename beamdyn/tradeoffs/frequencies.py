@@ -7,13 +7,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from beamdyn.bounds import frequency_bounds
-from beamdyn.common.workers import one_blas_thread
-from beamdyn.estimate import Estimated, Model, estimated
-from beamdyn.operators import Discretization
-from beamdyn.ritz import Ritz
-from beamdyn.scene import Scene
-from beamdyn.spectrum import frequency_locus, natural_modes
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.equations.operators import Discretization
+from beamdyn.equations.ritz import Ritz
+from beamdyn.modal.error_estimate import Estimated, Model, estimated
+from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.bounds import frequency_bounds
+from beamdyn.spectrum.modes import frequency_locus, natural_modes
 from beamdyn.tradeoffs.measurements import Diagram, counted
 from beamdyn.tradeoffs.timing import Case, Family, measured
 
@@ -139,7 +139,7 @@ def _functions(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes
 
 def _elements(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
     """Finite elements as they are, and extrapolated."""
-    from beamdyn.fem import Fem  # loads scikit-fem
+    from beamdyn.equations.fem import Fem  # loads scikit-fem
 
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share

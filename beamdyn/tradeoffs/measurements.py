@@ -165,7 +165,7 @@ class Diagram(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw error against time, a line a family, and the front."""
-        from beamdyn.plots import plot_work_precision
+        from beamdyn.output.plots import plot_work_precision
 
         lines: dict[str, list[tuple[float, float]]] = {}
         for m in self.measurements:

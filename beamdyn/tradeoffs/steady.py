@@ -7,9 +7,9 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn.common.workers import one_blas_thread
-from beamdyn.scene import Scene
-from beamdyn.steady import SteadyResponse, steady_response
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.tradeoffs.measurements import Diagram
 from beamdyn.tradeoffs.timing import Case, Family, measured, what_is_left
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn import __version__
+from beamdyn._version import __version__
 from beamdyn.common.checks import count, positive, real
 from beamdyn.common.results import Provenance, Result
-from beamdyn.estimate import choose
-from beamdyn.scene import Scene
-from beamdyn.torus import known_steady
+from beamdyn.modal.error_estimate import choose
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.excitation_phases import known_steady
 from beamdyn.tradeoffs.frequencies import frequency_diagram
 from beamdyn.tradeoffs.measurements import Diagram
 from beamdyn.tradeoffs.steady import harmonics_diagram, steady_modes_diagram
@@ -60,7 +60,7 @@ class Tradeoff(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw all diagrams side by side in the place of the axes."""
-        from beamdyn.plots import panels
+        from beamdyn.output.plots import panels
 
         ax, places = panels(len(self.diagrams), ax)
         for diagram, place in zip(self.diagrams, places, strict=True):

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.workers import one_blas_thread
-from beamdyn.estimate import choose
-from beamdyn.operators import Discretization
-from beamdyn.reduction import Kept, range_of_speed
-from beamdyn.scene import Scene
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.equations.operators import Discretization
+from beamdyn.modal.error_estimate import choose
+from beamdyn.modal.modal_basis import Kept, range_of_speed
+from beamdyn.scene.scene import Scene
 from beamdyn.tradeoffs.measurements import Diagram, counted
 from beamdyn.tradeoffs.timing import Case, Family, measured, what_is_left
-from beamdyn.transient import Task, Transient, simulate
+from beamdyn.transient.simulate import Task, Transient, simulate
 
 OURS = "Gauss collocation"
 STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")

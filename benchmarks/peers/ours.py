@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 import beamdyn as bd
+from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.peers import measure
 from benchmarks.peers.measure import ALONE, DEFAULT, OURS, Point, best_threads
-from tests.scenes import HARVESTER, ROLLING
 
 TOLERANCES = (None, 1e-7, 1e-4)  # of frequencies
 BLADE_SCENE = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi, math.pi / 2))

@@ -9,13 +9,13 @@ import scipy
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.estimate import Model
-from beamdyn.modal import ModalSystem
+from beamdyn.modal.error_estimate import Model
+from beamdyn.transient.system import ModalSystem
+from benchmarks.cases.scenes import ROLLING
 from benchmarks.peers import measure
 from benchmarks.peers.measure import Point, peak, shortest
 from benchmarks.peers.ours import largest_deflection
 from benchmarks.transient import lean
-from tests.scenes import ROLLING
 
 NAME = "solve_ivp"
 BETTER = "any equations, linear or not, given as a function; stops at events"

@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beamdyn.common.app.documents import Document, Screen, Slider, Sweeps
-from beamdyn.common.config import ConfigError
-from beamdyn.common.inputs import Input
-from beamdyn.common.sweeps import Sweep, chosen, numbers, one_by_one, parse_axis
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.input_sweep import Sweep, chosen, numbers, one_by_one, parse_axis
+from beamdyn.common.edge.inputs import Input
+from brakes.answers import caliper_sweeps
+from brakes.answers.caliper import Answer, CaliperAnswer, answer_to
 from brakes.app.bases import base
 from brakes.app.handles import of_caliper
-from brakes.cli import caliper_sweeps
-from brakes.cli.caliper_answers import Answer, CaliperAnswer, answer_to
 from brakes.config.mechanism import CaliperInput, mechanism_from_dict, parse_mechanism
 from brakes.config.mechanism_inputs import caliper_inputs, inputs_of_tables
 from brakes.config.wording import in_range

@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.app.documents import Document, Screen, Sweeps
-from beamdyn.common.inputs import describe
+from beamdyn.common.edge.inputs import describe
+from brakes.answers.tables import drum_outputs, drum_tables, outputs_csv
 from brakes.app.bases import base
 from brakes.app.handles import of_drum
 from brakes.config.drum import DrumInput, drum_from_dict, parse_drum
 from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
 from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult
-from brakes.report import drum_outputs, drum_tables, outputs_csv
 
 
 def solve(tables: Mapping[str, Any]) -> BrakeResult:

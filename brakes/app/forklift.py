@@ -12,7 +12,14 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.app.documents import Document, Handle, Screen, Slider, Sweeps
-from beamdyn.common.inputs import describe
+from beamdyn.common.edge.inputs import describe
+from brakes.answers.tables import (
+    forces_table,
+    forklift_outputs,
+    kinematics_tables,
+    outputs_csv,
+    vehicle_table,
+)
 from brakes.app.bases import base
 from brakes.app.handles import of_duo_servo, of_truck
 from brakes.config.forklift import (
@@ -25,13 +32,6 @@ from brakes.config.forklift import (
 from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import truck
-from brakes.report import (
-    forces_table,
-    forklift_outputs,
-    kinematics_tables,
-    outputs_csv,
-    vehicle_table,
-)
 
 
 @dataclass(frozen=True)

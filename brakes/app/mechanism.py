@@ -11,13 +11,13 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from beamdyn.common.app.documents import Document, Handle, Screen, Slider
-from beamdyn.common.config import ConfigError
-from beamdyn.common.inputs import Input
-from beamdyn.common.units import show
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.units import show
+from brakes.answers.caliper import Answer, CaliperAnswer
 from brakes.app import caliper
 from brakes.app.bases import base
 from brakes.app.caliper import notes, sweeps_of
-from brakes.cli.caliper_answers import Answer, CaliperAnswer
 from brakes.config.mechanism import MechanismInput, parse_mechanism
 from brakes.config.mechanism_inputs import PARTS, mechanism_inputs
 

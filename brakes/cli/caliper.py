@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from beamdyn.common.outputs import NO_FILES, Flag, Outputs, write
-from beamdyn.common.program import NoAnswer
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write
+from beamdyn.common.edge.program import NoAnswer
 from brakes.cli.program import app, warn
 from brakes.cli.sweeps import Results, Sweeps, axes_of, show_sweep
 
 if TYPE_CHECKING:
-    from beamdyn.common.sweeps import Sweep
+    from beamdyn.common.edge.input_sweep import Sweep
 
 
 @app.command
@@ -52,10 +52,10 @@ def caliper(
     outputs
         Files to write.
     """
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import console, show
     from beamdyn.common.pictures import save_figure
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import console, show
-    from brakes.cli import caliper_answers
+    from brakes.answers import caliper as caliper_answers
     from brakes.config.mechanism import mechanism_from_dict
 
     if list_:
@@ -87,8 +87,8 @@ def caliper(
 
 
 def _swept(design: Mapping[str, Any], source: str, texts: Sweeps, names: Results) -> Sweep:
-    from beamdyn.common.sweeps import chosen, numbers, one_by_one, parse_axis
-    from brakes.cli.caliper_sweeps import outputs_of, solve
+    from beamdyn.common.edge.input_sweep import chosen, numbers, one_by_one, parse_axis
+    from brakes.answers.caliper_sweeps import outputs_of, solve
     from brakes.config.mechanism_inputs import inputs_of_tables
 
     known = outputs_of(design, source)

@@ -7,8 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.common.outputs import NO_FILES, Outputs, write
-from beamdyn.common.program import NoAnswer
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
+from beamdyn.common.edge.program import NoAnswer
 from brakes.cli.program import app, warn
 from brakes.cli.sweeps import Results, Sweeps, run_sweep, show_sweep
 
@@ -35,12 +35,12 @@ def drum(
     outputs
         Files to write.
     """
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.sweeps import chosen
-    from beamdyn.common.tables import show
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.input_sweep import chosen
+    from beamdyn.common.edge.tables import show
+    from brakes.answers.tables import drum_outputs, drum_tables, outputs_csv
     from brakes.config.drum import load_drum
     from brakes.drawings.drum import brake_figure
-    from brakes.report import drum_outputs, drum_tables, outputs_csv
 
     outputs.check()
     design = load_drum(file)

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from beamdyn.common.outputs import NO_FILES, Outputs, write
-from beamdyn.common.program import NoAnswer
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
+from beamdyn.common.edge.program import NoAnswer
 from brakes.cli.program import app, warn
 from brakes.cli.sweeps import Results, Sweeps, run_sweep, show_sweep
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from beamdyn.common.reports import Report
-    from beamdyn.common.sweeps import Sweep
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.edge.input_sweep import Sweep
     from brakes.config.forklift import ForkliftAnswer, ForkliftInput, StageName
 
 ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
@@ -60,8 +60,8 @@ def forklift(
     outputs
         Files to write.
     """
-    from beamdyn.common.reports import Question, Report
-    from beamdyn.common.tables import show
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
     from brakes.config.forklift import load_forklift
 
     outputs.check()
@@ -104,8 +104,8 @@ def _swept(
     texts: Sweeps,
     names: Results,
 ) -> tuple[Sweep, ForkliftAnswer]:
-    from beamdyn.common.sweeps import chosen
-    from brakes.report import forklift_outputs
+    from beamdyn.common.edge.input_sweep import chosen
+    from brakes.answers.tables import forklift_outputs
 
     if model == "both":
         raise ValueError("--model both does not go with --sweep: sweep each model by itself")
@@ -114,7 +114,7 @@ def _swept(
 
 
 def _tables(found: dict[str, ForkliftAnswer]) -> list[RenderableType]:
-    from brakes.report import forces_table, kinematics_tables, vehicle_table
+    from brakes.answers.tables import forces_table, kinematics_tables, vehicle_table
 
     answers, tables = [*found.values()], []
     first = answers[0]
@@ -133,9 +133,9 @@ def _tables(found: dict[str, ForkliftAnswer]) -> list[RenderableType]:
 def _write(
     found: dict[str, ForkliftAnswer], stages: tuple[StageName, ...], files: Outputs, report: Report
 ) -> None:
+    from brakes.answers.tables import forklift_outputs, outputs_csv
     from brakes.config.forklift import Models
     from brakes.drawings.forklift import answer_figure
-    from brakes.report import forklift_outputs, outputs_csv
 
     answers = [*found.values()]
     first = answers[0]

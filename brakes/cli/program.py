@@ -7,7 +7,7 @@ from importlib.metadata import version
 
 from cyclopts import App
 
-from beamdyn.common import program
+from beamdyn.common.edge import program
 
 app = App(
     name="brakes",
@@ -22,7 +22,7 @@ Inputs are TOML files with units; `brakes COMMAND --help` lists the options of a
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; see `beamdyn.common.program.run`."""
+    """Run the command; see `beamdyn.common.edge.program.run`."""
     return program.run(app, arguments)
 
 

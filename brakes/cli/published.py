@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from beamdyn.common.program import NoAnswer
+from beamdyn.common.edge.program import NoAnswer
 from brakes.cli.program import app
 
 
@@ -17,7 +17,7 @@ def reproduce(*, output: Path = Path("brakes-reproduce")) -> None:
     output
         Folder for the pictures; it is made if needed, and its pictures are replaced.
     """
-    from beamdyn.common.tables import console
+    from beamdyn.common.edge.tables import console
     from brakes.reproduce import report
 
     if output.exists() and not output.is_dir():

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from beamdyn.common.outputs import Outputs, write
+from beamdyn.common.edge.outputs import Outputs, write
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-    from beamdyn.common.reports import Question
-    from beamdyn.common.sweeps import Axis, Output, Sweep
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.edge.input_sweep import Axis, Output, Sweep
 
 Sweeps = Annotated[tuple[str, ...], Parameter(name="--sweep", negative="", consume_multiple=False)]
 Results = Annotated[str | None, Parameter(name="--result")]
@@ -44,10 +44,10 @@ def axes_of(texts: Sequence[str], parse: Callable[[str], Axis]) -> list[Axis]:
 def show_sweep(found: Sweep, files: Outputs, question: Question, warnings: Sequence[str]) -> None:
     """Print a sweep and write its files."""
     from beamdyn.common.curves import sweep_figure
-    from beamdyn.common.reports import Report
-    from beamdyn.common.sweeps import sweep_csv
-    from beamdyn.common.tables import show
-    from brakes.report import sweep_table
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.edge.input_sweep import sweep_csv
+    from beamdyn.common.edge.tables import show
+    from brakes.answers.tables import sweep_table
 
     show(tables := [sweep_table(found)])
     report = Report(question, tables, warnings)

@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from beamdyn.common.config import CoreSection, parse, read, validated
-from beamdyn.common.inputs import Quantity, Section
+from beamdyn.common.edge.config import CoreSection, parse, read, validated
+from beamdyn.common.edge.inputs import Quantity, Section
 from brakes.config.wording import in_range, of_file
 from brakes.drum import (
     BrakeResult,

@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from beamdyn.common.config import CoreSection, parse, read, validated
-from beamdyn.common.inputs import Quantity, Section
+from beamdyn.common.edge.config import CoreSection, parse, read, validated
+from beamdyn.common.edge.inputs import Quantity, Section
 from beamdyn.common.results import Result
 from brakes.config.wording import in_range, of_file
 from brakes.forklift import (

@@ -11,9 +11,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model
 
-from beamdyn.common.config import CoreSection, parse, read, validated
-from beamdyn.common.inputs import Quantity, Section
-from beamdyn.common.units import quantity, show
+from beamdyn.common.edge.config import CoreSection, parse, read, validated
+from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.units import quantity, show
 from brakes import planar
 from brakes.calipers import NAMED, Caliper, Design, Stop, stop
 from brakes.planar import GROUND, Mechanism

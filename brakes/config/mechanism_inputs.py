@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from beamdyn.common.inputs import Input, Quantity, describe
-from beamdyn.common.units import show
+from beamdyn.common.edge.inputs import Input, Quantity, describe
+from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
 from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, named
 from brakes.planar.rows import Point as Coordinates

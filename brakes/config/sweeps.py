@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import BaseModel
 
-from beamdyn.common import sweeps
-from beamdyn.common.inputs import Input, describe
-from beamdyn.common.sweeps import Axis, Output, Sweep, chosen
+from beamdyn.common.edge import input_sweep as sweeps
+from beamdyn.common.edge.input_sweep import Axis, Output, Sweep, chosen
+from beamdyn.common.edge.inputs import Input, describe
 
 __all__ = ["Axis", "Output", "Sweep", "chosen", "parse_axis", "replaced", "sweep"]
 

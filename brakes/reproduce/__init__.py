@@ -8,7 +8,7 @@ from typing import Protocol
 
 from rich.console import Console
 
-from beamdyn.common.comparison import comparison_table
+from beamdyn.common.edge.comparison import comparison_table
 from beamdyn.common.pictures import save_figure
 from brakes.published import load
 from brakes.reproduce import caliper, drum, forklift

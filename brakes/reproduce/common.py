@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rich.console import Group
 
-from beamdyn.common.tables import table
+from beamdyn.common.edge.tables import table
 from brakes.published.errata import Erratum
 
 

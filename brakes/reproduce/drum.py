@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from rich.console import Group
 
 from beamdyn.common.curves import grid
+from beamdyn.common.edge.tables import table
 from beamdyn.common.pictures import COLOURS
-from beamdyn.common.tables import table
 from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult, Shoe, as_printed, brake_torque, simplex
 from brakes.published import load

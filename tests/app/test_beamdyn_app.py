@@ -5,10 +5,10 @@ import pytest
 
 from beamdyn import frequency_locus, load_scene
 from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
-from beamdyn.common.app.reporting import drawn
+from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.session import Work
-from beamdyn.common.config import ConfigError
-from beamdyn.common.rendering import csv_text, html
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.rendering import csv_text, html
 
 
 @pytest.mark.parametrize("screen", SCENE.screens, ids=lambda s: s.name)

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from beamdyn.common.app.document_report import drawn, report_of
 from beamdyn.common.app.entries import by_field, entries_of, in_unit, tables_of, toml_of
-from beamdyn.common.app.reporting import drawn, report_of
 from beamdyn.common.app.session import Work
-from beamdyn.common.config import ConfigError, parse
 from beamdyn.common.curves import sweep_figure
-from beamdyn.common.rendering import csv_text, html, png, svg
-from beamdyn.common.sweeps import sweep_csv
+from beamdyn.common.edge.config import ConfigError, parse
+from beamdyn.common.edge.input_sweep import sweep_csv
+from beamdyn.common.edge.rendering import csv_text, html, png, svg
 from brakes.app.bases import base
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORCES, FORKLIFT, KINEMATICS, VEHICLE

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from matplotlib.patches import Circle
 
+from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.handles import sheet, told, written
-from beamdyn.common.app.reporting import drawn
 from beamdyn.common.app.session import Work
-from beamdyn.common.rendering import address
+from beamdyn.common.edge.rendering import address
 from brakes.app.caliper import CALIPER
 from brakes.app.drum import DRUM
 from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE

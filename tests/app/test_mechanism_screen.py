@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.entries import entries_of, tables_of, toml_of
-from beamdyn.common.app.reporting import drawn
 from beamdyn.common.app.session import Work
-from beamdyn.common.config import ConfigError, parse
-from beamdyn.common.rendering import html, svg
+from beamdyn.common.edge.config import ConfigError, parse
+from beamdyn.common.edge.rendering import html, svg
 from brakes.app.caliper import CALIPER
 from brakes.app.mechanism import MECHANISM
 from brakes.app.program import BRAKES

@@ -8,9 +8,9 @@ import pytest
 
 from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.app.reporting import report_of
+from beamdyn.common.app.document_report import report_of
 from beamdyn.common.app.session import Work
-from beamdyn.common.rendering import html
+from beamdyn.common.edge.rendering import html
 from brakes.app.caliper import CALIPER
 from brakes.app.drum import DRUM
 from brakes.app.program import BRAKES

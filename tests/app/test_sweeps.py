@@ -15,10 +15,10 @@ from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
 from beamdyn.common.app.documents import Program
 from beamdyn.common.app.entries import tables_of
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.sweeping import around
-from beamdyn.common.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
-from beamdyn.common.rendering import csv_text
-from beamdyn.common.sweeps import numbers, sweep_csv
+from beamdyn.common.app.sweep_panel import around
+from beamdyn.common.edge.input_sweep import numbers, sweep_csv
+from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
+from beamdyn.common.edge.rendering import csv_text
 from brakes.app.caliper import CALIPER
 from brakes.app.mechanism import MECHANISM
 from brakes.app.program import BRAKES

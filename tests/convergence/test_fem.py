@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.estimate import Model
-from tests.reference.power_series import bending_eigenvalues
-from tests.scenes import of_case
+from beamdyn.modal.error_estimate import Model
+from benchmarks.cases.reference.power_series import bending_eigenvalues
+from benchmarks.cases.scenes import of_case
 
 CASE = {
     "model": "bending",

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.integrators import propagate, tableau
+from beamdyn.transient.gauss import propagate, tableau
 
 
 class Mathieu:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.estimate import Model
-from beamdyn.integrators import propagate
-from beamdyn.modal import ModalSystem
-from beamdyn.modulated import propagate_modulated
-from tests.scenes import ROLLING
+from beamdyn.modal.error_estimate import Model
+from beamdyn.transient.gauss import propagate
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.weakly_modulated import propagate_modulated
+from benchmarks.cases.scenes import ROLLING
 
 SCENES = {
     "published": ROLLING,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.operators import assemble
-from tests.reference.power_series import bending_eigenvalues
-from tests.scenes import of_case
+from beamdyn.equations.operators import assemble
+from benchmarks.cases.reference.power_series import bending_eigenvalues
+from benchmarks.cases.scenes import of_case
 
 UNIFORM = {"model": "bending", "delta": 0.0, "bending_angle_deg": 90.0, "mass": [1.0], "stiffness": [1.0]}
 

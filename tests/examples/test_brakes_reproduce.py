@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamdyn.common.program import DONE, NO_ANSWER
+from beamdyn.common.edge.program import DONE, NO_ANSWER
 from brakes import reproduce
 from brakes.cli import main
 from brakes.drum import as_printed as drum_as_printed

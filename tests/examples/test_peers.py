@@ -6,9 +6,9 @@ import re
 import numpy as np
 import pytest
 
+from benchmarks.cases.scenes import ROLLING
 from benchmarks.peers import calculix, exudyn, measure, pybmodes, stock, tables
 from benchmarks.peers.measure import BLADE, HARVESTER, OURS, Point
-from tests.scenes import ROLLING
 
 DAT = """
 

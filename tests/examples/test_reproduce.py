@@ -8,8 +8,8 @@ import pytest
 
 from beamdyn import reproduce
 from beamdyn.cli import DONE, NO_ANSWER, main
-from beamdyn.common.comparison import Comparison, comparison_table
-from beamdyn.common.tables import console
+from beamdyn.common.edge.comparison import Comparison, comparison_table
+from beamdyn.common.edge.tables import console
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, motion, others
 
@@ -122,10 +122,10 @@ def test_all_of_figure_6_has_no_other_peak():
 @pytest.mark.slow
 def test_tables_of_other_sources():
     summaries = list(others.summaries())
-    assert sum(s.values for s in summaries if s.method == "Ritz") == 62
+    assert sum(s.values for s in summaries if s.discretization == "Ritz") == 62
     for s in summaries:
         assert s.as_expected, s
-        assert s.deviation < {"Ritz": 1e-9, "FE": 1e-6}[s.method]
+        assert s.deviation < {"Ritz": 1e-9, "FE": 1e-6}[s.discretization]
 
 
 def test_a_wrong_value_in_the_tables_is_seen():

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from tests.reference.of_scene import exact, relative_errors
+from benchmarks.cases.reference.of_scene import exact, relative_errors
 
 EPS = float(np.finfo(float).eps)
 INWARD, OUTWARD, TANGENTIAL = 0.0, math.pi, math.pi / 2

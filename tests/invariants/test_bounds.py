@@ -12,9 +12,9 @@ from numpy.polynomial import Polynomial, legendre
 from scipy.linalg import eigh
 
 import beamdyn as bd
-from beamdyn.bounds import FrequencyBounds, Split, _flexibility, _reciprocal, frequency_bounds
-from tests.reference.power_series import Tip, bending_eigenvalues
-from tests.scenes import HARVESTER
+from beamdyn.spectrum.bounds import FrequencyBounds, Split, _flexibility, _reciprocal, frequency_bounds
+from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
+from benchmarks.cases.scenes import HARVESTER
 
 
 @dataclass(frozen=True)

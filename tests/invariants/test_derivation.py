@@ -19,11 +19,11 @@ from numpy.polynomial import Polynomial
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from beamdyn.beam import Beam, TipMass
-from beamdyn.equations import equations
-from beamdyn.motion import MotionSample
-from beamdyn.operators import assemble
-from beamdyn.scene import Mount, Scene
+from beamdyn.equations.equations_of_motion import equations
+from beamdyn.equations.operators import assemble
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.scene import Mount, Scene
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
 STRETCH = (1, 2)

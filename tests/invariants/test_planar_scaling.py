@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.cases import mechanisms as ee
 from brakes.planar import GROUND, Contact, Mechanism, solve, stroke
-from tests import mechanisms as ee
 
 EPS = np.finfo(float).eps
 LENGTHS = {"mm": 1.0, "micrometres": 1e-6, "kilometres": 1e6, "light": 1e15}

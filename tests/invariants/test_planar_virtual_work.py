@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.cases.mechanisms import KINDS, LOADS, random_mechanism, virtual_work, worst_virtual_work
 from brakes.planar import Force, Mechanism, solve
 from brakes.planar.system import Rows, System
-from tests.mechanisms import KINDS, LOADS, random_mechanism, virtual_work, worst_virtual_work
 
 BOUND = 1e-9  # that of the project; rounding over the smallest singular value admitted, 0.01, is below 1e-12
 RIGHT = System.rows

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import beamdyn as bd
-from beamdyn.estimate import Model
-from tests.scenes import HARVESTER
+from beamdyn.modal.error_estimate import Model
+from benchmarks.cases.scenes import HARVESTER
 
 angles = st.floats(-np.pi, np.pi)
 speeds = st.floats(0, 140)

@@ -7,7 +7,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from tests.scenes import HARVESTER
+from benchmarks.cases.scenes import HARVESTER
 
 STEPPED = bd.Beam.rectangular(
     length=0.1,
@@ -31,7 +31,7 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_same_answer(name: str) -> None:
     scene, speed = SCENES[name]
-    ritz, fem = (bd.natural_modes(scene, speed, 3, method) for method in ("ritz", "fem"))
+    ritz, fem = (bd.natural_modes(scene, speed, 3, discretization) for discretization in ("ritz", "fem"))
     np.testing.assert_array_equal(ritz.status, fem.status)
     np.testing.assert_allclose(ritz.eigenvalue, fem.eigenvalue, rtol=1e-6)
     for quantity in ("tip", "load", "angular_load"):  # errors of vectors go like the second power of h
@@ -47,7 +47,10 @@ def test_same_answer(name: str) -> None:
 @pytest.mark.parametrize("name", ["published", "stepped, oblique", "tapered blade"])
 def test_same_locus_and_critical_speed(name: str) -> None:
     scene, top = SCENES[name]
-    loci = [bd.frequency_locus(scene, np.linspace(0, top, 5), 2, method) for method in ("ritz", "fem")]
+    loci = [
+        bd.frequency_locus(scene, np.linspace(0, top, 5), 2, discretization)
+        for discretization in ("ritz", "fem")
+    ]
     np.testing.assert_allclose(loci[0].frequency, loci[1].frequency, rtol=1e-6)
     np.testing.assert_allclose(bd.critical_speed(scene), bd.critical_speed(scene, "fem"), rtol=1e-6)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.cases import mechanisms as ee
 from brakes.planar import GROUND, Mechanism, Pin, solve, stroke
-from tests import mechanisms as ee
 
 RATES = 0.3894391536, 0.3720812942  # pad travel per cable travel, open position, ten printed digits
 TABLE = [  # tension and left pad given; X, Y, Z, F_L of the reconstruction

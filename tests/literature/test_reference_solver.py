@@ -1,4 +1,4 @@
-"""The power-series reference of `tests/reference` reproduces the published values, to their last digit."""
+"""The power-series reference of `benchmarks/cases` reproduces the published values to their last digit."""
 
 import math
 from decimal import Decimal
@@ -7,7 +7,7 @@ import pytest
 from mpmath import mp, mpf
 
 from beamdyn.published import load
-from tests.reference.power_series import (
+from benchmarks.cases.reference.power_series import (
     Tip,
     bending_eigenvalues,
     coupled_frequencies,
@@ -107,7 +107,7 @@ def test_second_setting_angle_limits(row):
 
 
 def test_a_missed_root_is_noticed(monkeypatch):
-    from tests.reference import power_series
+    from benchmarks.cases.reference import power_series
 
     lowest = power_series._lowest
 

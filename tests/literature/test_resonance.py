@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import beamdyn as bd
-from tests.scenes import HARVESTER
+from benchmarks.cases.scenes import HARVESTER
 
 ROAD = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
 ROLLING = replace(HARVESTER, motion=bd.RollingWheel(0.3, speed=55.0, road=ROAD))

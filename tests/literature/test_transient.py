@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from tests.scenes import BLADE_SPIN_UP, ROLLING
+from benchmarks.cases.scenes import BLADE_SPIN_UP, ROLLING
 
 TABLE_3 = {1: 1.947177e-3, 2: 1.946482e-3, 3: 1.943300e-3, 4: 1.942770e-3, 5: 1.942558e-3, 6: 1.942509e-3}
 

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from beamdyn.beam import Beam, TipMass
-from beamdyn.motion import SteadyRotation
-from beamdyn.profile import Table, as_profile
-from beamdyn.scene import Mount, Scene
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import SteadyRotation
+from beamdyn.scene.profile import Table, as_profile
+from beamdyn.scene.scene import Mount, Scene
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
 STIFFNESS = {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3}

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamdyn.common.config import ConfigError
-from beamdyn.common.inputs import describe
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.inputs import describe
 from brakes import drum, forklift
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift

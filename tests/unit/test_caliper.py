@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from beamdyn.common.config import ConfigError
+from beamdyn.common.edge.config import ConfigError
 from brakes import calipers
 from brakes.calipers import Caliper, stop
 from brakes.cli import main

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main, parse_speeds
-from beamdyn.common.tables import supported
+from beamdyn.common.edge.tables import supported
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "tyre_harvester.toml")
@@ -45,7 +45,7 @@ def test_negative_speed_is_the_same_as_positive(run):
 
 
 def test_fem_prints_fewer_digits_than_ritz(run):
-    out = run("modes", SCENE, "--method", "fem", "--modes", "1")[1]
+    out = run("modes", SCENE, "--discretization", "fem", "--modes", "1")[1]
     assert "65.230456" in out and "65.2304564" not in out
 
 
@@ -140,7 +140,7 @@ BAD = {
     "no modes": (("modes", SCENE, "--modes", "0"), ("modes = 0", "1 or more")),
     "too many modes": (("modes", SCENE, "--modes", "500"), ("modes = 500", "fewer")),
     "modes not a number": (("modes", SCENE, "--modes", "x"), ("--modes", '"x"', "int")),
-    "method": (("modes", SCENE, "--method", "bem"), ("--method", "bem", "ritz")),
+    "method": (("modes", SCENE, "--discretization", "bem"), ("--discretization", "bem", "ritz")),
     "option": (("modes", SCENE, "--sped", "5"), ("--sped", "--speed")),
     "command": (("mods",), ("mods", "modes")),
     "no scene": (("modes",), ("SCENE.toml",)),

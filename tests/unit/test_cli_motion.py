@@ -19,7 +19,7 @@ from beamdyn import load_scene
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER, main
 from beamdyn.cli.motion import _how_to_resume
 from beamdyn.cli.values import parse_window
-from beamdyn.report import peaks
+from beamdyn.result_tables import peaks
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "rolling_harvester.toml")
@@ -199,7 +199,7 @@ def test_a_run_that_does_not_fit_into_memory_is_no_traceback(run, monkeypatch):
     def fill(*_, **__):
         raise MemoryError("Unable to allocate 875 GiB")
 
-    monkeypatch.setattr("beamdyn.transient.simulate", fill)
+    monkeypatch.setattr("beamdyn.transient.simulate.simulate", fill)
     code, out, err = run("simulate", SCENE, *QUICK)
     assert (code, out) == (BAD_INPUT, "")
     assert "not enough memory" in err and "shorter" in err

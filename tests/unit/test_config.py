@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.beam import Beam, TipMass
-from beamdyn.common.inputs import Quantity, Section, describe
-from beamdyn.common.units import quantity
+from beamdyn.common.edge.inputs import Quantity, Section, describe
+from beamdyn.common.edge.units import quantity
 from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, scene_from_dict
-from beamdyn.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
-from beamdyn.profile import Table
-from beamdyn.scene import Mount, Scene
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
+from beamdyn.scene.profile import Table
+from beamdyn.scene.scene import Mount, Scene
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 from beamdyn.common.pictures import output_path
-from beamdyn.export import animate, write_series, write_shapes
+from beamdyn.output.export import animate, write_series, write_shapes
 
 X = np.linspace(0, 0.05, 11)
 SHAPES = np.stack([71.4 * (X / 0.05) ** 2, -30 * np.sin(60 * X)])

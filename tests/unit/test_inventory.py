@@ -11,8 +11,8 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import DONE, main
-from beamdyn.inventory import _MEANING, _all, _complete, _Facts  # pyright: ignore[reportPrivateUsage]
-from tests.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
+from beamdyn.equations.terms import _MEANING, _all, _complete, _Facts  # pyright: ignore[reportPrivateUsage]
+from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
 
 TIP = bd.TipMass(0.001, inertia=1e-6, axial_inertia=4e-7)
 COUPLED = replace(BLADE_SPIN_UP, stretch=True, damping_ratio=0.01)

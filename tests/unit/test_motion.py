@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import beamdyn
-from beamdyn.motion import (
+from beamdyn.scene.motion import (
     Line,
     MotionSample,
     RoadWave,

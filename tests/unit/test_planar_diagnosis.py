@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.cases import mechanisms as ee
 from brakes.planar import (
     GROUND,
     Bar,
@@ -23,7 +24,6 @@ from brakes.planar import (
     free_body,
     solve,
 )
-from tests import mechanisms as ee
 
 RIMS = (Contact("rim R", "R", GROUND, ee.PAD_R, (1, 0)), Contact("rim L", "L", GROUND, ee.PAD_L, (-1, 0)))
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.cases import mechanisms as ee
 from brakes.planar import (
     GROUND,
     Contact,
@@ -21,7 +22,6 @@ from brakes.planar import (
     solve_with_friction,
     stroke,
 )
-from tests import mechanisms as ee
 
 ROUNDING = 1e-13  # of Newton's last step
 

@@ -11,11 +11,11 @@ from matplotlib import pyplot
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.equations import Equations
-from beamdyn.estimate import ModalEquations, choose
-from beamdyn.motion import Motion, MotionSample
-from beamdyn.resonance import _brackets
-from tests.scenes import HARVESTER
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modal.error_estimate import ModalEquations, choose
+from beamdyn.scene.motion import Motion, MotionSample
+from beamdyn.steady.resonance import _brackets
+from benchmarks.cases.scenes import HARVESTER
 
 
 def rolling(waves: float, amplitude: float = 0.01, **changes: object) -> bd.Scene:
@@ -221,7 +221,10 @@ def test_search_ends_at_the_critical_speed() -> None:
 
 
 def test_elements_agree() -> None:
-    ritz, fem = (bd.resonance_speeds(ROLLING, 150.0, 1, method=method) for method in ("ritz", "fem"))
+    ritz, fem = (
+        bd.resonance_speeds(ROLLING, 150.0, 1, discretization=discretization)
+        for discretization in ("ritz", "fem")
+    )
     for a, b in zip(ritz, fem, strict=True):
         assert abs(a.speed - b.speed) < 2 * b.error * b.speed < 1e-4
 
@@ -267,7 +270,9 @@ def test_speeds_ascend(speeds: list) -> None:
         bd.steady_response(ROLLING, speeds)
 
 
-@pytest.mark.parametrize("wrong", [{"tolerance": 0.0}, {"harmonics": -1}, {"modes": 0}, {"method": "magic"}])
+@pytest.mark.parametrize(
+    "wrong", [{"tolerance": 0.0}, {"harmonics": -1}, {"modes": 0}, {"discretization": "magic"}]
+)
 def test_settings(wrong: dict) -> None:
     with pytest.raises(ValueError, match=next(iter(wrong))):
         bd.steady_response(ROLLING, [50.0], **wrong)

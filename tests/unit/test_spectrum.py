@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import beamdyn as bd
-from tests.scenes import HARVESTER
+from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(
     bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=20.0**2),
@@ -90,13 +90,13 @@ def test_shapes_are_mass_normalised() -> None:
     np.testing.assert_allclose(modes.shape([0.05])[:, 0], modes.tip, rtol=1e-12)
 
 
-EXACT = bd.natural_modes(HARVESTER, 100.0, method=bd.Ritz(40)).frequency
+EXACT = bd.natural_modes(HARVESTER, 100.0, discretization=bd.Ritz(40)).frequency
 
 
-@pytest.mark.parametrize("method", ["ritz", "fem"])
+@pytest.mark.parametrize("discretization", ["ritz", "fem"])
 @pytest.mark.parametrize("tolerance", [0.1, 1e-2, 1e-4, 1e-6])
-def test_tolerance_is_kept(tolerance: float, method: str) -> None:
-    modes = bd.natural_modes(HARVESTER, 100.0, method=method, tolerance=tolerance)
+def test_tolerance_is_kept(tolerance: float, discretization: str) -> None:
+    modes = bd.natural_modes(HARVESTER, 100.0, discretization=discretization, tolerance=tolerance)
     assert (np.abs(modes.frequency / EXACT - 1) <= modes.error).all()
     assert modes.error.max() <= tolerance and not modes.warnings
 
@@ -115,10 +115,12 @@ def test_provenance_says_what_was_chosen_and_compared() -> None:
 
 
 @pytest.mark.parametrize(
-    "method, tolerance", [("ritz", 1e-14), ("fem", 1e-9), (bd.Ritz(6), 1e-6), (bd.Fem(8), 1e-6)]
+    "discretization, tolerance", [("ritz", 1e-14), ("fem", 1e-9), (bd.Ritz(6), 1e-6), (bd.Fem(8), 1e-6)]
 )
-def test_a_tolerance_that_is_not_reached_is_told(method, tolerance: float) -> None:
-    modes = bd.natural_modes(HARVESTER, 100.0, 5 if method == "ritz" else 3, method, tolerance)
+def test_a_tolerance_that_is_not_reached_is_told(discretization, tolerance: float) -> None:
+    modes = bd.natural_modes(
+        HARVESTER, 100.0, 5 if discretization == "ritz" else 3, discretization, tolerance
+    )
     assert modes.error.max() > tolerance and "is not reached" in modes.warnings[0]
 
 
@@ -131,7 +133,7 @@ def test_many_modes_of_a_beam_of_many_segments() -> None:
 def test_tolerance_holds_at_every_speed_of_a_locus() -> None:
     speeds = np.linspace(-150, 150, 31)
     locus = bd.frequency_locus(HARVESTER, speeds, tolerance=1e-4)
-    exact = bd.frequency_locus(HARVESTER, speeds, method=bd.Ritz(40))
+    exact = bd.frequency_locus(HARVESTER, speeds, discretization=bd.Ritz(40))
     assert (np.abs(locus.frequency / exact.frequency - 1) <= locus.error).all()
     assert locus.error.max() <= 1e-4 and not locus.warnings
 
@@ -159,9 +161,12 @@ def test_tolerance_out_of_range(tolerance) -> None:
         (lambda: bd.natural_modes(HARVESTER, math.nan), ["speed", "nan"]),
         (lambda: bd.natural_modes(HARVESTER, 1.0, modes=0), ["modes", "0"]),
         (lambda: bd.natural_modes(HARVESTER, 1.0, modes=2.5), ["modes", "2.5"]),  # pyright: ignore[reportArgumentType]
-        (lambda: bd.natural_modes(HARVESTER, 1.0, modes=20, method=bd.Ritz(10)), ["modes", "20", "Ritz"]),
+        (
+            lambda: bd.natural_modes(HARVESTER, 1.0, modes=20, discretization=bd.Ritz(10)),
+            ["modes", "20", "Ritz"],
+        ),
         (lambda: bd.natural_modes(HARVESTER, 1.0, modes=500), ["modes", "500", "fewer"]),
-        (lambda: bd.natural_modes(HARVESTER, 1.0, method="bem"), ["method", "bem", "ritz"]),
+        (lambda: bd.natural_modes(HARVESTER, 1.0, discretization="bem"), ["discretization", "bem", "ritz"]),
         (lambda: bd.frequency_locus(HARVESTER, []), ["speeds", "empty"]),
         (lambda: bd.frequency_locus(HARVESTER, [1.0, 1.0]), ["speeds", "unique"]),
         (lambda: bd.frequency_locus(HARVESTER, [2.0, 1.0]), ["speeds", "ascend"]),

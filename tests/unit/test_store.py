@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamdyn.common.store import Store, fingerprint
+from beamdyn.common.parallel.store import Store, fingerprint
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,8 @@ def test_the_key_of_a_value_stays_when_the_value_is_used():
 
 def test_keys_are_the_same_in_another_process():
     code = (
-        "from tests.unit.test_store import Point, double; from beamdyn.common.store import fingerprint; "
+        "from tests.unit.test_store import Point, double; "
+        "from beamdyn.common.parallel.store import fingerprint; "
         "print(fingerprint(Point(0.1, 2.0), double, {'a': [None, 'é']}))"
     )
     env = {**os.environ, "PYTHONHASHSEED": "7"}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.motion import MotionSample
-from tests.scenes import HARVESTER
+from beamdyn.scene.motion import MotionSample
+from benchmarks.cases.scenes import HARVESTER
 
 MOTION = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=0.2), bd.RoadWave(0.3, velocity_amplitude=0.01))
 SCENE = replace(HARVESTER, motion=MOTION)
@@ -109,7 +109,7 @@ BAD = {
 
 @pytest.mark.parametrize(("given", "message"), BAD.values(), ids=BAD)
 def test_bad_input_is_refused_before_any_work(given, message, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.sweeps.solve", None)  # not to be called
+    monkeypatch.setattr("beamdyn.transient.sweep.solve", None)  # not to be called
     store = tmp_path / "store"
     with pytest.raises(ValueError, match=message):
         bd.sweep(**{"scene": SCENE, "speeds": SPEEDS, "window": WINDOW, "store": store} | given)
@@ -123,7 +123,7 @@ def test_workers_and_an_executor_are_one_too_many():
 
 @pytest.mark.parametrize("content", ["directory", "file", "below a file"])
 def test_foreign_and_unwritable_stores_are_refused_before_any_work(content, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.sweeps.solve", None)
+    monkeypatch.setattr("beamdyn.transient.sweep.solve", None)
     (tmp_path / "notes.txt").write_text("mine")
     store = {
         "directory": tmp_path,

@@ -27,7 +27,7 @@ from beamdyn.tradeoffs import (
 )
 from beamdyn.tradeoffs.timing import Case, Family, measured
 from beamdyn.tradeoffs.transients import AT_ENDS, AT_REST
-from tests.scenes import HARVESTER, ROLLING
+from benchmarks.cases.scenes import HARVESTER, ROLLING
 
 ROOT = Path(__file__).parents[2]
 STILL = str(ROOT / "examples" / "tyre_harvester.toml")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.batch import histories
-from beamdyn.estimate import Model
-from beamdyn.modal import ModalSystem
-from beamdyn.stepping import largest_deflection
-from tests.scenes import HARVESTER, ROLLING
+from beamdyn.modal.error_estimate import Model
+from beamdyn.transient.batch import histories
+from beamdyn.transient.step_size import largest_deflection
+from beamdyn.transient.system import ModalSystem
+from benchmarks.cases.scenes import HARVESTER, ROLLING
 
 STEADY = replace(HARVESTER, mount=bd.Mount(0.215, 0.02), motion=bd.SteadyRotation(50.0))
 

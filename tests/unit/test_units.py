@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.common.units import quantity, show
+from beamdyn.common.edge.units import quantity, show
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 

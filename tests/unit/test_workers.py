@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from threadpoolctl import threadpool_info
 
-from beamdyn.common.workers import WorkerDied, Workers, one_blas_thread
+from beamdyn.common.parallel.workers import WorkerDied, Workers, one_blas_thread
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 

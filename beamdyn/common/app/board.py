@@ -11,7 +11,7 @@ from nicegui import ui
 
 from beamdyn.common.app.documents import Handle
 from beamdyn.common.app.handles import Place, Sheet, View
-from beamdyn.common.rendering import address
+from beamdyn.common.edge.rendering import address
 
 STYLE = """
 .board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }

@@ -8,14 +8,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.app.entries import Entries, entries_of
-from beamdyn.common.config import parse
-from beamdyn.common.inputs import Input
+from beamdyn.common.edge.config import parse
+from beamdyn.common.edge.inputs import Input
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-    from beamdyn.common.sweeps import Sweep
+    from beamdyn.common.edge.input_sweep import Sweep
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, get_args, get_origin
 
-from beamdyn.common.inputs import Input
-from beamdyn.common.units import quantity
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.units import quantity
 
 Entries = dict[str, str]  # what stands in each field, by the path of its input; "" where nothing does
 

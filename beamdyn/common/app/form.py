@@ -10,8 +10,8 @@ from nicegui import ui
 
 from beamdyn.common.app.documents import Drag
 from beamdyn.common.app.entries import in_unit, toml_value, units_for
-from beamdyn.common.inputs import Input
-from beamdyn.common.units import show
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.units import show
 
 _NOT_GIVEN = "not given"
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
-from beamdyn.common.rendering import drawing, picture
+from beamdyn.common.edge.rendering import drawing, picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,9 +11,9 @@ import numpy as np
 
 from beamdyn.common.app.documents import Handle, Screen
 from beamdyn.common.app.entries import Entries, tables_of, toml_value, units_for
-from beamdyn.common.inputs import Input
-from beamdyn.common.rendering import drawing
-from beamdyn.common.units import quantity
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.rendering import drawing
+from beamdyn.common.edge.units import quantity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

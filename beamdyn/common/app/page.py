@@ -8,12 +8,12 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app.board import STYLE as BOARD
+from beamdyn.common.app.document_report import report_of
 from beamdyn.common.app.documents import Document, Program, Screen
 from beamdyn.common.app.panel import Panel
-from beamdyn.common.app.reporting import report_of
 from beamdyn.common.app.session import Work
-from beamdyn.common.config import ConfigError
-from beamdyn.common.rendering import STYLE
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.rendering import STYLE
 
 _LARGEST = 200_000  # bytes of a file that is opened
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"

@@ -15,8 +15,8 @@ from beamdyn.common.app.form import Form
 from beamdyn.common.app.further import Further
 from beamdyn.common.app.handles import Place, sheet, told, written
 from beamdyn.common.app.session import Work
-from beamdyn.common.app.sweeping import SweepPanel
-from beamdyn.common.rendering import csv_text, html, png
+from beamdyn.common.app.sweep_panel import SweepPanel
+from beamdyn.common.edge.rendering import csv_text, html, png
 
 
 class Panel:

@@ -7,9 +7,9 @@ from typing import Any
 
 from beamdyn.common.app.documents import Document, Screen
 from beamdyn.common.app.entries import Entries, by_field, tables_of, toml_of
-from beamdyn.common.config import ConfigError
-from beamdyn.common.inputs import Input
-from beamdyn.common.program import NoAnswer
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.program import NoAnswer
 
 
 @dataclass(frozen=True)

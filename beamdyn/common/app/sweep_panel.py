@@ -1,0 +1,163 @@
+"""Sweeps on the page: an input of a screen against its results, as a picture and as a file."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import Any
+
+from nicegui import run, ui
+
+from beamdyn.common.app.documents import Screen, Sweeps
+from beamdyn.common.app.entries import Entries, in_unit, tables_of
+from beamdyn.common.app.session import Work
+from beamdyn.common.curves import sweep_figure
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.input_sweep import Coordinate, Sweep, numbers, sweep_csv
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.rendering import csv_text, drawing, picture, png
+
+_USUAL = {"m": "mm", "rad": "deg"}  # where no unit is given
+_COUNT, _AROUND = 21, 0.2  # values of a sweep to begin with, and how far they go, as a part of the value
+
+
+_Asked = tuple[Entries, str, str]  # the design, the input with its values, the results
+
+
+class SweepPanel:
+    """A folded panel below a screen's results."""
+
+    def __init__(self, work: Work, screen: Screen, sweeps: Sweeps) -> None:
+        self.work, self.screen, self.sweeps = work, screen, sweeps
+        self._found: tuple[_Asked, Sweep] | None = None
+        self._shown: Entries | None = None
+        path, _, values = sweeps.example.partition("=")
+        self._fold: Any = ui.expansion("Sweep an input", on_value_change=self.state)
+        with self._fold.classes("w-full section").props("dense"):
+            with ui.row().classes("w-full"):
+                self._input: Any = ui.select(
+                    [path], value=path, label="input", with_input=True, on_change=self._suggest
+                ).classes("grow")
+                self._values: Any = ui.input("start:stop:count unit", value=values).classes("grow")
+            self._results: Any = ui.select(
+                sweeps.results.split(","), value=sweeps.results.split(","), multiple=True, label="results"
+            ).classes("w-full")
+            with ui.row():
+                ui.button("Sweep", on_click=self.show).props("no-caps")
+                for kind in ("CSV", "SVG", "PNG"):
+                    ui.button(
+                        f"Sweep as {kind}", icon="download", on_click=getattr(self, kind.lower())
+                    ).props("flat no-caps")
+            self._said: Any = ui.label().classes("mistake").props('role="alert"')
+            self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
+            self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+
+    def state(self) -> None:
+        """While it is open: offer the inputs and results that there are, grey a sweep of another design."""
+        if self._fold.value:
+            self._offer()
+            stale = self._shown not in (None, self.work.needed(self.screen))
+            self._late.set_visibility(stale)
+            self._picture.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
+
+    def _offer(self) -> None:
+        paths = [*self._inputs()]
+        self._input.set_options(paths, value=self._input.value if self._input.value in paths else paths[0])
+        with suppress(ConfigError):  # then the screen says what is wrong
+            names = [*self.sweeps.names(self._tables())]
+            kept = [name for name in self._results.value if name in names]
+            self._results.set_options(names, value=kept or names[:1])
+
+    def _inputs(self) -> dict[str, Input]:
+        """The inputs that are given, or have a value if they are not."""
+        entries, needs = self.work.entries, self.screen.needs
+        known = [i for i in self.work.inputs if (i.path.partition(".")[0] if "." in i.path else "") in needs]
+        there = [i for i in known if entries.get(i.path) or i.default is not None]
+        return {entry.path: entry for entry in numbers(there)}
+
+    def _tables(self) -> dict[str, Any]:
+        return tables_of(self.work.needed(self.screen), self.work.inputs)
+
+    def _suggest(self) -> None:
+        """Values around that of the input that has been chosen."""
+        if (entry := self._inputs().get(self._input.value)) is not None:
+            self._values.set_value(around(entry, self.work.entries))
+
+    async def _run(self) -> Sweep | None:
+        """The sweep asked for; None if there is none, and then it says why."""
+        text = f"{self._input.value}={self._values.value}"
+        names = ",".join(self._results.value)
+        asked = (self.work.needed(self.screen), text, names)
+        if self._found is not None and self._found[0] == asked:
+            return self._found[1]
+        try:
+            found = await run.io_bound(self.sweeps.run, self._tables(), text, names)
+        except (ValueError, ArithmeticError, NoAnswer) as error:
+            self._said.set_text(str(error))
+            return None
+        if found is None:  # the program ends
+            return None
+        self._said.set_text(" ".join(found.warnings))
+        self._found = asked, found
+        return found
+
+    async def show(self) -> None:
+        """Show the sweep."""
+        if found := await self._run():
+            words = f"{', '.join(found.results)} over {found.inputs[0]}"
+            self._picture.set_content(picture(drawing(lambda: sweep_figure(found)), words))
+            self._shown = self._found[0][0] if self._found else None
+            self.state()
+
+    async def csv(self) -> None:
+        """Hand over its rows."""
+        if found := await self._run():
+            ui.download.content(csv_text(sweep_csv(found)).encode(), "sweep.csv")
+
+    async def svg(self) -> None:
+        """Hand over its picture as SVG."""
+        if found := await self._run():
+            ui.download.content(drawing(lambda: sweep_figure(found)).encode(), "sweep.svg")
+
+    async def png(self) -> None:
+        """Hand over its picture as PNG."""
+        if found := await self._run():
+            ui.download.content(png(sweep_figure(found)), "sweep.png")
+
+
+def around(entry: Input, entries: Mapping[str, str]) -> str:
+    """Values around that of an input, as start:stop:count unit."""
+    number, unit = _given(entry, entries)
+    low, high = (number * (1 - _AROUND), number * (1 + _AROUND)) if number else (0.0, 1.0)
+    return f"{low:.3g}:{high:.3g}:{_COUNT} {unit}".strip()
+
+
+def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
+    """Number and unit of what stands in the field, or of what holds if nothing does."""
+    unit, (text, default) = entry.quantity.unit, _text_and_default(entry, entries)
+    number, _, given = text.strip().partition(" ")
+    with suppress(ValueError):
+        return float(number), given
+    if not isinstance(default, int | float):
+        return 0.0, unit
+    usual = _USUAL.get(unit, unit)
+    number = in_unit(f"{default!r} {unit}", unit, usual).partition(" ")[0] if unit else default
+    return float(number), usual
+
+
+def _text_and_default(entry: Input, entries: Mapping[str, str]) -> tuple[str, Any]:
+    """What stands in the field of an input, or in its part of it, and what holds if nothing does."""
+    if not isinstance(entry, Coordinate):
+        return entries.get(entry.path, ""), entry.default
+    whole: Any = entry.of.default or (0.0, 0.0)
+    return _part(entries.get(entry.of.path, ""), entry.place), whole[entry.place]
+
+
+def _part(text: str, place: int) -> str:
+    """One of the parts of a list in TOML."""
+    try:
+        return str(tomllib.loads(f"value = {text}")["value"][place])
+    except (ValueError, RecursionError, LookupError, TypeError):
+        return ""

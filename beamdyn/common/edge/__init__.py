@@ -1,0 +1,1 @@
+"""What files, commands and screens share: units, descriptions of inputs, tables, reports, exit codes."""

@@ -1,0 +1,126 @@
+"""Reports: inputs, results, drawings and warnings in one HTML file that needs no other."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from beamdyn._version import __version__
+from beamdyn.common.edge.rendering import STYLE, drawing, html, picture
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+_STYLE = """
+body { font-family: sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
+pre { background: #f4f4f4; padding: 1rem; white-space: pre-wrap; overflow-wrap: anywhere; }
+.warning { border-left: 4px solid #E69F00; padding-left: 0.5rem; }
+"""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a command was asked.
+
+    Parameters
+    ----------
+    title : str
+        Command and file.
+    inputs : str
+        The command with its options, in a comment, above the text of its file: TOML still.
+    """
+
+    title: str
+    inputs: str
+
+    @classmethod
+    def of(cls, command: str, file: object, text: str, **options: object) -> Question:
+        """That of a command on a file whose text is given; options that are not given are None or empty."""
+        words = [*command.split(), str(file), *_options(options)]
+        return cls(f"{command}: {file}", f"# {_line(shlex.join(words))}\n\n{text}")
+
+    @classmethod
+    def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
+        """That of a command on a file; raises `ConfigError` if it cannot be read."""
+        from beamdyn.common.edge.config import read
+
+        return cls.of(command, file, read(file), **options)
+
+
+def _options(options: dict[str, object]) -> Iterator[str]:
+    for name, value in options.items():
+        for given in value if isinstance(value, tuple) else (value,):
+            if given is not None:
+                yield from (f"--{name.replace('_', '-')}", str(given))
+
+
+def _line(text: str) -> str:
+    """Text that fits into a comment: on one line, and printable."""
+    return "".join(c if c.isprintable() else " " for c in text)
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a command's report says besides its picture.
+
+    Parameters
+    ----------
+    question : Question
+        What was asked.
+    tables : sequence of rich renderables
+        As printed.
+    warnings : sequence of str
+        Warnings, and why there is no answer.
+    more : sequence of (title, callable)
+        Further drawings.
+    """
+
+    question: Question
+    tables: Sequence[RenderableType]
+    warnings: Sequence[str] = ()
+    more: Sequence[tuple[str, Callable[[], Figure]]] = ()
+
+    def page(self, draw: Callable[[], Figure]) -> str:
+        """The report as HTML."""
+        tables = html(self.tables) + further(self.more)
+        title = self.question.title
+        part = ("Results", self.warnings, tables, picture(drawing(draw), title))
+        return report_page(title, self.question.inputs, [part])
+
+
+def further(drawings: Iterable[tuple[str, Callable[[], Figure]]]) -> str:
+    """Further drawings, each under its title, in HTML."""
+    return "\n".join(f"<h3>{escape(title)}</h3>{picture(drawing(draw), title)}" for title, draw in drawings)
+
+
+def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:
+    """A report that needs no other file.
+
+    Parameters
+    ----------
+    title : str
+        Of the report.
+    inputs : str
+        The design as TOML.
+    parts : iterable of (name, warnings, tables, drawing)
+        Of each screen; tables are HTML, drawings are elements as `picture` makes them.
+    """
+    body = "".join(
+        f"<h2>{escape(name)}</h2>{''.join(_warning(said) for said in dict.fromkeys(warnings))}{made}{tables}"
+        for name, warnings, tables, made in parts
+    )
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}{STYLE}</style></head>'
+        f'<body class="shown"><h1>{escape(title)}</h1>{body}<h2>Inputs</h2><pre>{escape(inputs)}</pre>'
+        f"<p>beamdyn {escape(__version__)}</p></body></html>\n"
+    )
+
+
+def _warning(sentence: str) -> str:
+    return f'<p class="warning"><strong>Warning:</strong> {escape(sentence)}</p>'

@@ -1,0 +1,352 @@
+"""Any input against any result: "stop.speed=10:30:9 km/h"."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, get_args, get_origin
+
+import numpy as np
+
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.results import Result
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(.*?)\s*")
+_MOST = 100_000
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values of an input.
+
+    Parameters
+    ----------
+    input : Input
+        What it is.
+    unit : str
+        Unit in which the values were given.
+    given, values : ndarray, shape (n,)
+        The values, in that unit and in SI.
+    """
+
+    input: Input
+    unit: str
+    given: np.ndarray
+    values: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures: the key and its unit."""
+        return f"{self.input.name} [{self.unit}]" if self.unit else self.input.name
+
+
+@dataclass(frozen=True)
+class Output:
+    """A number of a result, as people read it.
+
+    Parameters
+    ----------
+    name : str
+        Its name on the command line and in files.
+    words : str
+        What it is.
+    of : callable
+        Takes it from a result, in SI.
+    unit : str
+        Unit in which it is shown.
+    scale : float
+        That unit in SI.
+    """
+
+    name: str
+    words: str
+    of: Callable[[Any], Any]
+    unit: str = ""
+    scale: float = 1.0
+
+    def shown(self, result: Any) -> Any:
+        """Its value or values in the unit shown."""
+        return np.asarray(self.of(result)) / self.scale
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures: name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True)
+class Sweep(Result):
+    """Results over one or two inputs.
+
+    Attributes
+    ----------
+    inputs, units : tuple of str
+        Keys of the inputs, and the units in which their values are given.
+    values : tuple of ndarray
+        Their values, n of the first and, if there is a second, m of it.
+    results, result_units : tuple of str
+        Names of the results and their units.
+    found : tuple of ndarray, shape (n,) or (m, n)
+        The results; nan or inf where there is none.
+    warnings : tuple of str
+        Where there is no answer, and why.
+    """
+
+    inputs: tuple[str, ...]
+    units: tuple[str, ...]
+    values: tuple[np.ndarray, ...]
+    results: tuple[str, ...]
+    result_units: tuple[str, ...]
+    found: tuple[np.ndarray, ...]
+    warnings: tuple[str, ...] = ()
+
+
+# Inputs and their values --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Coordinate(Input):
+    """One of the numbers of an input that is several, such as x of a point.
+
+    Parameters
+    ----------
+    of : Input
+        The input.
+    place : int
+        Which of its numbers.
+    """
+
+    of: Input
+    place: int
+
+
+def numbers(inputs: Sequence[Input]) -> list[Input]:
+    """The inputs that are numbers, and x and y of those that are points."""
+    return [found for entry in inputs for found in _numbers(entry)]
+
+
+def _numbers(entry: Input) -> Iterator[Input]:
+    parts = [*_parts(entry.kind)]
+    if get_origin(entry.kind) is tuple:
+        for place, (axis, _) in enumerate(zip("xy", get_args(entry.kind), strict=True)):
+            words = replace(entry.quantity, meaning=f"{axis} of the {entry.quantity.meaning}")
+            path = f"{entry.path}.{axis}"
+            yield Coordinate(path, entry.section, float, words, (), entry.required, None, entry, place)
+    elif float in parts and not any(get_origin(part) in (list, tuple, dict) for part in parts):
+        yield entry
+
+
+def _parts(kind: Any) -> Iterator[Any]:
+    yield kind
+    for part in get_args(kind):
+        yield from _parts(part)
+
+
+def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> Axis:
+    """An input and its values.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+        Those that may be varied.
+    text : str
+        KEY=start:stop:count unit; the key is a path, or its last part where that is unique, or unique
+        among the inputs that must be given.
+    option : str
+        Its name, for messages.
+
+    Raises
+    ------
+    ValueError
+        If there is no such input, or the values do not fit it.
+    """
+    key, _, rest = text.partition("=")
+    said = f'{option} = "{text}"'
+    entry = _find(inputs, key.strip(), said)
+    match = _RANGE.fullmatch(rest)
+    if match is None:
+        form = f"{entry.path}=1:2:11 {entry.quantity.unit}".strip()
+        raise ValueError(f'{said}: give KEY=start:stop:count unit, e.g. "{form}"')
+    start, stop, count = float(match[1]), float(match[2]), int(match[3])
+    if not 2 <= count <= _MOST or start == stop:
+        raise ValueError(f"{said}: give two different ends, and a count from 2 to {_MOST}")
+    low, high = (_in_si(entry, number, match[4], said) for number in (match[1], match[2]))
+    return Axis(entry, match[4], np.linspace(start, stop, count), np.linspace(low, high, count))
+
+
+def _in_si(entry: Input, number: str, unit: str, said: str) -> float:
+    """An end of the range within the bounds of the input."""
+    asked = entry.quantity
+    given = f"{number} {unit}".strip() if asked.unit or unit else float(number)
+    try:
+        return asked.within_bounds(given, asked.convert(given))
+    except ValueError as error:
+        raise ValueError(f"{said}: {entry.path} = {error}") from None
+
+
+def _find(inputs: Sequence[Input], key: str, said: str) -> Input:
+    """The input of a key."""
+    found = [i for i in inputs if key in (i.path, i.name)]
+    if len(found) > 1:
+        found = [i for i in found if i.required] or found
+    if len(found) > 1:
+        raise ValueError(f"{said}: {key} is ambiguous; give {' or '.join(i.path for i in found)}")
+    if not found:
+        raise ValueError(f"{said}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
+    return found[0]
+
+
+def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
+    """That a name is not known, and the nearest one or all."""
+    near = difflib.get_close_matches(key, [*names, *more], n=1)
+    advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
+    return f"unknown name {key!r}; {advice}"
+
+
+def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> list[Output]:
+    """The outputs of names that are separated by commas.
+
+    Raises
+    ------
+    ValueError
+        If there is none of a name; the message says what there is.
+    """
+    known = {output.name: output for output in outputs}
+    wanted = [name.strip() for name in names.split(",") if name.strip()]
+    if not wanted:
+        raise ValueError(f'{option} = "{names}": name at least one of {", ".join(known)}')
+    for name in wanted:
+        if name not in known:
+            raise ValueError(f'{option} = "{names}": {unknown(name, [*known])}')
+    return [known[name] for name in dict.fromkeys(wanted)]
+
+
+# The sweep ----------------------------------------------------------------------------------------------
+
+
+def sweep(
+    axes: Sequence[Axis], outputs: Sequence[Output], found: Sequence[Any], warnings: Sequence[str] = ()
+) -> Sweep:
+    """Results over inputs.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        One or two inputs.
+    outputs : sequence of Output
+        What is wanted.
+    found : sequence of array
+        The values of each output, as shown; they broadcast to shape (n,), or (m, n) with two axes.
+    warnings : sequence of str
+        Where there is no answer, and why.
+    """
+    shape = tuple(len(axis.values) for axis in reversed(axes))
+    return Sweep(
+        inputs=tuple(axis.input.path for axis in axes),
+        units=tuple(axis.unit for axis in axes),
+        values=tuple(axis.given for axis in axes),
+        results=tuple(output.name for output in outputs),
+        result_units=tuple(output.unit for output in outputs),
+        found=tuple(np.broadcast_to(values, shape) for values in found),
+        warnings=tuple(warnings),
+    )
+
+
+def one_by_one(
+    tables: Mapping[str, Any],
+    axes: Sequence[Axis],
+    outputs: Sequence[Output],
+    solve: Callable[[Mapping[str, Any]], Any],
+) -> Sweep:
+    """A sweep that solves each case by itself, for designs that take no arrays.
+
+    Parameters
+    ----------
+    tables : mapping
+        The design as the parser of files gives it.
+    axes : sequence of Axis
+        One or two inputs.
+    outputs : sequence of Output
+        What is wanted.
+    solve : callable
+        Tables in, answer out.
+
+    Raises
+    ------
+    NoAnswer
+        If there is no answer at any value; the message says why there is none at the first.
+    """
+    shape = tuple(len(axis.values) for axis in reversed(axes))
+    found, refusals = np.full((len(outputs), *shape), np.nan), []
+    for place in np.ndindex(shape):
+        given = [float(axis.given[i]) for axis, i in zip(axes, reversed(place), strict=True)]
+        design = tables
+        for axis, value in zip(axes, given, strict=True):
+            design = placed(design, axis, value)
+        try:
+            answer = solve(design)
+            found[(slice(None), *place)] = [float(output.shown(answer)) for output in outputs]
+        except (ValueError, ArithmeticError, NoAnswer) as error:
+            refusals.append(f"{_at(axes, given)}: {error}")
+    if len(refusals) == found[0].size:
+        raise NoAnswer(f"at none of {len(refusals)} values is there an answer; {refusals[0]}")
+    none = f"at {len(refusals)} of {found[0].size} values there is no answer; " if refusals else ""
+    return sweep(axes, outputs, [*found], [none + refusals[0]] if refusals else [])
+
+
+def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
+    parts = (f"{axis.input.path} = {v:.6g} {axis.unit}" for axis, v in zip(axes, given, strict=True))
+    return ", ".join(part.strip() for part in parts)
+
+
+def placed(tables: Mapping[str, Any], axis: Axis, value: float) -> dict[str, Any]:
+    """Tables with a value, in the unit of its axis, in place of what they have there."""
+    entry = axis.input
+    given: Any = f"{value:.15g} {axis.unit}" if axis.unit else float(value)
+    if not isinstance(entry, Coordinate):
+        return _put(tables, entry.path.split("."), lambda _: given)
+
+    def moved(point: Any) -> Any:
+        whole = point if isinstance(point, list) and len(point) == 2 else _default(entry.of)
+        return [given if i == entry.place else part for i, part in enumerate(whole)]
+
+    return _put(tables, entry.of.path.split("."), moved)
+
+
+def _default(entry: Input) -> list[str]:
+    default: Any = entry.default
+    return [f"{number!r} {entry.quantity.unit}".strip() for number in map(float, default)]
+
+
+def _put(tables: Mapping[str, Any], path: Sequence[str], change: Callable[[Any], Any]) -> dict[str, Any]:
+    head, *rest = path
+    inner = tables.get(head)
+    nested = _put(inner if isinstance(inner, Mapping) else {}, rest, change) if rest else change(inner)
+    return dict(tables) | {head: nested}
+
+
+# Its rows -----------------------------------------------------------------------------------------------
+
+
+def sweep_csv(found: Sweep) -> Iterator[Sequence[object]]:
+    """Rows of a sweep's CSV file, with its heads."""
+    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(found)]
+    yield from sweep_rows(found)
+
+
+def sweep_rows(found: Sweep) -> Iterator[list[float]]:
+    """Inputs and results, one row a case; the first input changes fastest."""
+    grids = np.meshgrid(*found.values, indexing="xy") if len(found.values) > 1 else found.values
+    cells = [np.ravel(values) for values in (*grids, *found.found)]
+    for row in zip(*(column.tolist() for column in cells), strict=True):
+        yield [*row]
+
+
+def columns(found: Sweep) -> list[tuple[str, str]]:
+    """Names and units of the columns: inputs, then results."""
+    inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in found.inputs)
+    return [*zip(inputs, found.units, strict=True), *zip(found.results, found.result_units, strict=True)]

@@ -1,0 +1,188 @@
+"""Each input described once: files, command line, forms and documentation take it from there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
+
+from beamdyn.common.checks import real
+from beamdyn.common.edge.units import quantity, show
+
+
+class Section(BaseModel):
+    """A table of inputs: strict types, no unknown keys, frozen."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Description of a number, for `Annotated[float, Quantity("m", symbol="L", meaning="length")]`.
+
+    A pydantic model then takes it as text with a unit ("50 mm") and holds the value in SI.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit; "" for a plain number, which is given bare.
+    symbol : str
+        Symbol in formulas.
+    meaning : str
+        What it is, for people: a phrase without a full stop.
+    above, below : float, optional
+        Bounds that the value must not reach [unit].
+    least, most : float, optional
+        Smallest and largest value [unit].
+    remedy : str
+        What to do about a value out of bounds.
+    """
+
+    unit: str = ""
+    _: KW_ONLY
+    symbol: str = ""
+    meaning: str = ""
+    above: float | None = None
+    below: float | None = None
+    least: float | None = None
+    most: float | None = None
+    remedy: str = ""
+
+    @property
+    def bounds(self) -> str:
+        """Bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
+        words = {
+            "greater than": self.above,
+            "at least": self.least,
+            "below": self.below,
+            "at most": self.most,
+        }
+        return ", ".join(f"{word} {bound:g}" for word, bound in words.items() if bound is not None)
+
+    def parse(self, given: object) -> float:
+        """The value in SI of what was given.
+
+        Raises
+        ------
+        ValueError
+            If it is not such a quantity or out of bounds; the message begins with what was given.
+        """
+        return self.within_bounds(given, self.convert(given))
+
+    def convert(self, given: object) -> float:
+        """The value in SI, whatever the bounds."""
+        return quantity(given, self.unit) if self.unit else _plain(given)
+
+    def within_bounds(self, given: object, value: float) -> float:
+        """The value, if it is within the bounds."""
+        if (
+            (self.above is not None and value <= self.above)
+            or (self.below is not None and value >= self.below)
+            or (self.least is not None and value < self.least)
+            or (self.most is not None and value > self.most)
+        ):
+            unit, remedy = self.unit and f" {self.unit}", self.remedy and f"; {self.remedy}"
+            raise ValueError(f"{show(given)}: it must be {self.bounds}{unit}{remedy}")
+        return value
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+
+@dataclass(frozen=True)
+class Input:
+    """One input of a model, as documentation and forms need it.
+
+    Parameters
+    ----------
+    path : str
+        Where it stands, such as "beam.thickness".
+    section : type of Section
+        The table that holds it; where tables are alternatives, this tells them apart.
+    kind : type
+        Its annotation, without the description.
+    quantity : Quantity
+        Symbol, unit, bounds and meaning.
+    choices : tuple
+        The values allowed, if they are few.
+    required : bool
+        Whether it must be given.
+    default : object
+        Value if it is not given, in SI.
+    """
+
+    path: str
+    section: type[BaseModel]
+    kind: Any
+    quantity: Quantity
+    choices: tuple[object, ...]
+    required: bool
+    default: object
+
+    @property
+    def name(self) -> str:
+        """The last part of the path."""
+        return self.path.rpartition(".")[2]
+
+    @property
+    def help(self) -> str:
+        """Meaning, unit and bounds in one phrase."""
+        q = self.quantity
+        unit = q.unit and f" [{q.unit}]"
+        bounds = q.bounds and f", {q.bounds}"
+        return f"{q.meaning}{unit}{bounds}"
+
+
+def describe(model: type[BaseModel], prefix: str = "") -> list[Input]:
+    """All inputs of a model and of the models within it, in their order.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        Its fields are quantities, plain types with a `description`, or further models.
+    prefix : str
+        Put before each path.
+
+    Returns
+    -------
+    list of Input
+        Where a field has alternatives (two kinds of beam), the inputs of all.
+    """
+    return [
+        found
+        for name, field in model.model_fields.items()
+        for found in _describe(model, prefix + name, field)
+    ]
+
+
+def _describe(section: type[BaseModel], path: str, field: FieldInfo) -> list[Input]:
+    parts = [*_parts(field.annotation), *field.metadata]
+    models = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
+    if models:
+        return [found for model in models for found in describe(model, path + ".")]
+    described = next((p for p in parts if isinstance(p, Quantity)), Quantity(meaning=field.description or ""))
+    choices = next((get_args(p) for p in parts if get_origin(p) is Literal), ())
+    required = field.is_required()
+    default = None if required else field.get_default(call_default_factory=True)
+    return [Input(path, section, field.annotation, described, choices, required, default)]
+
+
+def _parts(annotation: Any) -> Iterator[Any]:
+    """An annotation and all that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from _parts(part)
+
+
+def _plain(given: object) -> float:
+    """A bare number."""
+    try:
+        if isinstance(given, int | float):
+            return real("", given)
+    except (ValueError, OverflowError):
+        pass
+    raise ValueError(f"{show(given)}: give a finite number, without a unit or quotes")

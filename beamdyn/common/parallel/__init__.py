@@ -1,0 +1,1 @@
+"""Worker processes, and a store of finished parts of long work."""

@@ -1,0 +1,186 @@
+"""Worker processes of our own: an executor that survives the death of its processes."""
+
+from __future__ import annotations
+
+import logging
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from typing import Any, BinaryIO
+
+from threadpoolctl import threadpool_limits
+
+ATTEMPTS = 3  # processes that one task may cost
+_SERVE = (
+    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # Ctrl-C is the caller's to handle
+    "from beamdyn.common.parallel.workers import serve; serve()"
+)
+_log = logging.getLogger(__name__)
+
+
+class WorkerDied(BrokenExecutor):
+    """A task ended every process that took it."""
+
+
+class Workers(ThreadPoolExecutor):
+    """An executor with processes: each of its threads drives one and replaces it if it dies.
+
+    Only the task that was in flight in the dead process is run again.  The processes are new
+    interpreters: safe if the caller has threads, and, unlike those of `multiprocessing`, they do not
+    import the caller's script, which therefore needs no ``if __name__ == "__main__"``.  What they
+    run must be importable: functions of the script itself are not.  They end with the caller, however
+    it ends.
+
+    Parameters
+    ----------
+    count : int
+        Number of processes.
+    """
+
+    def __init__(self, count: int) -> None:
+        super().__init__(count, thread_name_prefix="beamdyn-worker")
+        self._own = threading.local()
+        self._processes: list[_Process] = []
+        self._lock = threading.Lock()
+        self._stopped = False
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Run fn(*args, **kwargs) in a process."""
+        return super().submit(self._run, pickle.dumps((fn, args, kwargs)))
+
+    def stop(self) -> None:
+        """End all processes now, whatever they do, and drop all tasks."""
+        with self._lock:
+            self._stopped = True
+            for process in self._processes:
+                process.kill()
+        self.shutdown(wait=False, cancel_futures=True)
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
+        if kind is not None:
+            self.stop()
+        super().__exit__(kind, *rest)
+        for process in self._processes:
+            process.close()
+
+    def _run(self, task: bytes) -> Any:
+        code = 0
+        for _ in range(ATTEMPTS):
+            process = self._process()
+            try:
+                return process.run(task)
+            except (EOFError, BrokenPipeError):
+                code = process.close()
+                self._own.process = None
+                if not self._stopped:
+                    _log.warning(
+                        "worker process %d died (exit code %d): its task runs again", process.pid, code
+                    )
+        raise WorkerDied(f"a task ended {ATTEMPTS} worker processes (exit code {code}): out of memory?")
+
+    def _process(self) -> _Process:
+        """The process of this thread."""
+        with self._lock:
+            if self._stopped:
+                raise CancelledError
+            if getattr(self._own, "process", None) is None:
+                self._own.process = _Process()
+                self._processes.append(self._own.process)
+            return self._own.process
+
+
+class _Process:
+    """A process that takes pickled tasks on its standard input and answers on its standard output."""
+
+    def __init__(self) -> None:
+        path = os.pathsep.join(p or os.getcwd() for p in sys.path)
+        self._popen = subprocess.Popen(
+            [sys.executable, "-P", "-c", _SERVE],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, "PYTHONPATH": path},
+        )
+        assert self._popen.stdin is not None and self._popen.stdout is not None
+        self._tasks, self._answers = self._popen.stdin, self._popen.stdout
+        self.pid, self.kill = self._popen.pid, self._popen.kill
+
+    def run(self, task: bytes) -> Any:
+        """The result of a task; EOFError or BrokenPipeError if the process dies."""
+        _send(self._tasks, task)
+        done, result = pickle.loads(_receive(self._answers))
+        if not done:
+            raise result
+        return result
+
+    def close(self) -> int:
+        """Let the process end, and return its exit code."""
+        for stream in (self._tasks, self._answers):
+            with suppress(BrokenPipeError):  # what was written last never arrived
+                stream.close()
+        return self._popen.wait()
+
+
+def serve() -> None:
+    """Do the tasks that arrive on the standard input until it is closed."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a task prints must not mix with the answers
+    while True:
+        try:
+            task = _receive(sys.stdin.buffer)
+        except EOFError:
+            return
+        _send(answers, _answer(task))
+
+
+def _answer(task: bytes) -> bytes:
+    try:
+        function, args, kwargs = pickle.loads(task)
+        return pickle.dumps((True, function(*args, **kwargs)))
+    except Exception as error:
+        try:
+            return pickle.dumps((False, error))
+        except Exception:  # the error itself cannot be sent
+            return pickle.dumps((False, RuntimeError(repr(error))))
+
+
+def _send(stream: BinaryIO | Any, message: bytes) -> None:
+    stream.write(len(message).to_bytes(8, "big") + message)
+    stream.flush()
+
+
+def _receive(stream: BinaryIO | Any) -> bytes:
+    head = stream.read(8)
+    size = int.from_bytes(head, "big")
+    message = stream.read(size) if len(head) == 8 else b""
+    if len(head) < 8 or len(message) < size:
+        raise EOFError
+    return message
+
+
+# Threads of BLAS ----------------------------------------------------------------------------------
+
+_blas_lock = threading.Lock()
+_blas_users = 0
+_blas_limits: Any = None
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Give BLAS one thread while inside; where several threads are inside, until the last leaves."""
+    global _blas_users, _blas_limits
+    with _blas_lock:
+        _blas_users += 1
+        if _blas_users == 1:
+            _blas_limits = threadpool_limits(1)
+    try:
+        yield
+    finally:
+        with _blas_lock:
+            _blas_users -= 1
+            if _blas_users == 0:
+                _blas_limits.restore_original_limits()

@@ -1,0 +1,1 @@
+"""Plots and exported files: from arrays, without knowledge of the analyses."""

@@ -1,0 +1,230 @@
+"""The beam: its length, its properties along it, and a rigid body at its tip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.checks import kind, not_negative, positive, real
+from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, distinct
+
+
+@dataclass(frozen=True)
+class TipMass:
+    """A rigid body at the tip.
+
+    Parameters
+    ----------
+    mass : float
+        Mass [kg].
+    offset : float
+        Distance of its centre of gravity beyond the end of the beam [m]; negative is inboard.
+    inertia : float
+        Moment of inertia about its centre of gravity, about the axis of bending [kg m2].
+    transverse_inertia : float, optional
+        The same about the direction in which the beam bends [kg m2]; `inertia` if not given,
+        which is a body slender along the beam.
+    axial_inertia : float
+        The same about the beam axis [kg m2].
+
+    Raises
+    ------
+    ValueError
+        If a value is negative or not finite, or no body has these three moments of inertia.
+    """
+
+    mass: float
+    offset: float = 0.0
+    inertia: float = 0.0
+    transverse_inertia: float | None = None
+    axial_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        not_negative("tip.mass", self.mass, "kg")
+        real("tip.offset", self.offset, "m")
+        for name in ("inertia", "transverse_inertia", "axial_inertia"):
+            if getattr(self, name) is not None:
+                not_negative(f"tip.{name}", getattr(self, name), "kg m2")
+        moments = sorted((self.inertia, self.inertia_transverse, self.axial_inertia))
+        if moments[2] > (moments[0] + moments[1]) * (1 + 1e-12):
+            raise ValueError(
+                f"tip inertias {moments[0]:g}, {moments[1]:g}, {moments[2]:g} kg m2: in a rigid body none "
+                "exceeds the sum of the other two; check inertia, transverse_inertia and axial_inertia"
+            )
+
+    @property
+    def inertia_transverse(self) -> float:
+        """Moment of inertia about the bending direction [kg m2], with its default filled in."""
+        return self.inertia if self.transverse_inertia is None else self.transverse_inertia
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A straight Euler-Bernoulli cantilever.  Build it by `rectangular` or `from_stiffness`.
+
+    Parameters
+    ----------
+    length : float
+        Length L [m].
+    mass_per_length : Profile
+        Mass per length rho A [kg/m] over x/L.
+    bending_stiffness : Profile
+        Bending stiffness E I [N m2] over x/L.
+    axial_stiffness : Profile, optional
+        Axial stiffness E A [N] over x/L: needed for the stretch and for axial strain.
+    outer_fibre : Profile, optional
+        Distance of the outer fibre from the neutral axis [m] over x/L: needed for bending strain.
+    tip : TipMass, optional
+        Rigid body at the tip.
+    """
+
+    length: float
+    mass_per_length: Profile
+    bending_stiffness: Profile
+    axial_stiffness: Profile | None = None
+    outer_fibre: Profile | None = None
+    tip: TipMass | None = None
+
+    def __post_init__(self) -> None:
+        positive("length", self.length, "m")
+        for name in ("mass_per_length", "bending_stiffness", "axial_stiffness", "outer_fibre"):
+            if getattr(self, name) is not None:
+                kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
+                check_positive(name, getattr(self, name))
+        if self.tip is not None:
+            kind("tip", self.tip, TipMass)
+        if self.tip is not None and self.length + self.tip.offset < 0:
+            raise ValueError(
+                f"tip.offset = {self.tip.offset:g} m puts the body behind the root of a beam of "
+                f"length {self.length:g} m; give an offset above {-self.length:g} m"
+            )
+
+    @classmethod
+    def rectangular(
+        cls,
+        length: float,
+        width: Property,
+        thickness: Property,
+        youngs_modulus: float,
+        density: float,
+        tip: TipMass | None = None,
+        breakpoints: Sequence[float] = (),
+    ) -> Beam:
+        """A beam of rectangular section that bends in the direction of its thickness.
+
+        Parameters
+        ----------
+        length : float
+            Length [m].
+        width, thickness : float, Polynomial, Table or callable
+            Sides of the section [m]; those that vary are functions of the fraction x/L.
+        youngs_modulus : float
+            Young's modulus [Pa].
+        density : float
+            Density [kg/m3].
+        tip : TipMass, optional
+            Rigid body at the tip.
+        breakpoints : sequence of float
+            Fractions x/L where the section jumps or has a kink.
+
+        Returns
+        -------
+        Beam
+
+        Raises
+        ------
+        ValueError
+            If a dimension is not positive and finite, the thickness exceeds the width or the length.
+        """
+        positive("length", length, "m")
+        e = positive("youngs_modulus", youngs_modulus, "Pa")
+        rho = positive("density", density, "kg/m3")
+        b = as_profile("width", width, breakpoints)
+        h = as_profile("thickness", thickness, breakpoints)
+        _check_section(length, b, h)
+        with np.errstate(over="ignore", invalid="ignore"):  # refused below
+            area = b * h
+        return cls(
+            length=float(length),
+            mass_per_length=area.scaled(rho),
+            bending_stiffness=(area * h * h).scaled(e / 12),
+            axial_stiffness=area.scaled(e),
+            outer_fibre=h.scaled(0.5),
+            tip=tip,
+        )
+
+    @classmethod
+    def from_stiffness(
+        cls,
+        length: float,
+        mass_per_length: Property,
+        bending_stiffness: Property,
+        axial_stiffness: Property | None = None,
+        outer_fibre: Property | None = None,
+        tip: TipMass | None = None,
+        breakpoints: Sequence[float] = (),
+    ) -> Beam:
+        """A beam of any section, given by its stiffness and mass.
+
+        Parameters
+        ----------
+        length : float
+            Length [m].
+        mass_per_length : float, Polynomial, Table or callable
+            Mass per length [kg/m]; those that vary are functions of the fraction x/L.
+        bending_stiffness : float, Polynomial, Table or callable
+            E I [N m2].
+        axial_stiffness : float, Polynomial, Table or callable, optional
+            E A [N]; without it there is no stretch and no axial strain.
+        outer_fibre : float, Polynomial, Table or callable, optional
+            Distance of the outer fibre from the neutral axis [m]; without it there is no bending strain.
+        tip : TipMass, optional
+            Rigid body at the tip.
+        breakpoints : sequence of float
+            Fractions x/L where a property jumps or has a kink.
+
+        Returns
+        -------
+        Beam
+
+        Raises
+        ------
+        ValueError
+            If a property is not positive, finite and smooth between breakpoints.
+        """
+
+        def profile(name: str, given: Property | None) -> Profile | None:
+            return None if given is None else as_profile(name, given, breakpoints)
+
+        return cls(
+            length=positive("length", length, "m"),
+            mass_per_length=as_profile("mass_per_length", mass_per_length, breakpoints),
+            bending_stiffness=as_profile("bending_stiffness", bending_stiffness, breakpoints),
+            axial_stiffness=profile("axial_stiffness", axial_stiffness),
+            outer_fibre=profile("outer_fibre", outer_fibre),
+            tip=tip,
+        )
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions x/L where a property may jump or have a kink, with the ends 0 and 1."""
+        given = (self.mass_per_length, self.bending_stiffness, self.axial_stiffness)
+        return distinct(np.array([b for p in given if p is not None for b in p.breakpoints]))
+
+
+def _check_section(length: float, width: Profile, thickness: Profile) -> None:
+    edges = np.union1d(width.breakpoints, thickness.breakpoints)
+    xi = np.union1d(np.linspace(0, 1, 257), [*(edges[:-1] + 1e-12), *(edges[1:] - 1e-12)])
+    b, h = width(xi), thickness(xi)
+    if h.max() > length:
+        raise ValueError(
+            f"thickness = {h.max():g} m exceeds length = {length:g} m; are the two swapped, or the units?"
+        )
+    if (h > b).any():
+        k = int((h > b).argmax())
+        raise ValueError(
+            f"thickness = {h[k]:g} m exceeds width = {b[k]:g} m: the beam bends in the direction of its "
+            "thickness; swap the two, or use Beam.from_stiffness for a section that is meant so"
+        )

@@ -1,0 +1,88 @@
+"""The scene: a beam, how it is mounted on its carrier, and how the carrier moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from beamdyn.common.checks import angle, kind, not_negative, real
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.motion import Motion
+
+
+@dataclass(frozen=True)
+class Mount:
+    """How the root of the beam is fixed to the carrier.
+
+    Parameters
+    ----------
+    radius : float
+        Distance r of the root from the axis of rotation [m].
+    setting_angle : float
+        Direction phi of the beam [rad]: 0 towards the axis (inward), pi/2 tangential (the beam
+        trails), pi outward, -pi/2 leading.
+    bending_angle : float
+        Angle psi between the direction in which the beam bends and the plane of rotation [rad]:
+        0 in the plane (chordwise, lead-lag), pi/2 out of it (flapwise).
+
+    Raises
+    ------
+    ValueError
+        If the radius is negative or an angle exceeds one turn.
+    """
+
+    radius: float = 0.0
+    setting_angle: float = 0.0
+    bending_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        not_negative(
+            "radius", self.radius, "m", "for a beam that points outward give setting_angle = pi instead"
+        )
+        angle("setting_angle", self.setting_angle)
+        angle("bending_angle", self.bending_angle)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that a model needs.
+
+    Parameters
+    ----------
+    beam : Beam
+        The cantilever.
+    mount : Mount
+        How it is fixed to the carrier.
+    motion : Motion, optional
+        How the carrier moves; analyses over speeds set the speed themselves.
+    damping_ratio : float
+        Modal damping ratio of every mode of the beam at rest, from 0 to below 1.
+    gravity : float
+        Gravity along -n2 [m/s2].
+    stretch : bool
+        Keep the stretch of the beam and its Coriolis coupling (Yoo-Shin's model), for comparison.
+
+    Raises
+    ------
+    ValueError
+        If the damping ratio is outside [0, 1), or the stretch has no axial stiffness.
+    """
+
+    beam: Beam
+    mount: Mount = Mount()
+    motion: Motion | None = None
+    damping_ratio: float = 0.0
+    gravity: float = 0.0
+    stretch: bool = False
+
+    def __post_init__(self) -> None:
+        kind("beam", self.beam, Beam)
+        kind("mount", self.mount, Mount, "mount = Mount(radius=0.2) sets a radius of 0.2 m")
+        kind("stretch", self.stretch, bool)
+        if self.motion is not None and not hasattr(self.motion, "at"):
+            raise ValueError(f"motion = {self.motion!r}: give a motion, such as SteadyRotation(speed)")
+        real("gravity", self.gravity, "m/s2")
+        ratio = not_negative("damping_ratio", self.damping_ratio)
+        if ratio >= 1:
+            raise ValueError(f"damping_ratio = {ratio:g}: it must be below 1; 1 % is damping_ratio = 0.01")
+        if self.stretch and self.beam.axial_stiffness is None:
+            raise ValueError("stretch = True needs axial_stiffness: give it to Beam.from_stiffness")

@@ -1,0 +1,436 @@
+"""Guaranteed bounds, from below and above, of the natural frequencies of bending.
+
+Everything is nondimensional here: x = x/L, mass and stiffness relative to the root's segment.
+
+**The problem.**  With a(u, v) = int EI u'' v'' and four positive semidefinite forms
+
+    P1(u, u) = int N_B u'^2,  P2 = int N_A u'^2,  P3 = int rho A u^2 + m t^2,  P4 = u'(1)^2,
+
+where t = u(1) + eps u'(1), the eigenvalues z = lambda^2 are those at which the form
+
+    Q_z = a + sum_j c_j(z) P_j,    c_j(z) = omega^2 spin_j - z mass_j,
+
+has a kernel, and the k-th of them is at least z if Q_z >= 0 on a subspace of codimension k - 1.
+
+**The split.**  Trial functions have polynomial curvature of degree below n on each segment: the head.
+The tail is the complement, orthogonal with respect to a: its bending moments EI u'' are orthogonal
+to all polynomials of degree below n.  On the tail P_j <= tail_j a, where tail_j is a trace,
+
+    tail_j = trace(P_j) - trace(P_j on the head),  for instance  trace(P1) = int N_B(x) int_0^x 1/EI,
+
+because P_j is a sum of squares of functionals whose norms the cantilever, being statically
+determinate, has in closed form.  Hence Q_z >= q a on the tail with q = 1 - sum_j max(0, -c_j) tail_j.
+
+**The coupling.**  For v of the head and w of the tail, integrating from the tip inwards,
+sum_j c_j P_j(v, w) = int F w'', where F is a piecewise polynomial; and as int EI p w'' = 0 for
+polynomials p of the head, it is int (F - EI p) w'' <= sqrt(R(v, v) a(w, w)), R = int (F - EI p)^2 / EI.
+All this for any p; the best is the solution of the head's equations, K p = F.  The Legendre
+coefficients of F and EI p are columns of the matrices of a slightly larger basis.
+
+**The theorem.**  Q_z(v + w) >= Q_z(v) - 2 sqrt(R a(w, w)) + q a(w, w) >= (Q_z - R / q)(v).  So, if q > 0
+and this last matrix has at most k - 1 negative eigenvalues, the k-th eigenvalue is at least z.
+Nothing is asked of the other eigenvalues, of signs, or of the speed.
+
+docs/bounds.md has the same with its assumptions, and says how rounding is allowed for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+from math import cos, sin
+from time import perf_counter
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import count, real
+from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.equations_of_motion import SteadyPencil, root_motion
+from beamdyn.equations.operators import Space, tension
+from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.modal.eigen import Solver
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.profile import Profile
+from beamdyn.scene.scene import Scene
+
+_EPS = float(np.finfo(float).eps)
+_FASTEST = 1e50  # rad/s: its fourth power is still far from overflow
+_LARGEST = 500  # functions on all segments together: an eigenproblem of a tenth of a second
+_SHARP = 1e-11  # relative width of the squares that is not worth improving
+_TRIES = 12
+_FAR = 10.0  # relative step from a Ritz value that leaves the bound without use
+_FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
+_FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility that is aimed at, that is accepted
+
+
+@dataclass(frozen=True)
+class FrequencyBounds(Result):
+    """Bounds that enclose the exact natural frequencies of bending, the lowest first.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    lower, upper : ndarray, shape (m,)
+        Bounds of the frequency [Hz]; nan where the mode is, or for `lower` may be, unstable.
+    lower_squared, upper_squared : ndarray, shape (m,)
+        Bounds of the squared angular frequency [rad2/s2], negative for an unstable mode; nan where
+        none is guaranteed.
+    width : ndarray, shape (m,)
+        upper / lower - 1; nan where one of them is.
+    how : str
+        The argument that guarantees them.
+    warnings : tuple of str
+        Which bounds are missing, and why.
+    provenance : Provenance
+        How they were found.
+    """
+
+    speed: float
+    lower: np.ndarray
+    upper: np.ndarray
+    lower_squared: np.ndarray
+    upper_squared: np.ndarray
+    width: np.ndarray
+    how: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+
+def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
+    """Guaranteed two-sided bounds of the natural frequencies of bending at a steady speed.
+
+    They hold for the Euler-Bernoulli model without stretch and damping, see docs/bounds.md.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    speed : float
+        Speed [rad/s].
+    modes : int
+        How many.
+
+    Returns
+    -------
+    FrequencyBounds
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the scene has stretch or damping.
+    """
+    start = perf_counter()
+    _check(scene, real("speed", speed, "rad/s"), count("modes", modes))
+    scaled, time = _nondimensional(scene)
+    lower, upper, functions = _enclose(scaled, speed * time, modes)
+    lower, upper = _outward(lower, -8) / time**2, _outward(upper, 8) / time**2
+    low, high = _frequency(lower, -8), _frequency(upper, 8)
+    return FrequencyBounds(
+        speed=float(speed),
+        lower=low,
+        upper=high,
+        lower_squared=lower,
+        upper_squared=upper,
+        width=high / low - 1,
+        how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
+        warnings=tuple(_warnings(lower, upper)),
+        provenance=Provenance(__version__, str(Ritz(functions)), "its complement", perf_counter() - start),
+        scene=scene,
+    )
+
+
+def _check(scene: Scene, speed: float, modes: int) -> None:
+    if scene.stretch or scene.damping_ratio:
+        raise ValueError(
+            f"stretch = {scene.stretch}, damping_ratio = {scene.damping_ratio:g}: bounds are known for "
+            "undamped bending only; give dataclasses.replace(scene, stretch=False, damping_ratio=0.0)"
+        )
+    if abs(speed) > _FASTEST:
+        raise ValueError(f"speed = {speed:g} rad/s: give at most {_FASTEST:g} rad/s either way")
+    most = _most(scene.beam) * (len(scene.beam.breakpoints) - 1)
+    if modes > most:
+        raise ValueError(
+            f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
+            "degree of its properties, the less"
+        )
+
+
+def _outward(values: np.ndarray, units: int) -> np.ndarray:
+    """Values moved up (units > 0) or down by so many rounding units."""
+    return values + units * _EPS * np.abs(values)
+
+
+def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
+    """Frequencies [Hz], rounded outwards; nan where the square is not positive."""
+    return _outward(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
+
+
+def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
+    missing, unstable, open_ = np.isnan(lower), upper <= 0, (lower <= 0) & (upper > 0)
+    if missing.any():
+        yield (
+            f"no lower bound of mode(s) {_numbers(missing)}: the functions left out could not be bounded, "
+            "even with the largest basis"
+        )
+    if unstable.any():
+        yield f"mode(s) {_numbers(unstable)} are unstable: see the bounds of the squares"
+    if open_.any():
+        yield f"mode(s) {_numbers(open_)} may be stable or not: the bounds of the squares enclose zero"
+
+
+def _numbers(chosen: np.ndarray) -> str:
+    numbers = np.flatnonzero(chosen) + 1
+    return ", ".join(map(str, numbers)) if len(numbers) < 6 else f"{numbers[0]} ... {numbers[-1]}"
+
+
+def _nondimensional(scene: Scene) -> tuple[Scene, float]:
+    """The scene with unit length, mass and stiffness, and its unit of time [s]."""
+    beam, length = scene.beam, scene.beam.length
+    m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
+    mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
+    scaled = Beam(1.0, mass, stiffness, tip=_nondimensional_tip(beam.tip or TipMass(0.0), m * length, length))
+    mount = replace(scene.mount, radius=scene.mount.radius / length)
+    return Scene(scaled, mount), length**2 * float(np.sqrt(m / e))
+
+
+def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
+    moments = (tip.inertia, tip.inertia_transverse, tip.axial_inertia)
+    return TipMass(tip.mass / mass, tip.offset / length, *(j / (mass * length**2) for j in moments))
+
+
+# The search ---------------------------------------------------------------------------------------
+
+
+def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Bounds of z from growing bases, until these help no more; and the last size."""
+    flexibility = _flexibility(scene.beam.bending_stiffness)
+    lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
+    functions = 0
+    for functions in _sizes(scene.beam, modes):
+        low, high = Split(scene, functions, speed, flexibility).bounds(modes)
+        before, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
+        width = upper - lower
+        if (width <= _SHARP * np.abs(upper)).all() or (width > before / 2).all():
+            break
+    return lower, upper, functions
+
+
+def _sizes(beam: Beam, modes: int) -> Iterator[int]:
+    """Functions a segment, growing."""
+    most, size = _most(beam), max(6, (16 + 2 * modes) // (len(beam.breakpoints) - 1))
+    while size < most:
+        yield size
+        size = 4 * size // 3
+    yield most
+
+
+def _most(beam: Beam) -> int:
+    """Most functions a segment."""
+    return min(MOST_FUNCTIONS - _more(beam), _LARGEST // (len(beam.breakpoints) - 1))
+
+
+def _more(beam: Beam) -> int:
+    """Degrees by which loads on the head and EI times a polynomial exceed those of the head."""
+    return max(beam.mass_per_length.degree + 4, beam.bending_stiffness.degree)
+
+
+def _retreat(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:
+    """Move z until the form's k-th eigenvalue (from 0) proves it a bound below (side -1) or above (1)."""
+    step = 0.0
+    for _ in range(_TRIES):
+        matrix = form(z)
+        if matrix is None or not np.isfinite(matrix).all():
+            break
+        value, vector = np.linalg.eigh(matrix)
+        if side * value[k] <= 0:
+            return z
+        step = 2 * max(step, abs(value[k]) / (vector[:, k] @ mass @ vector[:, k]))
+        if step > _FAR * (1 + abs(z)):
+            break
+        z += side * step
+    return np.nan
+
+
+# The matrices -------------------------------------------------------------------------------------
+
+
+class Split:
+    """Head and tail at one speed; all forms are matrices over functions with orthonormal curvatures.
+
+    Parameters
+    ----------
+    scene : Scene
+        A nondimensional scene.
+    functions : int
+        Functions n of the head on each segment.
+    speed : float
+        Nondimensional speed.
+    flexibility : Profile or None
+        Nowhere below 1/EI; None if there is none, and no lower bound.
+    """
+
+    def __init__(self, scene: Scene, functions: int, speed: float, flexibility: Profile | None) -> None:
+        self.scene, self.speed, self.flexibility = scene, speed, flexibility
+        larger = functions + _more(scene.beam)
+        segments = len(scene.beam.breakpoints) - 1
+        space = Ritz(larger).spaces(scene.beam).bending
+        self.stiffness = space.gram(scene.beam.bending_stiffness, 2)
+        self.parts = _parts(scene.beam, space)
+        self.head = np.flatnonzero(np.tile(np.arange(larger) < functions, segments))
+        self.spin, self.spin_terms, self.mass = _coefficients(scene)
+        # Rounding of a sum of as many products as the rule has points, relative to its terms; twice
+        # for the factors, twice for the eigensolution.
+        self.unit = 4 * _EPS * (len(space.points) + len(self.stiffness))
+
+    def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds of the lowest z below and above."""
+        mass = self._sum(self.mass)[self._square]
+        starts = list(enumerate(self._ritz(mass, modes)))
+        upper = [_retreat(self.above, mass, k, z, 1) for k, z in starts]
+        if self.flexibility is None:
+            return np.full(modes, np.nan), np.array(upper)
+        return np.array([_retreat(self.below, mass, k, z, -1) for k, z in starts]), np.array(upper)
+
+    def _ritz(self, mass: np.ndarray, modes: int) -> np.ndarray:
+        """Ritz values: where the search starts."""
+        zero = np.zeros_like(mass)
+        K0, K2 = self.stiffness[self._square], self._sum(self.spin)[self._square]
+        solver = Solver(SteadyPencil(mass, zero, zero, K0, K2, zero[0]))
+        return -np.real(solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
+
+    def above(self, z: float) -> np.ndarray:
+        """Q_z on the head plus the allowance: with k + 1 eigenvalues <= 0, mode k is at most z."""
+        form = (self.stiffness + self._sum(self._at(z)))[self._square]
+        return form + self._allowance(z) * np.eye(len(form))
+
+    def below(self, z: float) -> np.ndarray | None:
+        """Q_z - R/q less the allowance: with at most k eigenvalues < 0, mode k is at least z."""
+        tail = np.maximum(self.unit * self._terms(z) - self._at(z), 0) @ self.tails
+        if tail >= 1:
+            return None
+        coupling, allowance = self._sum(self._at(z))[:, self.head], self._allowance(z)
+        defect = coupling - self.stiffness[:, self.head] @ np.linalg.solve(self._K, coupling[self.head])
+        lost = self.compliance.max() * (self.condition * allowance) ** 2  # rounding of the defect, squared
+        one = np.eye(len(self.head))
+        R = 2 * (defect.T @ (self.compliance[:, None] * defect) + lost * one)  # |a + b|^2 <= 2 (a^2 + b^2)
+        return self._K + coupling[self.head] - R / (1 - tail) - allowance * one
+
+    @cached_property
+    def tails(self) -> np.ndarray:
+        """Bounds of the four forms on the tail, relative to a."""
+        assert self.flexibility is not None
+        total = _traces(self.scene.beam, self.flexibility)
+        head = [np.trace(np.linalg.solve(self._K, part[self._square])) for part in self.parts]
+        return np.maximum(total - head, 0) + self.unit * self.condition * total
+
+    @cached_property
+    def compliance(self) -> np.ndarray:
+        """Upper bounds of 1/EI on the segment of each function: |P_k| <= 1."""
+        assert self.flexibility is not None
+        flexibility = self.flexibility.split(self.scene.beam.breakpoints)
+        largest = [np.abs(row).sum() for row in flexibility.coefficients]
+        return np.repeat(largest, len(self.stiffness) // len(largest))
+
+    @cached_property
+    def condition(self) -> float:
+        """Bound of the condition number of the stiffness: largest over smallest EI."""
+        rows = self.scene.beam.bending_stiffness.coefficients
+        return float(max(np.abs(row).sum() for row in rows) * self.compliance.max())
+
+    def _at(self, z: float) -> np.ndarray:
+        return self.speed**2 * self.spin - z * self.mass
+
+    def _terms(self, z: float) -> np.ndarray:
+        """The coefficients with all terms counted positive."""
+        return self.speed**2 * self.spin_terms + abs(z) * self.mass
+
+    def _allowance(self, z: float) -> float:
+        """Bound of the rounding of Q_z: an entry of a Gram matrix errs by unit sqrt(P_ii P_jj) at most."""
+        traces = np.trace(self.parts, axis1=1, axis2=2)
+        return float(self.unit * (np.trace(self.stiffness) + self._terms(z) @ traces))
+
+    def _sum(self, coefficients: np.ndarray) -> np.ndarray:
+        return np.tensordot(coefficients, self.parts, 1)
+
+    @cached_property
+    def _K(self) -> np.ndarray:
+        return self.stiffness[self._square]
+
+    @property
+    def _square(self) -> tuple[np.ndarray, ...]:
+        return np.ix_(self.head, self.head)
+
+
+def _parts(beam: Beam, space: Space) -> np.ndarray:
+    """The forms P1 ... P4: shape (4, n, n)."""
+    tip = beam.tip or TipMass(0.0)
+    n_a, n_b = tension(beam)
+    slope = space.end(1)
+    path = space.end(0) + tip.offset * slope
+    inertia = space.gram(beam.mass_per_length, 0) + tip.mass * np.outer(path, path)
+    return np.array([space.gram(n_b, 1), space.gram(n_a, 1), inertia, np.outer(slope, slope)])
+
+
+def _coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coefficients per omega^2, the same with all terms positive, and per -z: shape (4,) each."""
+    tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
+    root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
+    turn = sin(psi) ** 2 * np.array([tip.inertia_transverse, -tip.axial_inertia])
+    pull = tip.mass * tip.offset * np.array([1.0, tip.offset, -root])
+    ends = np.concatenate([turn, pull])
+    spin = np.array([1.0, -root, -(cos(psi) ** 2), ends.sum()])
+    terms = np.append(np.abs(spin[:3]), np.abs(ends).sum())
+    return spin, terms, np.array([0.0, 0.0, 1.0, tip.inertia])
+
+
+# Traces -------------------------------------------------------------------------------------------
+
+
+def _traces(beam: Beam, flexibility: Profile) -> np.ndarray:
+    """Traces of P1 ... P4 relative to a, from above: shape (4,).
+
+    The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
+    sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:
+    int_s^1 (x - s)^2 rho A dx is twice the threefold one.
+    """
+    tip = beam.tip or TipMass(0.0)
+    n_a, n_b = tension(beam)
+    moment = beam.mass_per_length.outboard_integral().outboard_integral().outboard_integral().scaled(2.0)
+    arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # 1 - s + eps
+    loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)
+    tension_b, tension_a, inertia = (_integral(flexibility * load) for load in loads)
+    inertia += tip.mass * _integral(flexibility * (arm * arm))
+    return np.array([tension_b, tension_a, inertia, _integral(flexibility)])
+
+
+def _integral(profile: Profile) -> float:
+    steps = (b - a for a, b in pairwise(profile.breakpoints))
+    return sum(step * row[0] for step, row in zip(steps, profile.coefficients, strict=True))
+
+
+def _flexibility(stiffness: Profile) -> Profile | None:
+    """A piecewise polynomial that is nowhere below 1/EI, and hardly above; None if none is found."""
+    rows = [_reciprocal(np.array(row)) for row in stiffness.coefficients]
+    found = tuple(row for row in rows if row is not None)
+    return Profile(stiffness.breakpoints, found) if len(found) == len(rows) else None
+
+
+def _reciprocal(row: np.ndarray) -> tuple[float, ...] | None:
+    """If |1 - EI g| <= miss < 1 then 1/EI <= g / (1 - miss): no more than coefficients need be checked."""
+    for degree in _FLEXIBILITY_DEGREES:
+        t, w = legendre.leggauss(degree + 1)
+        projection = (np.arange(degree + 1) + 0.5)[:, None] * legendre.legvander(t, degree).T
+        g = projection @ (w / legendre.legval(t, row))
+        product = legendre.legmul(row, g)
+        rounding = 4 * _EPS * (degree + len(row)) * np.abs(row).sum() * np.abs(g).sum()
+        miss = np.abs(legendre.legsub(product, [1.0])).sum() + rounding
+        if miss <= (_FINE if degree < _FLEXIBILITY_DEGREES[-1] else _COARSE):
+            return tuple((g / (1 - miss)).tolist())
+    return None

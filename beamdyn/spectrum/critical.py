@@ -1,0 +1,264 @@
+"""Where the beam changes its character: the critical speed, and setting angles."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import positive, within
+from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.operators import Discretization
+from beamdyn.modal.eigen import Solver
+from beamdyn.modal.error_estimate import TARGET, TOLERANCES, Model, choose, missed
+from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.modes import LARGE_DEFLECTION, static_load
+
+_ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
+
+# Critical speed -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class CriticalPoint(Result):
+    """Where the stiffness of the rotating beam vanishes.
+
+    Parameters
+    ----------
+    speed : float
+        Critical speed [rad/s]; inf if there is none.
+    error : float
+        Its estimated relative error.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+    """
+
+    speed: float
+    error: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+
+
+def critical_speed(
+    scene: Scene, discretization: str | Discretization = "ritz", tolerance: float | None = None
+) -> float:
+    """Speed at which the beam buckles dynamically [rad/s]; inf if there is none.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`; a warning is issued if it cannot be kept.
+
+    Returns
+    -------
+    float
+    """
+    point = critical_point(scene, discretization, tolerance)
+    for text in point.warnings:
+        warnings.warn(text, stacklevel=2)
+    return point.speed
+
+
+def critical_point(
+    scene: Scene, discretization: str | Discretization = "ritz", tolerance: float | None = None
+) -> CriticalPoint:
+    """The critical speed with its error: the lowest speed whose stiffness K0 + omega^2 K2 is singular.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`.
+
+    Returns
+    -------
+    CriticalPoint
+    """
+    start = perf_counter()
+    target = TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    model = choose(scene, discretization, np.zeros(1), 1, target, cheapest=tolerance is not None)
+    while True:
+        speed, error = _critical(model)
+        finer = None if not isinstance(discretization, str) else model.discretization.finer()
+        if finer is None or error <= max(target, 3 * model.solver.critical_rounding):
+            break
+        model = Model(scene, finer)
+    names = str(model.discretization), str(model.coarser.discretization)
+    texts = () if tolerance is None else tuple(missed(error, target))
+    return CriticalPoint(
+        speed, error, texts, Provenance(__version__, *names, wall_time=perf_counter() - start)
+    )
+
+
+def _critical(model: Model) -> tuple[float, float]:
+    fine, coarse = model.solver.critical_speed, model.coarser.solver.critical_speed
+    if np.isinf(fine):
+        return fine, 0.0
+    if np.isinf(coarse):
+        return fine, 1.0
+    order = model.discretization.order
+    speed = fine if order is None else fine + (fine - coarse) / (2**order - 1)
+    return float(speed), float(
+        abs(fine - coarse) / speed + model.solver.critical_rounding + model.discretization.rounding
+    )
+
+
+# Setting angles at which the locus changes its character -----------------------------------------
+
+
+@dataclass(frozen=True)
+class SettingAngleLimits(Result):
+    """Setting angles between which the first frequency rises and then falls with speed; unpacks as two.
+
+    Below `first` it falls from rest on; between the two it rises and then falls below the top speed;
+    above `second` it rises up to the top speed.
+
+    Parameters
+    ----------
+    first, second : float
+        The limits [rad]; nan where there is none.
+    error : float
+        Estimated error of the two [rad].
+    top_speed : float
+        The top speed [rad/s].
+    static_deflection : float
+        Static tip deflection at the second limit and the top speed, as a fraction of the length.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+    """
+
+    first: float
+    second: float
+    error: float
+    top_speed: float
+    static_deflection: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+
+    def __iter__(self) -> Iterator[float]:
+        return iter((self.first, self.second))
+
+
+def setting_angle_limits(
+    scene: Scene, top_speed: float, discretization: str | Discretization = "ritz"
+) -> SettingAngleLimits:
+    """Setting angles at which the first frequency stops falling, and starts rising up to the top speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its setting angle, motion, damping and stretch are not used.
+    top_speed : float
+        Top speed [rad/s]; inf only with a basis of given size, as its answer is of that basis and
+        not of the beam.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    SettingAngleLimits
+
+    Raises
+    ------
+    ValueError
+        If the top speed is not positive, or infinite without a basis of given size.
+    """
+    start = perf_counter()
+    if not (np.isinf(top_speed) and not isinstance(discretization, str)):
+        remedy = (
+            "a converged limit needs a finite top speed; discretization=Ritz(5, 'eigenfunctions') allows inf"
+        )
+        positive("top_speed", top_speed, "rad/s", remedy)
+    scene = replace(scene, damping_ratio=0.0, stretch=False)
+    speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
+    tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
+    model = choose(tangential, discretization, speeds, 1)
+    first, second = _limits(model, top_speed)
+    coarse = model.coarser
+    rough = _limits(coarse, top_speed)
+    bent = _bent_at(scene, second, top_speed, model)
+    return SettingAngleLimits(
+        first=first,
+        second=second,
+        error=_limits_error(first, second, rough, top_speed),
+        top_speed=float(top_speed),
+        static_deflection=bent,
+        warnings=tuple(_limit_warnings(first, second, bent)),
+        provenance=Provenance(
+            __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
+        ),
+    )
+
+
+def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
+    """Both limits from the parts of the stiffness per squared speed, K2 = A - cos(phi) r KGA."""
+    pencil, bending = tangential.solver.pencil, tangential.equations.operators.bending
+    A, B = pencil.K2, tangential.scene.mount.radius * bending.KGA
+    v = tangential.solver.solve(np.zeros(1), 1).vector[0, :, 0]
+    first = _arccos(float(v @ A @ v), float(v @ B @ v))
+    if np.isinf(top_speed):
+        return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
+    return first, _second_limit(pencil, A, B, first, top_speed)
+
+
+def _limits_error(first: float, second: float, rough: tuple[float, float], top_speed: float) -> float:
+    """Distance from the coarser model [rad]; at infinite speed the answer is that of the very basis."""
+    if np.isinf(top_speed):
+        return _ROUNDING
+    return float(np.nanmax([abs(first - rough[0]), abs(second - rough[1]), 0.0])) + _ROUNDING
+
+
+def _arccos(a: float, b: float) -> float:
+    return float(np.arccos(a / b)) if abs(a) <= abs(b) and b else np.nan
+
+
+def _second_limit(
+    pencil: SteadyPencil, A: np.ndarray, B: np.ndarray, first: float, top_speed: float
+) -> float:
+    """The angle at which the slope of the first squared frequency vanishes at the top speed."""
+
+    def slope(phi: float) -> float:
+        K2 = A - np.cos(phi) * B
+        v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
+        return float(v @ K2 @ v)
+
+    low = 0.0 if np.isnan(first) else first
+    if slope(low) * slope(np.pi) >= 0:
+        return np.nan
+    return float(brentq(slope, low, np.pi, xtol=1e-15, rtol=1e-15))  # pyright: ignore[reportArgumentType]
+
+
+def _bent_at(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
+    if np.isnan(phi) or np.isinf(top_speed):
+        return np.nan
+    mounted = replace(scene, mount=replace(scene.mount, setting_angle=phi))
+    deflection, _ = static_load(Model(mounted, model.discretization), np.array([top_speed]))
+    return float(abs(deflection[0]) / scene.beam.length)
+
+
+def _limit_warnings(first: float, second: float, bent: float) -> Iterator[str]:
+    if np.isnan(first):
+        yield "no first limit: at rest the first frequency changes the same way at every setting angle"
+    if np.isnan(second):
+        yield "no second limit: at the top speed the frequency changes the same way at every setting angle"
+    if not bent <= LARGE_DEFLECTION:
+        seen = "" if np.isnan(bent) else f" (static tip deflection {bent:.3g} of the length at the top speed)"
+        yield "at such angles the rotation bends the beam past linear theory" + seen

@@ -1,0 +1,392 @@
+"""Natural modes at a steady speed, and their loci over speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import ascending, count, real, within
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.operators import Discretization, tension
+from beamdyn.modal.error_estimate import TOLERANCES, Estimated, Model, missed, solved
+from beamdyn.modal.tracking import track
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_FASTEST = 1e50  # rad/s: its fourth power is still far from overflow
+_LARGE_STRAIN = 0.01
+LARGE_DEFLECTION = 0.1  # of the length: the limit of linear theory
+_CANDIDATES = 2  # modes above the wanted ones that tracking may exchange with them
+
+
+# Modes at one speed -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Modes(Result):
+    """Natural modes at one speed, the lowest first.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    frequency : ndarray, shape (m,)
+        Frequency [Hz]; nan where a mode is unstable or does not oscillate.
+    error : ndarray, shape (m,)
+        Estimated relative error of the frequency, or of the growth rate where there is none.
+    growth_rate : ndarray, shape (m,)
+        Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
+    status : ndarray of str, shape (m,)
+        "stable", "divergence", "flutter" or "overdamped".
+    eigenvalue : ndarray of complex, shape (m,)
+        s in exp(s t) [1/s].
+    tip : ndarray, shape (m,)
+        Tip deflection of the mass-normalised modes [kg^-1/2], positive.
+    load : ndarray, shape (m,)
+        Modal load under a unit root acceleration, P in modal coordinates [kg^1/2].
+    angular_load : ndarray, shape (m,)
+        Modal load under a unit angular acceleration, Q in modal coordinates [kg^1/2 m].
+    static_deflection : float
+        Static tip deflection under the rotation [m]; nan past the critical speed.
+    axial_strain : float
+        Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+    """
+
+    speed: float
+    frequency: np.ndarray
+    error: np.ndarray
+    growth_rate: np.ndarray
+    status: np.ndarray
+    eigenvalue: np.ndarray
+    tip: np.ndarray
+    load: np.ndarray
+    angular_load: np.ndarray
+    static_deflection: float
+    axial_strain: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+    vectors: np.ndarray = field(repr=False)
+    model: Model = field(repr=False)
+
+    def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
+        """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x))."""
+        xi = np.asarray(x, dtype=float) / self.scene.beam.length
+        if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
+            raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
+        bending = self.model.equations.operators.bending
+        return self.vectors[: len(bending.P)].T @ bending.space.evaluate(np.minimum(xi, 1.0))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the mode shapes."""
+        from beamdyn.output.plots import plot_shapes
+
+        x = np.linspace(0, self.scene.beam.length, 201)
+        return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax)
+
+    def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
+        """Write the mode shapes as a mesh file for ParaView; see `beamdyn.output.export.write_shapes`."""
+        from beamdyn.output.export import write_shapes
+
+        x = np.linspace(0, self.scene.beam.length, 101)
+        write_shapes(path, x, np.real(self.shape(x)), self.labels(), width, force)
+
+    def labels(self) -> list[str]:
+        """One line of text for each mode."""
+        return [
+            _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
+        ]
+
+
+def _label(i: int, frequency: float, growth: float) -> str:
+    return f"mode {i}: {growth:.4g} 1/s" if np.isnan(frequency) else f"mode {i}: {frequency:.5g} Hz"
+
+
+def natural_modes(
+    scene: Scene,
+    speed: float = 0.0,
+    modes: int = 3,
+    discretization: str | Discretization = "ritz",
+    tolerance: float | None = None,
+) -> Modes:
+    """Natural modes at a steady speed, about a fixed centre.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    speed : float
+        Speed [rad/s].
+    modes : int
+        How many.
+    discretization : {"ritz", "fem"} or Discretization
+        Assumed modes or finite elements, as large as needed; or a `Ritz` or `Fem` of given size.
+    tolerance : float, optional
+        Relative error that is allowed, from 1e-14 to 0.1: the cheapest model that keeps it is chosen. By
+        default models are chosen for 1e-11, two digits beyond the promised 1e-9.
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    start = perf_counter()
+    speeds, modes = _bounded(np.array([real("speed", speed, "rad/s")])), count("modes", modes)
+    found = solved(scene, discretization, speeds, modes, tolerance := _allowed(tolerance))
+    s, vectors = found.eigen.eigenvalue[0], _tip_positive(found.model, found.eigen.vector[0])
+    bending = found.model.equations.operators.bending
+    part = vectors[: len(bending.P)]
+    status = _status(s)
+    deflection, strain = static_load(found.model, speeds)
+    return Modes(
+        speed=float(speed),
+        frequency=_frequency(s, status),
+        error=found.error[0],
+        growth_rate=np.real(s) + 0.0,
+        status=status,
+        eigenvalue=s,
+        tip=np.real(bending.space.end(0) @ part),
+        load=np.real(bending.P @ part),
+        angular_load=np.real(bending.Q @ part),
+        static_deflection=float(deflection[0]),
+        axial_strain=float(strain[0]),
+        warnings=tuple(_warnings(scene, speeds, deflection, strain, found.error, status[None], tolerance)),
+        provenance=_provenance(found, start),
+        scene=scene,
+        vectors=vectors,
+        model=found.model,
+    )
+
+
+def _bounded(speeds: np.ndarray) -> np.ndarray:
+    if np.abs(speeds).max() > _FASTEST:
+        raise ValueError(
+            f"speed = {speeds[np.abs(speeds).argmax()]:g} rad/s: give at most {_FASTEST:g} rad/s either way"
+        )
+    return speeds
+
+
+def _allowed(tolerance: float | None) -> float | None:
+    return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+
+
+def _tip_positive(model: Model, vectors: np.ndarray) -> np.ndarray:
+    """Turn the phase of each vector so that its tip deflection is real and positive."""
+    bending = model.equations.operators.bending
+    tip = bending.space.end(0) @ vectors[: len(bending.P)]
+    phase = np.where(tip == 0, 1.0, tip / np.abs(np.where(tip == 0, 1.0, tip)))
+    return vectors / phase
+
+
+def _status(s: np.ndarray) -> np.ndarray:
+    growing, turning = np.real(s) > 0, np.imag(s) != 0
+    names = ["flutter", "divergence", "stable"]
+    return np.select(
+        [growing & turning, growing, turning], names, np.where(s == 0, "divergence", "overdamped")
+    )
+
+
+def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
+    return np.where(status == "stable", np.imag(s) / (2 * np.pi), np.nan)
+
+
+def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Static effects of rotation.
+
+    Parameters
+    ----------
+    model : Model
+        A discretized scene.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    deflection : ndarray, shape (S,)
+        Static tip deflection [m]; nan from the critical speed on.
+    strain : ndarray, shape (S,)
+        Largest static axial strain; nan if the axial stiffness is not given.
+    """
+    solver, beam, mount = model.solver, model.scene.beam, model.scene.mount
+    bending = model.equations.operators.bending
+    stiffness = 1 + speeds[:, None] ** 2 * solver.growth
+    with np.errstate(divide="ignore", invalid="ignore"):
+        q = (solver.basis.T @ solver.pencil.f2) * speeds[:, None] ** 2 / stiffness
+    tip = q @ (solver.basis[: len(bending.P)].T @ bending.space.end(0))
+    deflection = np.where(stiffness.min(axis=1) > 0, tip, np.nan)
+    if beam.axial_stiffness is None:
+        return deflection, np.full(len(speeds), np.nan)
+    n_a, n_b = tension(beam)
+    xi = np.linspace(0, 1, 101)
+    force = n_b(xi) - np.cos(mount.setting_angle) * mount.radius * n_a(xi)
+    return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
+
+
+def _warnings(
+    scene: Scene,
+    speeds: np.ndarray,
+    deflection: np.ndarray,
+    strain: np.ndarray,
+    error: np.ndarray,
+    status: np.ndarray,
+    tolerance: float | None,
+) -> Iterator[str]:
+    unstable = np.isin(status, ("divergence", "flutter"))
+    if unstable.any():
+        s = int(unstable.any(axis=1).argmax())
+        yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
+    if strain.max(initial=0) > _LARGE_STRAIN:
+        yield f"static axial strain reaches {strain.max():.2g}: above 1 % stretch is not negligible"
+    bent = np.abs(deflection) > LARGE_DEFLECTION * scene.beam.length
+    if bent.any():
+        yield _bent(scene, speeds[bent][0], deflection[bent][0])
+    if tolerance is not None:
+        yield from missed(error.max(), tolerance)
+    elif error.max() > 1e-6:
+        yield f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
+
+
+def _bent(scene: Scene, speed: float, deflection: float) -> str:
+    return (
+        f"at {speed:.6g} rad/s the rotation bends the tip by {abs(deflection) / scene.beam.length:.2g} of "
+        "the length: past 0.1 the answer is outside linear theory"
+    )
+
+
+def _provenance(found: Estimated, start: float) -> Provenance:
+    names = str(found.model.discretization), str(found.coarse.discretization)
+    return Provenance(__version__, *names, wall_time=perf_counter() - start)
+
+
+# Loci over speeds ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Locus(Result):
+    """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    frequency : ndarray, shape (S, m)
+        Frequencies [Hz]; nan where a mode is unstable or does not oscillate.
+    growth_rate : ndarray, shape (S, m)
+        Growth rates [1/s].
+    confidence : ndarray, shape (S, m)
+        How sure it is that a mode continues the one at the speed before: 1 sure, 0 a guess.
+    error : ndarray, shape (S, m)
+        Estimated relative error of the eigenvalues.
+    status : ndarray of str, shape (S, m)
+        "stable", "divergence", "flutter" or "overdamped".
+    eigenvalue : ndarray of complex, shape (S, m)
+        s in exp(s t) [1/s].
+    static_deflection : ndarray, shape (S,)
+        Static tip deflection under the rotation [m]; nan past the critical speed.
+    axial_strain : ndarray, shape (S,)
+        Largest static axial strain; nan if it is unknown.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+    """
+
+    speeds: np.ndarray
+    frequency: np.ndarray
+    growth_rate: np.ndarray
+    confidence: np.ndarray
+    error: np.ndarray
+    status: np.ndarray
+    eigenvalue: np.ndarray
+    static_deflection: np.ndarray
+    axial_strain: np.ndarray
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies over speed."""
+        from beamdyn.output.plots import plot_locus
+
+        return plot_locus(self.speeds, self.frequency, ax)
+
+
+@one_blas_thread()  # the matrices are small: more threads only wait for each other
+def frequency_locus(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float],
+    modes: int = 3,
+    discretization: str | Discretization = "ritz",
+    tolerance: float | None = None,
+) -> Locus:
+    """Natural frequencies over speed, all speeds in one batch.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    speeds : sequence of float
+        Speeds [rad/s], ascending.
+    modes : int
+        How many modes to follow.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`; kept at every speed.
+
+    Returns
+    -------
+    Locus
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    start = perf_counter()
+    speeds, modes = _bounded(ascending("speeds", speeds)), count("modes", modes)
+    found = solved(scene, discretization, speeds, modes, tolerance := _allowed(tolerance), _CANDIDATES)
+    order, confidence = track(found.eigen.vector, found.model.solver.pencil.M)
+    s = np.take_along_axis(found.eigen.eigenvalue, order, axis=1)[:, :modes]
+    error = _tracked_error(found, order[:, :modes])
+    status = _status(s)
+    deflection, strain = static_load(found.model, speeds)
+    return Locus(
+        speeds=speeds,
+        frequency=_frequency(s, status),
+        growth_rate=np.real(s) + 0.0,
+        confidence=confidence[:, :modes],
+        error=error,
+        status=status,
+        eigenvalue=s,
+        static_deflection=deflection,
+        axial_strain=strain,
+        warnings=tuple(_warnings(scene, speeds, deflection, strain, error, status, tolerance)),
+        provenance=_provenance(found, start),
+        scene=scene,
+    )
+
+
+def _tracked_error(found: Estimated, order: np.ndarray) -> np.ndarray:
+    """Errors in tracked order; a mode from above the compared ones gets the largest error of its speed."""
+    compared = found.error.shape[1]
+    beyond = np.repeat(found.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
+    beyond[:, :compared] = found.error[:, : beyond.shape[1]]
+    return np.take_along_axis(beyond, order, axis=1)

@@ -1,0 +1,1 @@
+"""Motion in time: step size, integrators, one run, batches of runs, and sweeps over speeds."""

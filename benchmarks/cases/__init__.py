@@ -1,0 +1,1 @@
+"""Scenes, mechanisms and reference solutions that benchmarks and tests share."""

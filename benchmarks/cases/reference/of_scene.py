@@ -1,0 +1,67 @@
+"""Exact eigenvalues of a scene: its binary numbers, made nondimensional in mpmath, and the power series."""
+
+from __future__ import annotations
+
+import math
+
+from mpmath import mp, mpc, mpf
+
+import beamdyn as bd
+from beamdyn.scene.profile import Profile
+from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
+
+_DIGITS = 40
+
+
+def exact(scene: bd.Scene, speed: float, count: int = 3, digits: int = 30) -> list[mpc]:
+    """The lowest s of exp(s t) [1/s] of a beam without breakpoints, stretch and damping."""
+    with mp.workdps(_DIGITS):
+        beam, mount = scene.beam, scene.mount
+        L, mass, stiffness = (
+            mpf(beam.length),
+            *map(_monomials, (beam.mass_per_length, beam.bending_stiffness)),
+        )
+        tau = mp.sqrt(mass[0] * L**4 / stiffness[0])
+        squares = bending_eigenvalues(
+            gamma=mpf(speed) * tau,
+            delta=-_cosine(mount.setting_angle) * mpf(mount.radius) / L,
+            bending_angle=mpf(mount.bending_angle),
+            mass=[c / mass[0] for c in mass],
+            stiffness=[c / stiffness[0] for c in stiffness],
+            tip=_tip(beam.tip, mass[0], L),
+            count=count,
+            digits=digits,
+        )
+        return [mp.sqrt(mpc(-z)) / tau for z in squares]
+
+
+def relative_errors(found: bd.Modes, truth: list[mpc]) -> list[float]:
+    """Relative errors of the eigenvalues of a result."""
+    with mp.workdps(_DIGITS):
+        pairs = zip(found.eigenvalue.tolist(), truth, strict=True)
+        return [float(abs(mpc(s) - t) / abs(t)) for s, t in pairs]
+
+
+def _cosine(angle: float) -> mpf:
+    """0 at a quarter turn, as the scene takes it."""
+    return mpf(0) if abs(math.cos(angle)) < 2e-16 else mp.cos(mpf(angle))
+
+
+def _monomials(profile: Profile) -> list[mpf]:
+    """Coefficients in x of a Legendre series in 2 x - 1: P_k = (-1)^k sum_j C(k, j) C(k + j, j) (-x)^j."""
+    (row,) = profile.coefficients
+    size = len(row)
+    return [
+        sum(
+            (-1) ** (k + j) * math.comb(k, j) * math.comb(k + j, j) * mpf(row[k])
+            for k in range(j, size)
+        )
+        for j in range(size)
+    ]  # fmt: skip
+
+
+def _tip(tip: bd.TipMass | None, mass: mpf, L: mpf) -> Tip | None:
+    if tip is None:
+        return None
+    inertias = (tip.inertia, tip.inertia_transverse, tip.axial_inertia)
+    return Tip(mpf(tip.mass) / (mass * L), mpf(tip.offset) / L, *(mpf(j) / (mass * L**3) for j in inertias))
