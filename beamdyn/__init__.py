@@ -60,7 +60,7 @@ _HOME = {
     "GaussCollocation": "transient.gauss",
     "Locus": "spectrum.modes",
     "Modes": "spectrum.modes",
-    "Mount": "scene.scene",
+    "Mount": "scene.mount",
     "Ritz": "equations.ritz",
     "RoadWave": "scene.motion",
     "RollingWheel": "scene.motion",
@@ -71,7 +71,7 @@ _HOME = {
     "SteadyResponse": "steady.response",
     "SteadyRotation": "scene.motion",
     "Sweep": "transient.sweep",
-    "SweepInterrupted": "transient.sweep",
+    "SweepInterrupted": "transient.chunk_collector",
     "Table": "scene.profile",
     "TipMass": "scene.beam",
     "Tradeoff": "tradeoffs",
@@ -107,17 +107,19 @@ if TYPE_CHECKING:
         SteadyRotation,
         UserMotion,
     )
+    from beamdyn.scene.mount import Mount
     from beamdyn.scene.profile import Table
-    from beamdyn.scene.scene import Mount, Scene
+    from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.spectrum.critical import critical_point, critical_speed, setting_angle_limits
     from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.tradeoffs import Tradeoff, tradeoff
+    from beamdyn.transient.chunk_collector import SweepInterrupted
     from beamdyn.transient.gauss import GaussCollocation
     from beamdyn.transient.simulate import Transient, simulate
-    from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep
+    from beamdyn.transient.sweep import Sweep, sweep
 
 
 def __getattr__(name: str) -> Any:

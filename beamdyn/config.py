@@ -17,8 +17,9 @@ from beamdyn.common.edge.inputs import Quantity, Section
 from beamdyn.common.edge.units import quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
+from beamdyn.scene.mount import Mount
 from beamdyn.scene.profile import Table
-from beamdyn.scene.scene import Mount, Scene
+from beamdyn.scene.scene import Scene
 
 __all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from_dict"]
 

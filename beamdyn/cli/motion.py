@@ -319,7 +319,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
     """A bar with the remaining time; where the sweep is interrupted, say what is done."""
     from beamdyn.common.edge.tables import progress_bar
-    from beamdyn.transient.sweep import SweepInterrupted
+    from beamdyn.transient.chunk_collector import SweepInterrupted
 
     finished = 0
 

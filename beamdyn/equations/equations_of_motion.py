@@ -9,132 +9,19 @@ Derivation and conventions: docs/conventions.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from math import cos, sin
-from typing import Literal
+from functools import cached_property
 
 import numpy as np
-import scipy.linalg
 
-from beamdyn.equations.operators import Operators
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.fields import FIELDS
+from beamdyn.equations.fields.field import Deflection, Load, Term
+from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.motion import MotionSample
-from beamdyn.scene.scene import Mount, Scene
-
-Quantity = Literal["unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse"]
-
-
-@dataclass(frozen=True)
-class RootMotion:
-    """What the equations need of the motion of the beam's root; arrays of one shape.
-
-    Parameters
-    ----------
-    unity : ndarray
-        1.
-    speed, acceleration, speed_squared : ndarray
-        omega [rad/s], omega' [rad/s2] and omega^2 [rad2/s2].
-    root_axial : ndarray
-        Acceleration a_O1 of the root along the beam [m/s2], less gravity.
-    root_transverse : ndarray
-        Acceleration c a_O2 + s a_O3 of the root in the direction of bending [m/s2], less gravity.
-    """
-
-    unity: np.ndarray
-    speed: np.ndarray
-    acceleration: np.ndarray
-    speed_squared: np.ndarray
-    root_axial: np.ndarray
-    root_transverse: np.ndarray
-
-
-def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> RootMotion:
-    """Motion of the beam's root from that of the carrier.
-
-    Parameters
-    ----------
-    mount : Mount
-        Radius r, setting angle phi and bending angle psi.
-    sample : MotionSample
-        Motion of the carrier.
-    gravity : float
-        Gravity along -n2 [m/s2].
-
-    Returns
-    -------
-    RootMotion
-    """
-    cphi, sphi = _cos_sin(mount.setting_angle)
-    cpsi, spsi = _cos_sin(mount.bending_angle)
-    r, omega = mount.radius, sample.speed
-    v1, v2, v3 = np.moveaxis(sample.carrier_acceleration, -1, 0)
-    v2 = v2 + gravity
-    radial = omega**2 * r + v1 * np.cos(sample.angle) - v2 * np.sin(sample.angle)
-    tangential = v1 * np.sin(sample.angle) + v2 * np.cos(sample.angle) + sample.acceleration * r
-    a1 = cphi * radial - sphi * tangential
-    a2 = sphi * radial + cphi * tangential
-    return RootMotion(
-        unity=np.ones_like(omega),
-        speed=omega,
-        acceleration=sample.acceleration,
-        speed_squared=omega**2,
-        root_axial=a1,
-        root_transverse=cpsi * a2 + spsi * v3,
-    )
-
-
-def _cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine, 0 where the angle is the double nearest to a quarter turn."""
-    c, s = cos(angle), sin(angle)
-    return (0.0 if abs(c) < 2e-16 else c), (0.0 if abs(s) < 2e-16 else s)
-
-
-@dataclass(frozen=True)
-class Term:
-    """One term of the left-hand side.
-
-    Parameters
-    ----------
-    name : str
-        What it is.
-    rows, columns : str
-        Fields whose equations it stands in, and whose coordinates it multiplies.
-    order : int
-        Which time derivative of the coordinates: 0 stiffness, 1 damping and gyroscopic, 2 mass.
-    matrix : ndarray
-        Its matrix.
-    quantity : str
-        Which quantity of the `RootMotion` multiplies it.
-    factor : float
-        A constant factor.
-    """
-
-    name: str
-    rows: str
-    columns: str
-    order: int
-    matrix: np.ndarray
-    quantity: Quantity = "unity"
-    factor: float = 1.0
-
-    def coefficient(self, root: RootMotion) -> np.ndarray:
-        """Its coefficient at the times of `root`."""
-        return self.factor * getattr(root, self.quantity)
-
-
-@dataclass(frozen=True)
-class Load:
-    """One term of the right-hand side: factor * quantity * vector in the equations of one field."""
-
-    name: str
-    rows: str
-    vector: np.ndarray
-    quantity: Quantity
-    factor: float = 1.0
-
-    def coefficient(self, root: RootMotion) -> np.ndarray:
-        """Its coefficient at the times of `root`."""
-        return self.factor * getattr(root, self.quantity)
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -169,12 +56,12 @@ class SteadyPencil:
 
 @dataclass(frozen=True)
 class Equations:
-    """Equations of motion of a scene in one discretization.
+    """Equations of motion of a scene in one discretization, or in modal coordinates.
 
     Parameters
     ----------
-    fields : dict of str to slice
-        Places of the fields' coordinates ("bending", "stretch") in q.
+    blocks : dict of str to slice
+        Places of the fields' coordinates in q.
     terms : tuple of Term
         Left-hand side.
     loads : tuple of Load
@@ -183,21 +70,77 @@ class Equations:
         How the beam is mounted.
     gravity : float
         Gravity [m/s2].
-    operators : Operators
-        What the terms were made from.
+    deflections : dict of str to Deflection
+        How the coordinates of the fields that move the beam transversely deflect it.
     """
 
-    fields: dict[str, slice]
+    blocks: dict[str, slice]
     terms: tuple[Term, ...]
     loads: tuple[Load, ...]
     mount: Mount
     gravity: float
-    operators: Operators
+    deflections: dict[str, Deflection]
 
     @property
     def size(self) -> int:
-        """Number of coordinates."""
-        return max(place.stop for place in self.fields.values())
+        """Number n of coordinates."""
+        return max(place.stop for place in self.blocks.values())
+
+    @property
+    def modes(self) -> int:
+        """Largest number of coordinates of a field."""
+        return max(place.stop - place.start for place in self.blocks.values())
+
+    # The beam's shape in the coordinates ----------------------------------------------------------
+
+    def deflection(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
+        """Derivatives with respect to x/L of the deflection by unit coordinates at xi (k,): shape (n, k)."""
+        xi = np.asarray(xi, dtype=float)
+        return self._over_coordinates(lambda d: d.evaluate(xi, order), xi.shape)
+
+    @cached_property
+    def tip(self) -> np.ndarray:
+        """Tip deflection by unit coordinates, shape (n,)."""
+        return self._over_coordinates(lambda d: d.tip)
+
+    @property
+    def P(self) -> np.ndarray:
+        """Load under a unit root acceleration in the direction of bending [kg], shape (n,)."""
+        return self._over_coordinates(lambda d: d.P)
+
+    @property
+    def Q(self) -> np.ndarray:
+        """Load under a unit angular acceleration [kg m], shape (n,)."""
+        return self._over_coordinates(lambda d: d.Q)
+
+    def _over_coordinates(
+        self, part: Callable[[Deflection], np.ndarray], shape: tuple[int, ...] = ()
+    ) -> np.ndarray:
+        """A part of the deflections over all coordinates, 0 for the fields that do not deflect."""
+        total = np.zeros((self.size, *shape))
+        for name, deflection in self.deflections.items():
+            total[self.blocks[name]] = part(deflection)
+        return total
+
+    # Matrices and loads over the root's motion -----------------------------------------------------
+
+    @cached_property
+    def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
+        """For each order 0, 1, 2 of the derivative, the sum of the matrices that one quantity multiplies."""
+        sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
+        for term in self.terms:
+            total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
+            total[self.blocks[term.rows], self.blocks[term.columns]] += term.factor * term.matrix
+        return sums
+
+    @cached_property
+    def vectors(self) -> dict[Quantity, np.ndarray]:
+        """The sum of the load vectors that one quantity multiplies."""
+        sums: dict[Quantity, np.ndarray] = {}
+        for load in self.loads:
+            total = sums.setdefault(load.quantity, np.zeros(self.size))
+            total[self.blocks[load.rows]] += load.factor * load.vector
+        return sums
 
     def root(self, sample: MotionSample) -> RootMotion:
         """Motion of the root from that of the carrier."""
@@ -205,136 +148,95 @@ class Equations:
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
         """Sum of the terms of one order: shape (..., n, n) over the shape of `root`."""
-        total = np.zeros((*root.unity.shape, self.size, self.size))
-        for term in self.terms:
-            if term.order == order:
-                place = (..., self.fields[term.rows], self.fields[term.columns])
-                total[place] += term.coefficient(root)[..., None, None] * term.matrix
-        return total
+        return _sum_over_quantities(self.matrices[order], root, (self.size, self.size))
 
     def load(self, root: RootMotion) -> np.ndarray:
         """Right-hand side: shape (..., n) over the shape of `root`."""
-        total = np.zeros((*root.unity.shape, self.size))
-        for load in self.loads:
-            total[..., self.fields[load.rows]] += load.coefficient(root)[..., None] * load.vector
-        return total
+        return _sum_over_quantities(self.vectors, root, (self.size,))
 
-    def reduced(self, vectors: dict[str, np.ndarray]) -> Equations:
-        """The equations in fewer coordinates: for each field, q = vectors[field] @ q_reduced.
+    def steady(self) -> SteadyPencil:
+        """The equations as a pencil in the speed, about a fixed centre and without gravity."""
+        rest, turning = (root_motion(self.mount, MotionSample.steady(speed)) for speed in (0.0, 1.0))
+        C = self.matrix(1, rest)
+        # The stiffness per squared speed is summed apart from the far larger stiffness at rest.
+        moving: dict[Quantity, np.ndarray] = {
+            name: K for name, K in self.matrices[0].items() if name != "unity"
+        }
+        return SteadyPencil(
+            M=self.matrix(2, rest),
+            C=C,
+            G=self.matrix(1, turning) - C,
+            K0=self.matrix(0, rest),
+            K2=_sum_over_quantities(moving, turning, (self.size, self.size)),
+            f2=self.load(turning),
+        )
+
+    # Fewer coordinates ----------------------------------------------------------------------------
+
+    def reduced(self, shapes: Mapping[str, np.ndarray]) -> Equations:
+        """The equations in other coordinates: for each field, q = shapes[field] @ q_reduced.
 
         Parameters
         ----------
-        vectors : dict of str to ndarray, shape (n, m)
-            Shapes kept of each field: its modes at rest, for instance.
+        shapes : mapping of str to ndarray, shape (n, m)
+            The shapes of each field: its modes at rest, for instance.
 
         Returns
         -------
         Equations
         """
-        places, start = {}, 0
-        for name in self.fields:
-            places[name] = slice(start, start + vectors[name].shape[1])
-            start = places[name].stop
-        terms = (replace(t, matrix=vectors[t.rows].T @ t.matrix @ vectors[t.columns]) for t in self.terms)
-        loads = (replace(f, vector=vectors[f.rows].T @ f.vector) for f in self.loads)
-        return replace(self, fields=places, terms=tuple(terms), loads=tuple(loads))
-
-    def steady(self) -> SteadyPencil:
-        """The equations as a pencil in the speed, about a fixed centre and without gravity."""
-        rest, turning = (root_motion(self.mount, MotionSample.steady(speed)) for speed in (0.0, 1.0))
-        C, K0 = self.matrix(1, rest), self.matrix(0, rest)
-        return SteadyPencil(
-            M=self.matrix(2, rest),
-            C=C,
-            G=self.matrix(1, turning) - C,
-            K0=K0,
-            K2=self._per_squared_speed(turning),
-            f2=self.load(turning),
+        terms = (replace(t, matrix=shapes[t.rows].T @ t.matrix @ shapes[t.columns]) for t in self.terms)
+        loads = (replace(f, vector=shapes[f.rows].T @ f.vector) for f in self.loads)
+        return replace(
+            self,
+            blocks=_place_blocks({name: shapes[name].shape[1] for name in self.blocks}),
+            terms=tuple(terms),
+            loads=tuple(loads),
+            deflections={name: d.reduced(shapes[name]) for name, d in self.deflections.items()},
         )
 
-    def _per_squared_speed(self, turning: RootMotion) -> np.ndarray:
-        """Stiffness per squared speed, summed apart from the far larger stiffness at rest."""
-        moving = tuple(t for t in self.terms if t.quantity != "unity")
-        return replace(self, terms=moving).matrix(0, turning)
+
+def _sum_over_quantities(
+    parts: Mapping[Quantity, np.ndarray], root: RootMotion, shape: tuple[int, ...]
+) -> np.ndarray:
+    """Sum of quantity times matrix or vector, over the shape of the root's motion."""
+    total = np.zeros((*root.unity.shape, *shape))
+    for quantity, part in parts.items():
+        values = getattr(root, quantity)
+        total += values.reshape(*values.shape, *(1 for _ in shape)) * part
+    return total
 
 
-def equations(scene: Scene, operators: Operators) -> Equations:
-    """Equations of motion (13), (14) of Lee and Yoo (2019), corrected, with tip body and bending angle.
+def _place_blocks(sizes: Mapping[str, int]) -> dict[str, slice]:
+    """Consecutive places for the coordinates of the fields."""
+    blocks, start = {}, 0
+    for name, size in sizes.items():
+        blocks[name] = slice(start, start := start + size)
+    return blocks
+
+
+def assemble_equations(scene: Scene, discretization: Discretization) -> Equations:
+    """Assemble the equations of motion of a scene, field by field.
 
     Parameters
     ----------
     scene : Scene
-        Mount, damping and gravity.
-    operators : Operators
-        The discretized beam.
+        Beam, mount, damping and gravity.
+    discretization : Discretization
+        Ritz functions or finite elements.
 
     Returns
     -------
     Equations
-        Terms whose factor is zero in the scene are left out.
+        Terms whose factor or matrix is zero in the scene are left out.
     """
-    n = len(operators.bending.P)
-    fields = {"bending": slice(0, n)}
-    terms, loads = [*_bending_terms(scene, operators)], [*_bending_loads(scene, operators)]
-    if operators.stretch is not None:
-        fields["stretch"] = slice(n, n + len(operators.stretch.P))
-        terms += _stretch_terms(scene, operators)
-        loads += _stretch_loads(operators)
-    kept = tuple(t for t in terms if t.factor and t.matrix.any())
-    return Equations(fields, kept, tuple(f for f in loads if f.factor), scene.mount, scene.gravity, operators)
-
-
-def _bending_terms(scene: Scene, operators: Operators) -> Iterator[Term]:
-    op, b = operators.bending, "bending"
-    c, s = _cos_sin(scene.mount.bending_angle)
-    yield Term("mass", b, b, 2, op.M)
-    yield Term("bending stiffness", b, b, 0, op.KB)
-    yield Term("centrifugal stiffening", b, b, 0, op.KGB, "speed_squared")
-    yield Term("spin softening", b, b, 0, op.S, "speed_squared", -(c**2))
-    yield Term("spin of the tip body", b, b, 0, op.J, "speed_squared", s**2)
-    yield Term("tension by root acceleration", b, b, 0, op.KGA, "root_axial", -1.0)
-    if scene.damping_ratio:
-        yield Term("damping", b, b, 1, modal_damping(op.M, op.KB), factor=scene.damping_ratio)
-
-
-def _bending_loads(scene: Scene, operators: Operators) -> Iterator[Load]:
-    op = operators.bending
-    c, _ = _cos_sin(scene.mount.bending_angle)
-    yield Load("angular acceleration", "bending", op.Q, "acceleration", c)
-    yield Load("root acceleration", "bending", op.P, "root_transverse", -1.0)
-
-
-def _stretch_terms(scene: Scene, operators: Operators) -> Iterator[Term]:
-    op, b, s = operators.stretch, "bending", "stretch"
-    assert op is not None
-    c, _ = _cos_sin(scene.mount.bending_angle)
-    yield Term("stretch mass", s, s, 2, op.M)
-    yield Term("axial stiffness", s, s, 0, op.KS)
-    yield Term("axial spin softening", s, s, 0, op.M, "speed_squared", -1.0)
-    yield Term("Coriolis coupling of stretch", s, b, 1, op.M12, "speed", 2 * c)
-    yield Term("Coriolis coupling of bending", b, s, 1, op.M12.T, "speed", -2 * c)
-    yield Term("Euler coupling of stretch", s, b, 0, op.M12, "acceleration", c)
-    yield Term("Euler coupling of bending", b, s, 0, op.M12.T, "acceleration", -c)
-    if scene.damping_ratio:
-        yield Term("axial damping", s, s, 1, modal_damping(op.M, op.KS), factor=scene.damping_ratio)
-
-
-def _stretch_loads(operators: Operators) -> Iterator[Load]:
-    op = operators.stretch
-    assert op is not None
-    yield Load("centrifugal stretching", "stretch", op.Q, "speed_squared")
-    yield Load("axial root acceleration", "stretch", op.P, "root_axial", -1.0)
-
-
-def modal_damping(M: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Damping matrix that gives each mode of (K, M) a damping ratio of 1 [kg/s].
-
-    C = 2 L (L^-1 M L^-T)^(1/2) L^T with K = L L^T.
-    """
-    L = np.linalg.cholesky(K)
-    compliance = scipy.linalg.solve_triangular(
-        L, scipy.linalg.solve_triangular(L, M, lower=True).T, lower=True
+    spaces = discretization.spaces(scene.beam)
+    parts = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
+    return Equations(
+        blocks=_place_blocks({name: part.size for name, part in parts.items()}),
+        terms=tuple(t for part in parts.values() for t in part.terms if t.factor and t.matrix.any()),
+        loads=tuple(f for part in parts.values() for f in part.loads if f.factor),
+        mount=scene.mount,
+        gravity=scene.gravity,
+        deflections={name: part.deflection for name, part in parts.items() if part.deflection is not None},
     )
-    mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
-    root = (U * np.sqrt(np.maximum(mu, 0))) @ U.T
-    return 2 * L @ root @ L.T

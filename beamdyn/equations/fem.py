@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
-from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, MeshLine
+from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
 from beamdyn.common.checks import count
 from beamdyn.scene.beam import Beam
@@ -16,6 +16,8 @@ from beamdyn.scene.profile import Profile
 MOST_ELEMENTS = 1000
 _ENOUGH = 100
 _GRADING = 3.0
+# Continuous values and slopes, or values, by the number of derivatives that vanish at the root.
+_ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
 
 
 @dataclass(frozen=True)
@@ -61,12 +63,9 @@ class Fem:
         return nodes
 
     def spaces(self, beam: Beam) -> FemSpaces:
-        """The spaces for a beam."""
-        mesh = MeshLine(self.nodes(beam))
+        """The function spaces on a beam."""
         order = 6 + min(8, max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree))
-        # a new element for each basis: ElementLineHermite keeps the matrix of the first mesh it meets
-        bending = Basis(mesh, ElementLineHermite(), intorder=order)
-        return FemSpaces(FemSpace(bending, 2), FemSpace(Basis(mesh, ElementLineP2(), intorder=order), 1))
+        return FemSpaces(MeshLine(self.nodes(beam)), order)
 
     def coarser(self) -> Fem:
         """Half as many elements."""
@@ -110,15 +109,29 @@ def _share(total: int, lengths: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class FemSpaces:
-    """The two spaces over one mesh."""
+    """The spaces of one mesh, over one quadrature rule.
 
-    bending: FemSpace
-    stretch: FemSpace
+    Parameters
+    ----------
+    mesh : skfem.Mesh
+        Nodes x/L.
+    order : int
+        Polynomial degree that the quadrature integrates exactly.
+    """
 
-    def coupling(self, weight: Profile) -> np.ndarray:
-        """Integrals of weight times stretch function i and bending function j."""
-        u, s = self.bending, self.stretch
-        return _product.assemble(u.basis, s.basis, weight=u.weights(weight)).toarray()[np.ix_(s.free, u.free)]
+    mesh: Mesh
+    order: int
+
+    def functions(self, held: int) -> FemSpace:
+        """Functions whose derivatives 0 ... held - 1 vanish at the root: 2 clamped, 1 fixed."""
+        # a new element for each basis: ElementLineHermite keeps the matrix of the first mesh it meets
+        return FemSpace(Basis(self.mesh, _ELEMENTS[held](), intorder=self.order), held)
+
+    def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
+        """Integrals of weight times function i of ``functions(rows)`` and j of ``functions(columns)``."""
+        first, second = self.functions(rows), self.functions(columns)
+        matrix = _product.assemble(second.basis, first.basis, weight=first.weights(weight))
+        return matrix.toarray()[np.ix_(first.free, second.free)]
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from itertools import pairwise
 from typing import Literal
 
@@ -56,8 +56,8 @@ class Ritz:
         return 0.0
 
     def spaces(self, beam: Beam) -> RitzSpaces:
-        """The spaces for a beam."""
-        return _spaces(self, tuple(beam.breakpoints), self._points(beam))
+        """The function spaces on a beam."""
+        return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
         """Gauss points a segment: exact for Legendre bases, past resolution for eigenfunctions."""
@@ -83,15 +83,30 @@ class Ritz:
 
 @dataclass(frozen=True)
 class RitzSpaces:
-    """The two spaces over one quadrature rule."""
+    """The spaces of one basis over one quadrature rule; made once each.
 
-    bending: RitzSpace
-    stretch: RitzSpace
+    Parameters
+    ----------
+    ritz : Ritz
+        The basis.
+    breakpoints : tuple of float
+        Ends of the segments.
+    count : int
+        Gauss points on each segment.
+    """
 
-    def coupling(self, weight: Profile) -> np.ndarray:
-        """Integrals of weight times stretch function i and bending function j."""
-        s, u = self.stretch, self.bending
-        return (s.samples[0] * s.weights(weight)) @ u.samples[0].T
+    ritz: Ritz
+    breakpoints: tuple[float, ...]
+    count: int
+
+    def functions(self, held: int) -> RitzSpace:
+        """Functions whose derivatives 0 ... held - 1 vanish at the root: 2 clamped, 1 fixed."""
+        return _make_space(self, held)
+
+    def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
+        """Integrals of weight times function i of ``functions(rows)`` and j of ``functions(columns)``."""
+        first, second = self.functions(rows), self.functions(columns)
+        return (first.samples[0] * first.weights(weight)) @ second.samples[0].T
 
 
 @dataclass(frozen=True)
@@ -149,15 +164,10 @@ class RitzSpace:
         return self.evaluation(np.asarray(xi, dtype=float), order)
 
 
-@lru_cache(maxsize=64)  # beams differ in their properties, seldom in these: half the time of a small model
-def _spaces(ritz: Ritz, breakpoints: tuple[float, ...], points: int) -> RitzSpaces:
-    bending, stretch = _BASES[ritz.basis]
-    edges = np.array(breakpoints)
-    rule = _rule(edges, points)
-    return RitzSpaces(
-        bending=RitzSpace(bending(ritz.functions, edges), *rule, orders=2),
-        stretch=RitzSpace(stretch(ritz.functions, edges), *rule, orders=1),
-    )
+@lru_cache(maxsize=128)  # beams differ in their properties, seldom in these: half the time of a small model
+def _make_space(spaces: RitzSpaces, held: int) -> RitzSpace:
+    evaluation, edges = _BASES[spaces.ritz.basis][held], np.array(spaces.breakpoints)
+    return RitzSpace(evaluation(spaces.ritz.functions, edges), *_rule(edges, spaces.count), orders=held)
 
 
 def _rule(edges: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -208,14 +218,6 @@ def _integrals(n: int, integrations: int) -> np.ndarray:
     return legendre.legint(_integrals(n, integrations - 1), lbnd=-1)
 
 
-def _legendre_bending(functions: int, edges: np.ndarray) -> Evaluation:
-    return _integrated_legendre(functions, edges, 2)
-
-
-def _legendre_stretch(functions: int, edges: np.ndarray) -> Evaluation:
-    return _integrated_legendre(functions, edges, 1)
-
-
 # Eigenfunctions of the uniform beam at rest -------------------------------------------------------
 
 
@@ -256,7 +258,11 @@ def _clamped_free_rod(functions: int, edges: np.ndarray) -> Evaluation:
     return evaluation
 
 
+# For each basis, by the number of derivatives that vanish at the root.
 _BASES = {
-    "legendre": (_legendre_bending, _legendre_stretch),
-    "eigenfunctions": (_clamped_free, _clamped_free_rod),
+    "legendre": {
+        2: partial(_integrated_legendre, integrations=2),
+        1: partial(_integrated_legendre, integrations=1),
+    },
+    "eigenfunctions": {2: _clamped_free, 1: _clamped_free_rod},
 }

@@ -10,7 +10,8 @@ import numpy as np
 from beamdyn.published import load
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import RoadWave, RollingWheel, SpinUp
-from beamdyn.scene.scene import Mount, Scene
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
 
 PAPER, OWN = "paper", "independent (5)"
 TOP = 150.0  # rad/s: Fig. 6 ends here; Fig. 8 and 9 do not say where they end

@@ -14,7 +14,8 @@ from beamdyn.common.edge.tables import table
 from beamdyn.published import load
 from beamdyn.reproduce.common import decimals
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.scene import Mount, Scene
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import critical_point
 from beamdyn.spectrum.modes import natural_modes
 

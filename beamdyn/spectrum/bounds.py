@@ -49,17 +49,20 @@ from numpy.polynomial import legendre
 from beamdyn._version import __version__
 from beamdyn.common.checks import count, real
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.equations_of_motion import SteadyPencil, root_motion
-from beamdyn.equations.operators import Space, tension
+from beamdyn.equations.discretization import Space
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.fields.bending import HELD
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.equations.root_motion import root_motion
+from beamdyn.equations.tension import axial_tension
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import check_speeds
 
 _EPS = float(np.finfo(float).eps)
-_FASTEST = 1e50  # rad/s: its fourth power is still far from overflow
 _LARGEST = 500  # functions on all segments together: an eigenproblem of a tenth of a second
 _SHARP = 1e-11  # relative width of the squares that is not worth improving
 _TRIES = 12
@@ -152,8 +155,7 @@ def _check(scene: Scene, speed: float, modes: int) -> None:
             f"stretch = {scene.stretch}, damping_ratio = {scene.damping_ratio:g}: bounds are known for "
             "undamped bending only; give dataclasses.replace(scene, stretch=False, damping_ratio=0.0)"
         )
-    if abs(speed) > _FASTEST:
-        raise ValueError(f"speed = {speed:g} rad/s: give at most {_FASTEST:g} rad/s either way")
+    check_speeds(np.array([speed]))
     most = _most(scene.beam) * (len(scene.beam.breakpoints) - 1)
     if modes > most:
         raise ValueError(
@@ -280,7 +282,7 @@ class Split:
         self.scene, self.speed, self.flexibility = scene, speed, flexibility
         larger = functions + _more(scene.beam)
         segments = len(scene.beam.breakpoints) - 1
-        space = Ritz(larger).spaces(scene.beam).bending
+        space = Ritz(larger).spaces(scene.beam).functions(HELD)
         self.stiffness = space.gram(scene.beam.bending_stiffness, 2)
         self.parts = _parts(scene.beam, space)
         self.head = np.flatnonzero(np.tile(np.arange(larger) < functions, segments))
@@ -371,7 +373,7 @@ class Split:
 def _parts(beam: Beam, space: Space) -> np.ndarray:
     """The forms P1 ... P4: shape (4, n, n)."""
     tip = beam.tip or TipMass(0.0)
-    n_a, n_b = tension(beam)
+    n_a, n_b = axial_tension(beam)
     slope = space.end(1)
     path = space.end(0) + tip.offset * slope
     inertia = space.gram(beam.mass_per_length, 0) + tip.mass * np.outer(path, path)
@@ -401,7 +403,7 @@ def _traces(beam: Beam, flexibility: Profile) -> np.ndarray:
     int_s^1 (x - s)^2 rho A dx is twice the threefold one.
     """
     tip = beam.tip or TipMass(0.0)
-    n_a, n_b = tension(beam)
+    n_a, n_b = axial_tension(beam)
     moment = beam.mass_per_length.outboard_integral().outboard_integral().outboard_integral().scaled(2.0)
     arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # 1 - s + eps
     loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)

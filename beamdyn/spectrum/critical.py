@@ -15,11 +15,18 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import positive, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.operators import Discretization
+from beamdyn.modal.choice import (
+    DEFAULT_TARGET,
+    TOLERANCES,
+    DiscretizationChoice,
+    choose_model,
+    warn_of_missed_tolerance,
+)
 from beamdyn.modal.eigen import Solver
-from beamdyn.modal.error_estimate import TARGET, TOLERANCES, Model, choose, missed
+from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.modes import LARGE_DEFLECTION, static_load
+from beamdyn.scene.validity import LARGE_DEFLECTION
+from beamdyn.spectrum.modes import static_load
 
 _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
 
@@ -49,7 +56,7 @@ class CriticalPoint(Result):
 
 
 def critical_speed(
-    scene: Scene, discretization: str | Discretization = "ritz", tolerance: float | None = None
+    scene: Scene, discretization: DiscretizationChoice = "ritz", tolerance: float | None = None
 ) -> float:
     """Speed at which the beam buckles dynamically [rad/s]; inf if there is none.
 
@@ -73,7 +80,7 @@ def critical_speed(
 
 
 def critical_point(
-    scene: Scene, discretization: str | Discretization = "ritz", tolerance: float | None = None
+    scene: Scene, discretization: DiscretizationChoice = "ritz", tolerance: float | None = None
 ) -> CriticalPoint:
     """The critical speed with its error: the lowest speed whose stiffness K0 + omega^2 K2 is singular.
 
@@ -91,8 +98,8 @@ def critical_point(
     CriticalPoint
     """
     start = perf_counter()
-    target = TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-    model = choose(scene, discretization, np.zeros(1), 1, target, cheapest=tolerance is not None)
+    target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    model = choose_model(scene, discretization, np.zeros(1), 1, target, cheapest=tolerance is not None)
     while True:
         speed, error = _critical(model)
         finer = None if not isinstance(discretization, str) else model.discretization.finer()
@@ -100,7 +107,7 @@ def critical_point(
             break
         model = Model(scene, finer)
     names = str(model.discretization), str(model.coarser.discretization)
-    texts = () if tolerance is None else tuple(missed(error, target))
+    texts = () if tolerance is None else tuple(warn_of_missed_tolerance(error, target))
     return CriticalPoint(
         speed, error, texts, Provenance(__version__, *names, wall_time=perf_counter() - start)
     )
@@ -158,7 +165,7 @@ class SettingAngleLimits(Result):
 
 
 def setting_angle_limits(
-    scene: Scene, top_speed: float, discretization: str | Discretization = "ritz"
+    scene: Scene, top_speed: float, discretization: DiscretizationChoice = "ritz"
 ) -> SettingAngleLimits:
     """Setting angles at which the first frequency stops falling, and starts rising up to the top speed.
 
@@ -190,7 +197,7 @@ def setting_angle_limits(
     scene = replace(scene, damping_ratio=0.0, stretch=False)
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
-    model = choose(tangential, discretization, speeds, 1)
+    model = choose_model(tangential, discretization, speeds, 1)
     first, second = _limits(model, top_speed)
     coarse = model.coarser
     rough = _limits(coarse, top_speed)
@@ -210,8 +217,9 @@ def setting_angle_limits(
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
     """Both limits from the parts of the stiffness per squared speed, K2 = A - cos(phi) r KGA."""
-    pencil, bending = tangential.solver.pencil, tangential.equations.operators.bending
-    A, B = pencil.K2, tangential.scene.mount.radius * bending.KGA
+    pencil, stiffness = tangential.solver.pencil, tangential.equations.matrices[0]
+    by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))  # - KGA
+    A, B = pencil.K2, -tangential.scene.mount.radius * by_tension
     v = tangential.solver.solve(np.zeros(1), 1).vector[0, :, 0]
     first = _arccos(float(v @ A @ v), float(v @ B @ v))
     if np.isinf(top_speed):

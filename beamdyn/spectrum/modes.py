@@ -14,17 +14,22 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.operators import Discretization, tension
-from beamdyn.modal.error_estimate import TOLERANCES, Estimated, Model, missed, solved
+from beamdyn.equations.tension import axial_tension
+from beamdyn.modal.choice import (
+    TOLERANCES,
+    DiscretizationChoice,
+    solve_to_tolerance,
+    warn_of_missed_tolerance,
+)
+from beamdyn.modal.error_estimate import EstimatedModes
+from beamdyn.modal.model import Model
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_FASTEST = 1e50  # rad/s: its fourth power is still far from overflow
-_LARGE_STRAIN = 0.01
-LARGE_DEFLECTION = 0.1  # of the length: the limit of linear theory
 _CANDIDATES = 2  # modes above the wanted ones that tracking may exchange with them
 
 
@@ -87,8 +92,7 @@ class Modes(Result):
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
-        bending = self.model.equations.operators.bending
-        return self.vectors[: len(bending.P)].T @ bending.space.evaluate(np.minimum(xi, 1.0))
+        return self.vectors.T @ self.model.equations.deflection(np.minimum(xi, 1.0))
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
@@ -119,7 +123,7 @@ def natural_modes(
     scene: Scene,
     speed: float = 0.0,
     modes: int = 3,
-    discretization: str | Discretization = "ritz",
+    discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Modes:
     """Natural modes at a steady speed, about a fixed centre.
@@ -148,50 +152,42 @@ def natural_modes(
         If an argument is out of its range.
     """
     start = perf_counter()
-    speeds, modes = _bounded(np.array([real("speed", speed, "rad/s")])), count("modes", modes)
-    found = solved(scene, discretization, speeds, modes, tolerance := _allowed(tolerance))
-    s, vectors = found.eigen.eigenvalue[0], _tip_positive(found.model, found.eigen.vector[0])
-    bending = found.model.equations.operators.bending
-    part = vectors[: len(bending.P)]
-    status = _status(s)
-    deflection, strain = static_load(found.model, speeds)
+    speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
+    check_speeds(speeds)
+    tolerance = _check_tolerance(tolerance)
+    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
+    equations, s = solution.model.equations, solution.eigen.eigenvalue[0]
+    vectors, status = _with_positive_tip(equations.tip, solution.eigen.vector[0]), _status(s)
+    deflection, strain = static_load(solution.model, speeds)
+    warnings = _warnings(scene, speeds, deflection, strain, solution.error, status[None], tolerance)
     return Modes(
         speed=float(speed),
         frequency=_frequency(s, status),
-        error=found.error[0],
+        error=solution.error[0],
         growth_rate=np.real(s) + 0.0,
         status=status,
         eigenvalue=s,
-        tip=np.real(bending.space.end(0) @ part),
-        load=np.real(bending.P @ part),
-        angular_load=np.real(bending.Q @ part),
+        tip=np.real(equations.tip @ vectors),
+        load=np.real(equations.P @ vectors),
+        angular_load=np.real(equations.Q @ vectors),
         static_deflection=float(deflection[0]),
         axial_strain=float(strain[0]),
-        warnings=tuple(_warnings(scene, speeds, deflection, strain, found.error, status[None], tolerance)),
-        provenance=_provenance(found, start),
+        warnings=tuple(warnings),
+        provenance=_provenance(solution, start),
         scene=scene,
         vectors=vectors,
-        model=found.model,
+        model=solution.model,
     )
 
 
-def _bounded(speeds: np.ndarray) -> np.ndarray:
-    if np.abs(speeds).max() > _FASTEST:
-        raise ValueError(
-            f"speed = {speeds[np.abs(speeds).argmax()]:g} rad/s: give at most {_FASTEST:g} rad/s either way"
-        )
-    return speeds
-
-
-def _allowed(tolerance: float | None) -> float | None:
+def _check_tolerance(tolerance: float | None) -> float | None:
     return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
 
 
-def _tip_positive(model: Model, vectors: np.ndarray) -> np.ndarray:
-    """Turn the phase of each vector so that its tip deflection is real and positive."""
-    bending = model.equations.operators.bending
-    tip = bending.space.end(0) @ vectors[: len(bending.P)]
-    phase = np.where(tip == 0, 1.0, tip / np.abs(np.where(tip == 0, 1.0, tip)))
+def _with_positive_tip(tip: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """The vectors with a phase for which their tip deflection is real and positive."""
+    deflection = tip @ vectors
+    phase = np.where(deflection == 0, 1.0, deflection / np.abs(np.where(deflection == 0, 1.0, deflection)))
     return vectors / phase
 
 
@@ -225,15 +221,14 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
         Largest static axial strain; nan if the axial stiffness is not given.
     """
     solver, beam, mount = model.solver, model.scene.beam, model.scene.mount
-    bending = model.equations.operators.bending
     stiffness = 1 + speeds[:, None] ** 2 * solver.growth
     with np.errstate(divide="ignore", invalid="ignore"):
         q = (solver.basis.T @ solver.pencil.f2) * speeds[:, None] ** 2 / stiffness
-    tip = q @ (solver.basis[: len(bending.P)].T @ bending.space.end(0))
+    tip = q @ (solver.basis.T @ model.equations.tip)
     deflection = np.where(stiffness.min(axis=1) > 0, tip, np.nan)
     if beam.axial_stiffness is None:
         return deflection, np.full(len(speeds), np.nan)
-    n_a, n_b = tension(beam)
+    n_a, n_b = axial_tension(beam)
     xi = np.linspace(0, 1, 101)
     force = n_b(xi) - np.cos(mount.setting_angle) * mount.radius * n_a(xi)
     return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
@@ -252,26 +247,16 @@ def _warnings(
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
         yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
-    if strain.max(initial=0) > _LARGE_STRAIN:
-        yield f"static axial strain reaches {strain.max():.2g}: above 1 % stretch is not negligible"
-    bent = np.abs(deflection) > LARGE_DEFLECTION * scene.beam.length
-    if bent.any():
-        yield _bent(scene, speeds[bent][0], deflection[bent][0])
+    yield from warn_of_strain(strain.max(initial=0))
+    yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
     if tolerance is not None:
-        yield from missed(error.max(), tolerance)
+        yield from warn_of_missed_tolerance(error.max(), tolerance)
     elif error.max() > 1e-6:
         yield f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
 
 
-def _bent(scene: Scene, speed: float, deflection: float) -> str:
-    return (
-        f"at {speed:.6g} rad/s the rotation bends the tip by {abs(deflection) / scene.beam.length:.2g} of "
-        "the length: past 0.1 the answer is outside linear theory"
-    )
-
-
-def _provenance(found: Estimated, start: float) -> Provenance:
-    names = str(found.model.discretization), str(found.coarse.discretization)
+def _provenance(solution: EstimatedModes, start: float) -> Provenance:
+    names = str(solution.model.discretization), str(solution.coarse.discretization)
     return Provenance(__version__, *names, wall_time=perf_counter() - start)
 
 
@@ -333,7 +318,7 @@ def frequency_locus(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],
     modes: int = 3,
-    discretization: str | Discretization = "ritz",
+    discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Locus:
     """Natural frequencies over speed, all speeds in one batch.
@@ -361,13 +346,15 @@ def frequency_locus(
         If an argument is out of its range.
     """
     start = perf_counter()
-    speeds, modes = _bounded(ascending("speeds", speeds)), count("modes", modes)
-    found = solved(scene, discretization, speeds, modes, tolerance := _allowed(tolerance), _CANDIDATES)
-    order, confidence = track(found.eigen.vector, found.model.solver.pencil.M)
-    s = np.take_along_axis(found.eigen.eigenvalue, order, axis=1)[:, :modes]
-    error = _tracked_error(found, order[:, :modes])
+    speeds, modes = ascending("speeds", speeds), count("modes", modes)
+    check_speeds(speeds)
+    tolerance = _check_tolerance(tolerance)
+    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _CANDIDATES)
+    order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
+    s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]
+    error = _track_error(solution, order[:, :modes])
     status = _status(s)
-    deflection, strain = static_load(found.model, speeds)
+    deflection, strain = static_load(solution.model, speeds)
     return Locus(
         speeds=speeds,
         frequency=_frequency(s, status),
@@ -379,14 +366,14 @@ def frequency_locus(
         static_deflection=deflection,
         axial_strain=strain,
         warnings=tuple(_warnings(scene, speeds, deflection, strain, error, status, tolerance)),
-        provenance=_provenance(found, start),
+        provenance=_provenance(solution, start),
         scene=scene,
     )
 
 
-def _tracked_error(found: Estimated, order: np.ndarray) -> np.ndarray:
+def _track_error(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
     """Errors in tracked order; a mode from above the compared ones gets the largest error of its speed."""
-    compared = found.error.shape[1]
-    beyond = np.repeat(found.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
-    beyond[:, :compared] = found.error[:, : beyond.shape[1]]
+    compared = solution.error.shape[1]
+    beyond = np.repeat(solution.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
+    beyond[:, :compared] = solution.error[:, : beyond.shape[1]]
     return np.take_along_axis(beyond, order, axis=1)

@@ -9,14 +9,14 @@ import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
-from beamdyn.steady.harmonic_balance import Pair, TorusSystem, resolved, spectrum
+from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, fourier_coefficients, is_resolved
 
-_ASKED = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")  # of a motion
+_STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")  # of a motion
 _GRIDS = (8, 16, 32, 64)  # samples of each phase: the coefficients are trigonometric polynomials
 
 
-def torus_system(equations: Equations, motion: Motion | None, speeds: np.ndarray) -> TorusSystem:
-    """The equations of motion at steady speeds, with their coefficients as harmonics of the two phases.
+def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndarray) -> PeriodicSystem:
+    """Expand the equations of motion at steady speeds in harmonics of the two phases.
 
     Parameters
     ----------
@@ -29,30 +29,31 @@ def torus_system(equations: Equations, motion: Motion | None, speeds: np.ndarray
 
     Returns
     -------
-    TorusSystem
+    PeriodicSystem
 
     Raises
     ------
     ValueError
-        If nothing is known of the motion's steady state, or it is not smooth on the torus.
+        If nothing is known of the motion's steady state, or it is not smooth in the phases.
     """
-    motion = known_steady(motion)
-    spectra = _spectra(equations, motion, speeds)
+    motion = check_steady_state(motion)
+    spectra = _expand_quantities(equations, motion, speeds)
     mean = np.zeros((3, len(speeds), equations.size, equations.size))
     varying = []
-    for (order, quantity), matrix in _matrices(equations).items():
-        mean[order] += np.real(spectra[quantity][:, :1, :1]) * matrix
-        if (turning := _without_mean(spectra[quantity])).any():
-            varying.append((order, turning, matrix))
-    loads = tuple((spectra[quantity], vector) for quantity, vector in _vectors(equations).items())
+    for order, matrices in enumerate(equations.matrices):
+        for quantity, matrix in matrices.items():
+            mean[order] += np.real(spectra[quantity][:, :1, :1]) * matrix
+            if (periodic := _without_mean(spectra[quantity])).any():
+                varying.append((order, periodic, matrix))
+    loads = tuple((spectra[quantity], vector) for quantity, vector in equations.vectors.items())
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
-    return TorusSystem(rates, mean, tuple(varying), loads)
+    return PeriodicSystem(rates, mean, tuple(varying), loads)
 
 
-def known_steady(motion: Motion | None) -> Motion:
-    """The motion, if its steady state is known."""
+def check_steady_state(motion: Motion | None) -> Motion:
+    """The motion, or a ValueError if its steady state is not known; None is rotation about a fixed centre."""
     motion = SteadyRotation(0.0) if motion is None else motion
-    missing = [n for n in _ASKED if not hasattr(motion, n)]
+    missing = [n for n in _STEADY_STATE if not hasattr(motion, n)]
     if missing:
         raise ValueError(
             f"motion: {type(motion).__name__} has no {', '.join(missing)}, so that its steady state is not "
@@ -61,7 +62,7 @@ def known_steady(motion: Motion | None) -> Motion:
     return motion
 
 
-def _spectra(equations: Equations, motion: Motion, speeds: np.ndarray) -> dict[str, np.ndarray]:
+def _expand_quantities(equations: Equations, motion: Motion, speeds: np.ndarray) -> dict[str, np.ndarray]:
     """Harmonics (S, N, N) of every quantity of the root's motion that the equations use."""
     used = {part.quantity for part in (*equations.terms, *equations.loads)}
     for N in _GRIDS:
@@ -69,8 +70,8 @@ def _spectra(equations: Equations, motion: Motion, speeds: np.ndarray) -> dict[s
         angle, road, omega = np.broadcast_arrays(phase[:, None], phase, speeds[:, None, None])
         carrier = motion.steady_acceleration(omega, angle, road)
         root = equations.root(MotionSample(angle, omega, np.zeros(omega.shape), carrier))
-        spectra = {name: spectrum(getattr(root, name)) for name in used}
-        if all(map(resolved, spectra.values())):
+        spectra = {name: fourier_coefficients(getattr(root, name)) for name in used}
+        if all(map(is_resolved, spectra.values())):
             return spectra
     raise ValueError(
         f"motion: its steady acceleration has more than {_GRIDS[-1] // 4} harmonics; "
@@ -78,31 +79,13 @@ def _spectra(equations: Equations, motion: Motion, speeds: np.ndarray) -> dict[s
     )
 
 
-def _without_mean(found: np.ndarray) -> np.ndarray:
-    found = found.copy()
-    found[:, 0, 0] = 0
-    return found
+def _without_mean(spectrum: np.ndarray) -> np.ndarray:
+    spectrum = spectrum.copy()
+    spectrum[:, 0, 0] = 0
+    return spectrum
 
 
-def _matrices(equations: Equations) -> dict[tuple[int, str], np.ndarray]:
-    """The terms' matrices, summed for each order and quantity."""
-    total: dict[tuple[int, str], np.ndarray] = {}
-    for term in equations.terms:
-        matrix = total.setdefault((term.order, term.quantity), np.zeros((equations.size, equations.size)))
-        matrix[equations.fields[term.rows], equations.fields[term.columns]] += term.factor * term.matrix
-    return total
-
-
-def _vectors(equations: Equations) -> dict[str, np.ndarray]:
-    """The loads' vectors, summed for each quantity."""
-    total: dict[str, np.ndarray] = {}
-    for load in equations.loads:
-        vector = total.setdefault(load.quantity, np.zeros(equations.size))
-        vector[equations.fields[load.rows]] += load.factor * load.vector
-    return total
-
-
-def excited_line(motion: Motion, harmonic: Pair) -> Line:
+def name_line(motion: Motion, harmonic: Pair) -> Line:
     """The line of a harmonic, by the motion's own name where it has one."""
     multiple = abs(harmonic[0] + harmonic[1] * (motion.road_multiple or 0.0))
     for line in motion.lines:

@@ -1,13 +1,13 @@
-"""Harmonic balance of linear equations whose coefficients turn with two phases.
+"""Harmonic balance of linear equations whose coefficients are periodic in two phases.
 
     M q'' + C(theta, chi) q' + K(theta, chi) q = f(theta, chi),   theta' = nu_1,  chi' = nu_2
 
-The response q = sum_h q_h exp(i (j theta + k chi)), h = (j, k), lives on the torus of the two phases;
+The response q = sum_h q_h exp(i (j theta + k chi)), h = (j, k), is a function of the two phases;
 d/dt becomes i Omega_h with Omega_h = j nu_1 + k nu_2.  Whether nu_1 / nu_2 is rational does not matter:
-the torus holds the responses for every difference of phase at once.  The coefficients are
+it holds the responses for every phase difference at once.  The coefficients are
 trigonometric polynomials, so that a few samples and an FFT give their harmonics exactly.
 
-Which harmonics are kept follows from the equations: those of the load, then those that the turning
+Which harmonics are kept follows from the equations: those of the load, then those that the periodic
 coefficients make of them in one interaction, in two, and so on.
 """
 
@@ -23,15 +23,15 @@ Pair = tuple[int, int]  # a harmonic (j, k)
 _EPS = np.finfo(float).eps
 _NEUTRAL = 1e-9  # real part, relative to the largest eigenvalue, below which it is rounding
 _SHARE = 0.1  # of a vector, that is 0.5 in a tongue of two modes and near 1 outside
-_PEAKS = 6  # largest maxima of the samples on the torus, from which the largest is refined
+_PEAKS = 6  # largest maxima of the samples over the phases, from which the largest is refined
 _REFINEMENTS = 4  # Newton steps; the error of a sample is squared by each
 
 
-# Equations on the torus ---------------------------------------------------------------------------
+# Equations over the phases ------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
-class TorusSystem:
+class PeriodicSystem:
     """Equations with their coefficients as harmonics, for a batch of S pairs of rates.
 
     A spectrum has the shape (S, N, N): the harmonic (j, k) stands at [:, j, k], as numpy's FFT has it.
@@ -41,9 +41,9 @@ class TorusSystem:
     rates : ndarray, shape (S, 2)
         Rates nu_1, nu_2 of the phases [rad/s].
     mean : ndarray, shape (3, S, n, n)
-        Parts of K, C and M that do not turn, in this order.
+        Constant parts of K, C and M, in this order.
     varying : tuple of (int, ndarray, ndarray)
-        Parts that turn: the order of the derivative (0 or 1), a spectrum, its matrix (n, n).
+        Periodic parts: the order of the derivative (0 or 1), a spectrum, its matrix (n, n).
     loads : tuple of (ndarray, ndarray)
         Parts of the load: a spectrum, its vector (n,).
     """
@@ -53,9 +53,9 @@ class TorusSystem:
     varying: tuple[tuple[int, np.ndarray, np.ndarray], ...]
     loads: tuple[tuple[np.ndarray, np.ndarray], ...]
 
-    def __getitem__(self, chosen: np.ndarray | slice) -> TorusSystem:
+    def __getitem__(self, chosen: np.ndarray | slice) -> PeriodicSystem:
         """The system at some of its rates."""
-        return TorusSystem(
+        return PeriodicSystem(
             self.rates[chosen],
             self.mean[:, chosen],
             tuple((order, spectrum[chosen], matrix) for order, spectrum, matrix in self.varying),
@@ -70,41 +70,41 @@ class TorusSystem:
     @property
     def forced(self) -> set[Pair]:
         """Harmonics of the load."""
-        return set().union(*(support(spectrum) for spectrum, _ in self.loads))
+        return set().union(*(list_harmonics(spectrum) for spectrum, _ in self.loads))
 
     @property
     def coupling(self) -> set[Pair]:
-        """Harmonics of the turning coefficients."""
-        return set().union(*(support(spectrum) for _, spectrum, _ in self.varying))
+        """Harmonics of the periodic coefficients."""
+        return set().union(*(list_harmonics(spectrum) for _, spectrum, _ in self.varying))
 
 
-def spectrum(samples: np.ndarray) -> np.ndarray:
+def fourier_coefficients(samples: np.ndarray) -> np.ndarray:
     """Harmonics of samples on an even grid of the two phases, of shape (S, N, N); rounding is set to 0."""
-    found = np.fft.fft2(samples) / (samples.shape[-1] * samples.shape[-2])
-    return np.where(np.abs(found) > 64 * _EPS * np.abs(samples).max(initial=0.0), found, 0)
+    spectrum = np.fft.fft2(samples) / (samples.shape[-1] * samples.shape[-2])
+    return np.where(np.abs(spectrum) > 64 * _EPS * np.abs(samples).max(initial=0.0), spectrum, 0)
 
 
-def resolved(found: np.ndarray) -> bool:
+def is_resolved(spectrum: np.ndarray) -> bool:
     """Whether a spectrum ends well before the highest harmonic that its grid can tell."""
-    high = np.abs(_indices(found)) > found.shape[-1] // 4
-    return not (found[:, high].any() or found[:, :, high].any())
+    high = np.abs(_indices(spectrum)) > spectrum.shape[-1] // 4
+    return not (spectrum[:, high].any() or spectrum[:, :, high].any())
 
 
-def support(found: np.ndarray) -> set[Pair]:
+def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
     """Harmonics (j, k) that are not 0 at every speed."""
-    index = _indices(found)
-    return {(int(index[a]), int(index[b])) for a, b in np.argwhere(found.any(axis=0))}
+    index = _indices(spectrum)
+    return {(int(index[a]), int(index[b])) for a, b in np.argwhere(spectrum.any(axis=0))}
 
 
-def _indices(found: np.ndarray) -> np.ndarray:
-    N = found.shape[-1]
+def _indices(spectrum: np.ndarray) -> np.ndarray:
+    N = spectrum.shape[-1]
     return (np.arange(N) + N // 2) % N - N // 2
 
 
 # Which harmonics to keep --------------------------------------------------------------------------
 
 
-def reach(start: Iterable[Pair], coupling: set[Pair], steps: int) -> list[list[Pair]]:
+def list_reached(start: Iterable[Pair], coupling: set[Pair], steps: int) -> list[list[Pair]]:
     """Harmonics that `start` becomes by interactions with the coupling.
 
     Parameters
@@ -112,7 +112,7 @@ def reach(start: Iterable[Pair], coupling: set[Pair], steps: int) -> list[list[P
     start : iterable of pair
         The harmonics at first, with the opposite of each.
     coupling : set of pair
-        The harmonics of the turning coefficients.
+        The harmonics of the periodic coefficients.
     steps : int
         How many interactions.
 
@@ -145,32 +145,32 @@ def _real_form(harmonics: list[Pair]) -> np.ndarray:
     return T
 
 
-def _picked(found: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+def _pick(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Entries of a spectrum at harmonics of shape (..., 2); 0 where its grid has no such harmonic."""
-    half = found.shape[-1] // 2
+    half = spectrum.shape[-1] // 2
     inside = (np.abs(pairs) < half).all(axis=-1)
     j, k = np.moveaxis(np.where(inside[..., None], pairs, 0), -1, 0)
-    return np.where(inside, found[:, j, k], 0)
+    return np.where(inside, spectrum[:, j, k], 0)
 
 
-def _toeplitz(found: np.ndarray, harmonics: list[Pair]) -> np.ndarray:
+def _toeplitz(spectrum: np.ndarray, harmonics: list[Pair]) -> np.ndarray:
     """Matrices (S, H, H) with the entry of harmonic h - h' at (h, h')."""
     h = np.array(harmonics)
-    return _picked(found, h[:, None] - h[None, :])
+    return _pick(spectrum, h[:, None] - h[None, :])
 
 
 # Forced response ----------------------------------------------------------------------------------
 
 
-def balance(system: TorusSystem, levels: list[list[Pair]]) -> tuple[np.ndarray, np.ndarray]:
+def solve_balance(system: PeriodicSystem, levels: list[list[Pair]]) -> tuple[np.ndarray, np.ndarray]:
     """Harmonics of the response, and of the response without the last level.
 
     Parameters
     ----------
-    system : TorusSystem
+    system : PeriodicSystem
         The equations at S pairs of rates.
     levels : list of list of pair
-        Harmonics to keep, as `reach` gives them; H in all.
+        Harmonics to keep, as `list_reached` gives them; H in all.
 
     Returns
     -------
@@ -180,15 +180,15 @@ def balance(system: TorusSystem, levels: list[list[Pair]]) -> tuple[np.ndarray, 
     harmonics = [h for level in levels for h in level]
     H, n = len(harmonics), system.size
     T = _real_form(harmonics)
-    A, b = _assembled(system, harmonics, T)
+    A, b = _assemble(system, harmonics, T)
     kept = n * (H - len(levels[-1])) if len(levels) > 1 else 0
     shorter = np.zeros_like(b)
-    shorter[:, :kept] = _solved(A[:, :kept, :kept], b[:, :kept])
-    return T @ _solved(A, b).reshape(-1, H, n), T @ shorter.reshape(-1, H, n)
+    shorter[:, :kept] = _solve(A[:, :kept, :kept], b[:, :kept])
+    return T @ _solve(A, b).reshape(-1, H, n), T @ shorter.reshape(-1, H, n)
 
 
-def _assembled(system: TorusSystem, harmonics: list[Pair], T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Real equations A y = b: K - Omega_h^2 M on the diagonal, i Omega_h C, and the turning coefficients."""
+def _assemble(system: PeriodicSystem, harmonics: list[Pair], T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Real equations A y = b: K - Omega_h^2 M on the diagonal, i Omega_h C, and the periodic coefficients."""
     h = np.array(harmonics)
     S, H, n = len(system.rates), len(h), system.size
     K, C, M = system.mean
@@ -200,29 +200,29 @@ def _assembled(system: TorusSystem, harmonics: list[Pair], T: np.ndarray) -> tup
     rate = np.einsum("sp,pab->sab", system.rates, D)
     if C.any():
         A += np.einsum("sab,sij->saibj", rate, C)
-    for order, found, matrix in system.varying:
-        R = np.real(T.conj().T @ _toeplitz(found, harmonics) @ T)
+    for order, spectrum, matrix in system.varying:
+        R = np.real(T.conj().T @ _toeplitz(spectrum, harmonics) @ T)
         A += np.einsum("sab,ij->saibj", R @ rate if order else R, matrix)
-    load = sum((_picked(f, h)[..., None] * vector for f, vector in system.loads), np.zeros((S, H, n)))
+    load = sum((_pick(f, h)[..., None] * vector for f, vector in system.loads), np.zeros((S, H, n)))
     return A.reshape(S, H * n, H * n), np.real(T.conj().T @ load).reshape(S, H * n)
 
 
-def _solved(A: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _solve(A: np.ndarray, b: np.ndarray) -> np.ndarray:
     try:
         return np.linalg.solve(A, b[..., None])[..., 0]
     except np.linalg.LinAlgError:
         if len(A) == 1:
             return np.full_like(b, np.nan)
-        return np.concatenate([_solved(A[i : i + 1], b[i : i + 1]) for i in range(len(A))])
+        return np.concatenate([_solve(A[i : i + 1], b[i : i + 1]) for i in range(len(A))])
 
 
 # Stability ----------------------------------------------------------------------------------------
 
 
-def growth(system: TorusSystem, interactions: int) -> np.ndarray:
+def growth_rate(system: PeriodicSystem, interactions: int) -> np.ndarray:
     """Largest rate of growth of a free motion [1/s], shape (S,); 0 or less where it is stable.
 
-    A free motion is exp(s t) times a function on the torus (Hill's method in two phases).  Where the
+    A free motion is exp(s t) times a function of the phases (Hill's method in two phases).  Where the
     ratio of the rates is irrational there is no period and no monodromy matrix, but the exponents s
     are still eigenvalues of the balance's operator, here in the modes of the mean equations:
 
@@ -239,26 +239,26 @@ def growth(system: TorusSystem, interactions: int) -> np.ndarray:
 
     Parameters
     ----------
-    system : TorusSystem
+    system : PeriodicSystem
         The equations.
     interactions : int
-        Interactions with the turning coefficients that are kept.
+        Interactions with the periodic coefficients that are kept.
 
     Returns
     -------
     ndarray, shape (S,)
     """
-    A, turning = _first_order(system)
+    A, periodic = _first_order(system)
     sigma, R = np.linalg.eig(A)
     largest = np.abs(sigma).max(axis=1)
-    rate = _grown(sigma, largest)
-    harmonics = [h for level in reach([(0, 0)], system.coupling, interactions) for h in level]
+    rate = _growth_rate(sigma, largest)
+    harmonics = [h for level in list_reached([(0, 0)], system.coupling, interactions) for h in level]
     steady = np.flatnonzero((rate <= 0) & (np.abs(sigma).min(axis=1) > 0))
     if len(harmonics) == 1 or not len(steady):
         return rate
     sigma, V = (
         sigma[steady],
-        _in_modes(sigma[steady], R[steady], [(f[steady], B[steady]) for f, B in turning]),
+        _in_modes(sigma[steady], R[steady], [(f[steady], B[steady]) for f, B in periodic]),
     )
     omega = system.rates[steady] @ np.array(harmonics).T
     meet = _discs_meet(sigma, V, omega)
@@ -268,13 +268,13 @@ def growth(system: TorusSystem, interactions: int) -> np.ndarray:
     return rate
 
 
-def _grown(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
+def _growth_rate(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
     """Largest real part, 0 where it is rounding."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _NEUTRAL * scale, 0.0, largest)
 
 
-def _first_order(system: TorusSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
+def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
     """The equations y' = (A + sum_h c_h B e^(ih.phi)) y for y = (w q, q'); w makes A's halves alike."""
     K, C, M = system.mean
     S, n = len(K), system.size
@@ -282,21 +282,21 @@ def _first_order(system: TorusSystem) -> tuple[np.ndarray, list[tuple[np.ndarray
     w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
     A = np.zeros((S, 2 * n, 2 * n))
     A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
-    turning = []
-    for order, found, matrix in system.varying:
+    periodic = []
+    for order, spectrum, matrix in system.varying:
         B = np.zeros_like(A)
         B[:, n:, n * order : n * order + n] = -np.linalg.solve(M, matrix) / (1 if order else w)
-        turning.append((found, B))
-    return A, turning
+        periodic.append((spectrum, B))
+    return A, periodic
 
 
 def _in_modes(
-    sigma: np.ndarray, R: np.ndarray, turning: list[tuple[np.ndarray, np.ndarray]]
+    sigma: np.ndarray, R: np.ndarray, periodic: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """V = R^-1 B R with the columns of R scaled to equal action, which makes |V| symmetric."""
     n = R.shape[-1] // 2
     R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma)))[:, None, :]
-    return [(found, np.linalg.solve(R, B @ R)) for found, B in turning]
+    return [(spectrum, np.linalg.solve(R, B @ R)) for spectrum, B in periodic]
 
 
 def _discs_meet(sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]], omega: np.ndarray) -> np.ndarray:
@@ -317,12 +317,12 @@ def _hill_growth(hill: np.ndarray, n: int, scale: float) -> np.ndarray:
     Every exponent s comes again as s + i Omega_h about each harmonic; at the rim, where neighbours are cut
     off, these copies are off.  In a tongue the vector is shared by two harmonics in equal parts.
     """
-    rate = _grown(np.linalg.eigvals(hill), scale)
+    rate = _growth_rate(np.linalg.eigvals(hill), scale)
     if rate <= 0:
         return rate
     s, z = np.linalg.eig(hill)
     share = (np.abs(z[:n]) ** 2).sum(axis=0) / (np.abs(z) ** 2).sum(axis=0)
-    return _grown(s[share > _SHARE], scale)
+    return _growth_rate(s[share > _SHARE], scale)
 
 
 def _hill(
@@ -330,15 +330,15 @@ def _hill(
 ) -> np.ndarray:
     """The balance's operator at one pair of rates."""
     hill = np.diag((sigma - 1j * omega[:, None]).ravel())
-    for found, v in V:
-        hill += np.kron(_toeplitz(found, harmonics)[0], v)
+    for spectrum, v in V:
+        hill += np.kron(_toeplitz(spectrum, harmonics)[0], v)
     return hill
 
 
-# Largest value on the torus -----------------------------------------------------------------------
+# Largest value over the phases --------------------------------------------------------------------
 
 
-def largest(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
+def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
     """Largest |u| of u = sum_h Re(a_h exp(i h.phi)) over both phases.
 
     The maxima of samples are refined by Newton's method.

@@ -15,14 +15,15 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import count, positive
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.equations.operators import Discretization
+from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.eigen import Solver
-from beamdyn.modal.error_estimate import Model, choose, estimated
+from beamdyn.modal.error_estimate import solve_with_error
+from beamdyn.modal.model import Model
 from beamdyn.modal.tracking import track
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.excitation_phases import excited_line, known_steady, torus_system
-from beamdyn.steady.harmonic_balance import reach
+from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
+from beamdyn.steady.harmonic_balance import list_reached
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +48,7 @@ class Crossing:
         Natural frequency of the mode [Hz].
     kind : {"forced", "parametric"}
         "forced": natural frequency = line.  "parametric": twice the natural frequency, or the sum of
-        that of `mode` and of `second_mode`, = line; the stiffness that turns makes the beam unstable.
+        that of `mode` and of `second_mode`, = line; the periodic stiffness makes the beam unstable.
     error : float
         Estimated relative error of the speed.
     second_mode : int or None
@@ -114,7 +115,7 @@ def resonance_speeds(
     top_speed: float,
     modes: int = 3,
     order: int = 1,
-    discretization: str | Discretization = "ritz",
+    discretization: DiscretizationChoice = "ritz",
 ) -> Crossings:
     """Speeds at which the lines that the scene forces meet natural frequencies.
 
@@ -150,17 +151,17 @@ def resonance_speeds(
     top = positive("top_speed", top_speed, "rad/s")
     modes, order = count("modes", modes), count("order", order)
     scene = replace(scene, damping_ratio=0.0)
-    model = choose(scene, discretization, np.array([0.0, top]), modes)
+    model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     locus = _Loci(model, min(top, critical), modes)
     forced, parametric = _lines(model.equations, scene.motion, top, order)
     wanted = [("forced", line, (i,)) for line in forced for i in range(modes)]
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
     wanted += [("parametric", line, pair) for line in parametric for pair in pairs]
-    found = [c for kind, line, places in wanted for c in locus.crossings(kind, line, places)]
+    crossings = [c for kind, line, places in wanted for c in locus.crossings(kind, line, places)]
     names = str(model.discretization), str(model.coarser.discretization)
     return Crossings(
-        crossings=tuple(sorted(found, key=lambda c: c.speed)),
+        crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
         lines=tuple(forced),
         speeds=locus.speeds,
         frequency=np.take_along_axis(locus.values, locus.order, axis=1) / (2 * np.pi),
@@ -174,13 +175,12 @@ def _lines(
     equations: Equations, motion: Motion | None, speed: float, order: int
 ) -> tuple[list[Line], list[Line]]:
     """Lines of the load, and of the stiffness, up to an order."""
-    system = torus_system(equations, motion, np.array([speed]))
-    known = known_steady(motion)
-    forced = reach(system.forced, system.coupling, order - 1)
-    parametric = reach([(0, 0)], system.coupling, order)
+    system = periodic_system(equations, motion, np.array([speed]))
+    known = check_steady_state(motion)
+    forced = list_reached(system.forced, system.coupling, order - 1)
+    parametric = list_reached([(0, 0)], system.coupling, order)
     return tuple(
-        _distinct(excited_line(known, h) for level in levels for h in level)
-        for levels in (forced, parametric)
+        _distinct(name_line(known, h) for level in levels for h in level) for levels in (forced, parametric)
     )  # pyright: ignore[reportReturnType]
 
 
@@ -232,9 +232,9 @@ class _Loci:
     def _crossing(
         self, kind: str, line: Line, places: tuple[int, ...], speed: float, slope: float
     ) -> Crossing:
-        found = estimated(self.model, np.array([speed]), self.modes)
+        solution = solve_with_error(self.model, np.array([speed]), self.modes)
         own = self.frequencies(np.array([speed]))[0]
-        wrong = np.abs(np.abs(found.eigen.eigenvalue[0]) - own) + found.error[0] * own
+        wrong = np.abs(np.abs(solution.eigen.eigenvalue[0]) - own) + solution.error[0] * own
         node = int(np.searchsorted(self.speeds, speed)) - 1
         numbers = [int(np.flatnonzero(self.order[node] == place)[0]) + 1 for place in places]
         return Crossing(

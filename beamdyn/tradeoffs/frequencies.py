@@ -8,14 +8,15 @@ from typing import Any, Literal
 import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.equations.operators import Discretization
+from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.error_estimate import Estimated, Model, estimated
+from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
+from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.bounds import frequency_bounds
 from beamdyn.spectrum.modes import frequency_locus, natural_modes
 from beamdyn.tradeoffs.measurements import Diagram, counted
-from beamdyn.tradeoffs.timing import Case, Family, measured
+from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 
 Basis = Literal["legendre", "eigenfunctions"]
 Mesh = Literal["graded", "uniform"]
@@ -63,7 +64,7 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(np.abs(_sizes(eigenvalues) / true - 1).max())
 
-    found, skipped = measured(
+    measurements, skipped = measure_families(
         list(_families(scene, speeds, modes)), error, resolved := float(exact.error.max()), budget
     )
     at = (
@@ -71,13 +72,13 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
         if len(speeds) == 1
         else f"at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s"
     )
-    reference = f"{exact.model.discretization}; {_checked(exact, float(speeds[-1]), modes)}"
+    reference = f"{exact.model.discretization}; {_compare_with_bounds(exact, float(speeds[-1]), modes)}"
     return Diagram.of(
         f"{counted(modes, 'frequency', 'frequencies')} {at}",
         "the worst frequency, relative",
         reference,
         resolved,
-        found,
+        measurements,
         skipped,
     )
 
@@ -87,22 +88,22 @@ def _sizes(eigenvalues: np.ndarray) -> np.ndarray:
     return np.sort(np.abs(eigenvalues), axis=-1)
 
 
-def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> Estimated:
+def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Modes by many functions: as many as resolve them."""
     segments = len(scene.beam.breakpoints) - 1
     for functions in _REFERENCES[:-1]:
-        found = _converged(scene, speeds, modes, functions // segments)
-        if found.error.max() <= _RESOLVED:
-            return found
-    return _converged(scene, speeds, modes, _REFERENCES[-1] // segments)
+        solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
+        if solution.error.max() <= _RESOLVED:
+            return solution
+    return _solve_by_ritz(scene, speeds, modes, _REFERENCES[-1] // segments)
 
 
-def _converged(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> Estimated:
-    return estimated(Model(scene, Ritz(max(functions, 12, modes + 3))), speeds, modes)
+def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> EstimatedModes:
+    return solve_with_error(Model(scene, Ritz(max(functions, 12, modes + 3))), speeds, modes)
 
 
-def _checked(exact: Estimated, speed: float, modes: int) -> str:
-    """What the guaranteed bounds say of the reference at a speed."""
+def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str:
+    """Check that the reference lies within the guaranteed bounds at a speed, and say so."""
     try:
         bounds = frequency_bounds(exact.model.scene, speed, modes)
     except ValueError:  # stretch or damping
@@ -127,13 +128,13 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     for mesh in meshes:
         yield from _elements(scene, speeds, modes, mesh, segments)
     if not scene.stretch:  # with it modes may cross, and a tracked locus then has others than the lowest
-        called = (Case(f"tolerance={t:.0e}", t, _call(scene, speeds, modes, t)) for t in _TOLERANCES)
+        called = (Setting(f"tolerance={t:.0e}", t, _call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(called))
 
 
 def _functions(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
     each = "functions a segment" if basis == "legendre" and len(scene.beam.breakpoints) > 2 else "functions"
-    cases = (Case(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
+    cases = (Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
     return Family(f"Ritz, {basis}", tuple(cases))
 
 
@@ -144,7 +145,7 @@ def _elements(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share
         cases = (
-            Case(f"{n} elements", n, solve(scene, Fem(n, mesh), speeds, modes))
+            Setting(f"{n} elements", n, solve(scene, Fem(n, mesh), speeds, modes))
             for n in _ELEMENTS
             if n >= least
         )

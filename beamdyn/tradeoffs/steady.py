@@ -11,7 +11,7 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.tradeoffs.measurements import Diagram
-from beamdyn.tradeoffs.timing import Case, Family, measured, what_is_left
+from beamdyn.tradeoffs.timing import Family, Setting, measure_families, remaining_budget
 
 _HARMONICS = tuple(range(6))
 _ALL_HARMONICS = 6
@@ -24,7 +24,7 @@ _EPS = float(np.finfo(float).eps)
 
 @one_blas_thread()
 def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 5.0) -> Diagram:
-    """Error against time of the steady response over the interactions that are kept.
+    """Error against time of the steady response over the number of interactions.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
     modes : int
-        Modes that are kept.
+        Number of modes.
     budget : float
         Time for all measurements [s].
 
@@ -53,7 +53,7 @@ def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
 
 @one_blas_thread()
 def steady_modes_diagram(scene: Scene, speeds: np.ndarray, budget: float = 5.0) -> Diagram:
-    """Error against time of the steady response over the number of modes that are kept.
+    """Error against time of the steady response over the number of modes.
 
     Parameters
     ----------
@@ -86,13 +86,13 @@ def _diagram(
     title = f"steady response at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s, number of {what}"
     if not np.nanmax(exact.bound, initial=0.0):
         return Diagram.of(title, _ERROR_OF, f"{what}={most}", 0.0, (), ("no load turns or shakes the beam",))
-    cases = tuple(Case(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
+    cases = tuple(Setting(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
     resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
-    left = what_is_left(budget, start)
-    found, skipped = measured([Family(what, cases)], _error(exact), resolved, left)
+    left = remaining_budget(budget, start)
+    measurements, skipped = measure_families([Family(what, cases)], _error(exact), resolved, left)
     if not exact.stable.all():
         skipped.append(f"{(~exact.stable).sum()} of {len(speeds)} speeds, which have no steady response")
-    return Diagram.of(title, _ERROR_OF, f"{what}={most}", resolved, found, skipped)
+    return Diagram.of(title, _ERROR_OF, f"{what}={most}", resolved, measurements, skipped)
 
 
 def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
@@ -101,9 +101,9 @@ def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
     rotation, road = np.meshgrid(phase, phase)
     true = exact.tip(rotation, road)
 
-    def error(found: SteadyResponse) -> float:
-        both = exact.stable & found.stable & (exact.bound > 0)
-        away = np.abs(found.tip(rotation, road) - true).max(axis=(1, 2))
+    def error(response: SteadyResponse) -> float:
+        both = exact.stable & response.stable & (exact.bound > 0)
+        away = np.abs(response.tip(rotation, road) - true).max(axis=(1, 2))
         return float((away[both] / exact.bound[both]).max(initial=0.0))
 
     return error

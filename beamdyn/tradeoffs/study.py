@@ -14,9 +14,9 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import count, positive, real
 from beamdyn.common.results import Provenance, Result
-from beamdyn.modal.error_estimate import choose
+from beamdyn.modal.choice import choose_model
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.excitation_phases import known_steady
+from beamdyn.steady.excitation_phases import check_steady_state
 from beamdyn.tradeoffs.frequencies import frequency_diagram
 from beamdyn.tradeoffs.measurements import Diagram
 from beamdyn.tradeoffs.steady import harmonics_diagram, steady_modes_diagram
@@ -142,7 +142,7 @@ def _final_speed(scene: Scene) -> float:
 def _end(scene: Scene) -> float:
     """A hundred periods of the first mode after the start, if that is not too long [s]."""
     assert scene.motion is not None
-    model = choose(scene, "ritz", np.zeros(1), 1, target=1e-3)
+    model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
     settled = scene.motion.settled if scene.motion.settled <= _LONG_START * period else 0.0
     return min(_rounded(settled + _PERIODS * period), scene.motion.end)
@@ -174,7 +174,7 @@ def _parts(
 
 def _has_steady(scene: Scene) -> bool:
     try:
-        known_steady(scene.motion)
+        check_steady_state(scene.motion)
     except ValueError:
         return False
     return True

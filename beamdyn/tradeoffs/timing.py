@@ -1,4 +1,4 @@
-"""Runs cases within a budget of time."""
+"""Measure error and time of settings within a budget of time."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from numpy.linalg import LinAlgError
 from beamdyn.tradeoffs.measurements import Measurement
 
 RUNS = 7  # the shortest counts: what else the machine does can only add
-_ENOUGH = 0.4  # share of a case's time that its repetitions may take
+_ENOUGH = 0.4  # share of a setting's time that its repetitions may take
 
 
 @dataclass(frozen=True)
-class Case:
+class Setting:
     """One setting of a family.
 
     Parameters
     ----------
-    setting : str
+    name : str
         In words.
     size : float
         The number that is varied.
@@ -31,31 +31,31 @@ class Case:
         TimeoutError that says where.
     """
 
-    setting: str
+    name: str
     size: float
     run: Callable[[float], Any]
 
 
 @dataclass(frozen=True)
 class Family:
-    """Cases of one method, the cheapest first.
+    """Settings of one method, the cheapest first.
 
     Parameters
     ----------
     name : str
         The method.
-    cases : tuple of Case
+    settings : tuple of Setting
         Its settings.
     """
 
     name: str
-    cases: tuple[Case, ...]
+    settings: tuple[Setting, ...]
 
 
-def measured(
+def measure_families(
     families: Sequence[Family], error: Callable[[Any], float], resolved: float, budget: float
 ) -> tuple[list[Measurement], list[str]]:
-    """Measure all cases of all families, each family with an equal share of what is left of the budget.
+    """Measure all settings of all families, each family with an equal share of the budget left.
 
     Parameters
     ----------
@@ -71,44 +71,44 @@ def measured(
     Returns
     -------
     list of Measurement
-        What was measured.
+        One for each setting that was measured.
     list of str
-        What was not, and why.
+        Sentences on those left out, and why.
     """
     end = perf_counter() + budget
-    found: list[Measurement] = []
+    measurements: list[Measurement] = []
     skipped: list[str] = []
     for i, family in enumerate(families):
         share = max(0.0, (end - perf_counter()) / (len(families) - i))
-        own, why = _of_family(family, error, resolved, share)
-        found += own
+        own, why = _measure_family(family, error, resolved, share)
+        measurements += own
         skipped += [f"{family.name}: {why}"] if why else []
-    return found, skipped
+    return measurements, skipped
 
 
-def _of_family(
+def _measure_family(
     family: Family, error: Callable[[Any], float], resolved: float, share: float
 ) -> tuple[list[Measurement], str]:
-    """What was measured of a family, and why not the rest."""
+    """Measurements of a family, and why the rest was left out."""
     start, last = perf_counter(), 0.0
-    found: list[Measurement] = []
-    for case in family.cases:
+    measurements: list[Measurement] = []
+    for setting in family.settings:
         left = share - (perf_counter() - start)
         if left < last:
-            return found, f"left out from {case.setting} on, its {share:.2g} s being used up"
+            return measurements, f"left out from {setting.name} on, its {share:.2g} s being used up"
         try:
-            answer, last, shortest = _shortest(case, left, _ENOUGH * share / len(family.cases))
+            answer, last, shortest = _time_shortest(setting, left, _ENOUGH * share / len(family.settings))
         except TimeoutError as stop:
-            return found, f"{case.setting} given up after {left:.2g} s {stop}, and the rest left out"
+            return measurements, f"{setting.name} given up after {left:.2g} s {stop}, and the rest left out"
         except (ArithmeticError, LinAlgError) as failure:
-            return found, f"{case.setting} failed ({failure}), and the rest left out"
+            return measurements, f"{setting.name} failed ({failure}), and the rest left out"
         e = error(answer)
-        counted = inf if isnan(e) else max(e, resolved)
-        found.append(Measurement(family.name, case.setting, case.size, counted, shortest))
-    return found, ""
+        bounded = inf if isnan(e) else max(e, resolved)
+        measurements.append(Measurement(family.name, setting.name, setting.size, bounded, shortest))
+    return measurements, ""
 
 
-def _shortest(case: Case, left: float, spare: float) -> tuple[Any, float, float]:
+def _time_shortest(setting: Setting, left: float, spare: float) -> tuple[Any, float, float]:
     """The answer, the time that the first run took, and the shortest processor time of some runs [s].
 
     Processor time, because in it other programs hardly show; all runs in one thread.
@@ -118,12 +118,12 @@ def _shortest(case: Case, left: float, spare: float) -> tuple[Any, float, float]
     answer, first = None, 0.0
     while not times or (len(times) < RUNS and perf_counter() - start < spare):
         began = process_time()
-        answer = case.run(start + left)
+        answer = setting.run(start + left)
         times.append(process_time() - began)
         first = first or perf_counter() - start
     return answer, first, min(times)
 
 
-def what_is_left(budget: float, start: float) -> float:
-    """What a reference that was begun at `start` leaves of a budget [s], at least half of it."""
+def remaining_budget(budget: float, start: float) -> float:
+    """Budget left [s] by a reference that was begun at `start`, at least half of it."""
     return max(budget / 2, budget - (perf_counter() - start))

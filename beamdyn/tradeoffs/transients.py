@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.equations.operators import Discretization
-from beamdyn.modal.error_estimate import choose
-from beamdyn.modal.modal_basis import Kept, range_of_speed
+from beamdyn.equations.discretization import Discretization
+from beamdyn.modal.choice import choose_model
+from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.scene.scene import Scene
 from beamdyn.tradeoffs.measurements import Diagram, counted
-from beamdyn.tradeoffs.timing import Case, Family, measured, what_is_left
-from beamdyn.transient.simulate import Task, Transient, simulate
+from beamdyn.tradeoffs.timing import Family, Setting, measure_families, remaining_budget
+from beamdyn.transient.simulate import Transient, TransientRequest, simulate
 
 OURS = "Gauss collocation"
 STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
@@ -50,7 +50,7 @@ def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: floa
     t_end : float
         End of the run [s].
     modes : int
-        Modes that are kept.
+        Number of modes.
     budget : float
         Time for all measurements [s].
 
@@ -59,22 +59,22 @@ def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: floa
     Diagram
     """
     start = perf_counter()
-    basis = choose(scene, "ritz", np.zeros(1), modes).discretization
+    basis = choose_model(scene, "ritz", np.zeros(1), modes).discretization
     title = f"transient of {t_end:g} s, {counted(modes, 'mode', 'modes')}"
     exact = simulate(scene, t_end, modes, _TIGHTEST, discretization=basis)
     if not exact.largest:
         return Diagram.of(title, _ERROR_OF, _TIGHT, 0.0, (), (_STILL,))
     second = _second_route(scene, exact, modes, basis, _SECOND_SHARE * budget)
     families = list(_integrators(scene, t_end, modes, basis))
-    left = what_is_left(budget, start)
+    left = remaining_budget(budget, start)
     error, resolved = _tip_error(exact, t_end), _relative(exact.time_error, exact.largest)
-    found, skipped = measured(families, error, resolved, left)
-    return Diagram.of(title, _ERROR_OF, f"{_TIGHT}; {second}", resolved, found, skipped)
+    measurements, skipped = measure_families(families, error, resolved, left)
+    return Diagram.of(title, _ERROR_OF, f"{_TIGHT}; {second}", resolved, measurements, skipped)
 
 
 @one_blas_thread()
 def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> Diagram:
-    """Error against time of a transient over the modes that are kept: at rest, or at two speeds.
+    """Error against time of a transient over the number of modes: at rest, or at two speeds.
 
     Parameters
     ----------
@@ -91,25 +91,28 @@ def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> 
     """
     start = perf_counter()
     assert scene.motion is not None
-    basis = choose(scene, "ritz", np.zeros(1), 2 * _ALL_MODES).discretization
-    ends = range_of_speed(scene.motion, t_end)
+    functions = choose_model(scene, "ritz", np.zeros(1), 2 * _ALL_MODES).discretization
+    ends = find_speed_range(scene.motion, t_end)
 
-    def run(kept: Kept) -> Transient:
-        return Task(scene, t_end, _MODES_TOLERANCE, "auto", basis, "rest", None, {}, kept).run()
+    def run(modal: ModalBasis) -> Transient:
+        request = TransientRequest(scene, t_end, _MODES_TOLERANCE, "auto", functions, "rest", None, {}, modal)
+        return request.run()
 
     def family(name: str, speeds: tuple[float, ...], sizes: Sequence[int]) -> Family:
-        cases = (Case(f"modes={m}", m, lambda deadline, m=m: run(Kept(m, speeds))) for m in sizes)
+        cases = (Setting(f"modes={m}", m, lambda deadline, m=m: run(ModalBasis(m, speeds))) for m in sizes)
         return Family(name, tuple(cases))
 
     title = f"transient of {t_end:g} s, number of modes"
-    exact = run(Kept(_ALL_MODES, ends))
-    reference = f"{exact.task.kept}, all with a tolerance in time of {_MODES_TOLERANCE:g}"
+    exact = run(ModalBasis(_ALL_MODES, ends))
+    reference = f"{exact.request.basis}, all with a time-integration tolerance of {_MODES_TOLERANCE:g}"
     if not exact.largest:
         return Diagram.of(title, _ERROR_OF, reference, 0.0, (), (_STILL,))
     resolved = _relative(exact.time_error, exact.largest)
     families = [family(AT_REST, (0.0,), _MODES), family(AT_ENDS, ends, _MODES_AT_ENDS)]
-    found, skipped = measured(families, _tip_error(exact, t_end), resolved, what_is_left(budget, start))
-    return Diagram.of(title, _ERROR_OF, reference, resolved, found, skipped)
+    measurements, skipped = measure_families(
+        families, _tip_error(exact, t_end), resolved, remaining_budget(budget, start)
+    )
+    return Diagram.of(title, _ERROR_OF, reference, resolved, measurements, skipped)
 
 
 def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
@@ -150,9 +153,9 @@ def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) 
 
         return run
 
-    yield Family(OURS, tuple(Case(f"tolerance={t:.0e}", t, ours(t)) for t in _TOLERANCES))
+    yield Family(OURS, tuple(Setting(f"tolerance={t:.0e}", t, ours(t)) for t in _TOLERANCES))
     for method in STOCK:
-        cases = (Case(f"rtol={t:.0e}", t, stock(method, t)) for t in _STOCK_TOLERANCES)
+        cases = (Setting(f"rtol={t:.0e}", t, stock(method, t)) for t in _STOCK_TOLERANCES)
         yield Family(f"solve_ivp {method}", tuple(cases))
 
 

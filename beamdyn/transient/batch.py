@@ -1,6 +1,6 @@
 """Many transients of one beam advanced together: the same steps, one motion each.
 
-The collocation equations are those of `integrators`, but each step is solved for all cases at once
+The collocation equations are those of `gauss`, but each step is solved for all cases at once
 by iteration, with the diagonal of the stiffness treated exactly.  The cost of a step is then that
 of a few products of small matrices for all cases, and not that of a factorisation for each.
 """
@@ -14,21 +14,18 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamdyn.equations.equations_of_motion import RootMotion
 from beamdyn.scene.motion import SteadyRotation
-from beamdyn.transient.gauss import BLOCK, Piece, Tableau, tableau
-from beamdyn.transient.step_size import (
-    STAGES,
-    Checks,
-    Resolution,
-    TimeError,
-    Trajectory,
-    check_steps,
-    checked_steps,
-    smooth_stretches,
-    time_error,
-)
+from beamdyn.transient.gauss import BLOCK, Segment, Tableau, tableau
+from beamdyn.transient.step_size import StepSize, check_number_of_steps, split_at_breakpoints
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.time_error import (
+    STAGES,
+    CheckedSteps,
+    TimeError,
+    choose_checked_steps,
+    estimate_time_error,
+)
+from beamdyn.transient.trajectory import Trajectory
 
 _ITERATIONS = 40
 _CONVERGED = 1e-12  # change of the stage displacements relative to the largest
@@ -37,7 +34,7 @@ _SURVEY = 16  # steps between counts of the iterations that are needed
 
 
 @dataclass(frozen=True)
-class Histories:
+class TipHistories:
     """Tip deflections of a batch.
 
     Parameters
@@ -45,109 +42,100 @@ class Histories:
     tips : tuple of Trajectory
         Tip deflection of each case, as the single coordinate of a trajectory.
     time_error : tuple of float
-        Estimated error of each by the steps in time [m].
+        Estimated time-integration error of each [m].
     """
 
     tips: tuple[Trajectory, ...]
     time_error: tuple[float, ...]
 
 
-def histories(
-    systems: Sequence[ModalSystem], tip: np.ndarray, t_end: float, tolerance: float = 1e-5
-) -> Histories:
-    """Transients from rest, all with the steps of the most demanding case.
+def integrate_batch(systems: Sequence[ModalSystem], t_end: float, tolerance: float = 1e-5) -> TipHistories:
+    """Integrate from rest, all cases with the steps of the most demanding one.
 
     Parameters
     ----------
     systems : sequence of ModalSystem
         Cases that differ in their motions alone; the motions share their breakpoints.
-    tip : ndarray, shape (m,)
-        Tip deflection of the bending modes.
     t_end : float
         End of the run [s].
     tolerance : float
-        Error in time that is aimed at, relative to the largest deflection of a case.
+        Time-integration error aimed at, relative to the largest deflection of a case.
 
     Returns
     -------
-    Histories
+    TipHistories
 
     Raises
     ------
     ArithmeticError
         If the iteration does not converge, as with very strong coupling of the modes.
     """
-    systems, tip = _turned(systems, tip)
-    resolution, last = Resolution.of(tolerance), np.inf
+    systems = _diagonalize(systems)
+    step_size, last = StepSize.from_tolerance(tolerance), np.inf
     while True:
-        tips, errors = _advanced(systems, tip, t_end, resolution)
-        bounds = [tolerance * max(_largest(p) for p in path.pieces) for path in tips]
+        tips, errors = _advance_all(systems, t_end, step_size)
+        bounds = [tolerance * max(_largest(s) for s in path.segments) for path in tips]
         worst = int(np.argmax([e.total / max(b, 1e-300) for e, b in zip(errors, bounds, strict=True)]))
         total, bound = errors[worst].total, bounds[worst]
         at_residue = last / 2 < total < _AT_RESIDUE / tolerance * bound
-        if total <= bound or at_residue or resolution.exhausted:
-            return Histories(tuple(tips), tuple(e.total for e in errors))
-        resolution, last = resolution.finer(errors[worst], bound), total
+        if total <= bound or at_residue or step_size.is_finest:
+            return TipHistories(tuple(tips), tuple(e.total for e in errors))
+        step_size, last = step_size.refine(errors[worst], bound), total
 
 
-def _largest(piece: Piece) -> float:
-    return float(np.abs(piece.state[:, 1]).max())
+def _largest(segment: Segment) -> float:
+    return float(np.abs(segment.state[:, 1]).max())
 
 
-def _advanced(
-    systems: Sequence[ModalSystem], tip: np.ndarray, t_end: float, resolution: Resolution
+def _advance_all(
+    systems: Sequence[ModalSystem], t_end: float, step_size: StepSize
 ) -> tuple[list[Trajectory], list[TimeError]]:
-    """Tip deflections and their errors with steps that give every case its resolution."""
+    """Tip deflections and their errors, with steps as small as every case needs."""
     C, n = len(systems), systems[0].size
     state = np.zeros((C, n)), np.zeros((C, n))
-    runs: list[_Run] = []
-    for a, b in pairwise(smooth_stretches(systems[0].motion, t_end)):
-        steps = max(resolution.steps(s, a, b) for s in systems)
-        check_steps(steps, t_end)
-        runs.append(_Run(systems, tip, a, (b - a) / steps, steps))
+    runs: list[_SegmentRun] = []
+    for a, b in pairwise(split_at_breakpoints(systems[0].motion, t_end)):
+        steps = max(step_size.count_steps(s, a, b) for s in systems)
+        check_number_of_steps(steps, t_end)
+        runs.append(_SegmentRun(systems, a, (b - a) / steps, steps))
         state = runs[-1].advance(*state)
     if not all(run.converged for run in runs):
         raise ArithmeticError("the iteration of a step did not converge: simulate the cases one by one")
-    tips = [Trajectory(tuple(run.piece(case) for run in runs)) for case in range(C)]
-    errors = [time_error(tip, s, [run.checks(case) for run in runs]) for case, s in enumerate(systems)]
+    tips = [Trajectory(tuple(run.segment(case) for run in runs)) for case in range(C)]
+    errors = [estimate_time_error(s, [run.checks(case) for run in runs]) for case, s in enumerate(systems)]
     return tips, errors
 
 
-def _turned(systems: Sequence[ModalSystem], tip: np.ndarray) -> tuple[list[ModalSystem], np.ndarray]:
-    """The same systems in coordinates in which the bending stiffness is nearly diagonal at the end.
+def _diagonalize(systems: Sequence[ModalSystem]) -> list[ModalSystem]:
+    """The same systems in coordinates in which each field's stiffness is nearly diagonal at the end.
 
     The iteration treats the diagonal exactly, so that few iterations are left.
     """
     middle = systems[len(systems) // 2]
     speed = middle.motion.final_speed
-    place = middle.equations.fields["bending"]
-    _, K, _ = ModalSystem(
-        middle.equations, SteadyRotation(speed if np.isfinite(speed) else 0.0)
-    ).coefficients(np.zeros(()))
-    turn = {name: np.eye(f.stop - f.start) for name, f in middle.equations.fields.items()}
-    turn["bending"] = np.linalg.eigh(K[place, place])[1]
+    steady = SteadyRotation(speed if np.isfinite(speed) else 0.0)
+    _, K, _ = ModalSystem(middle.equations, steady).coefficients(np.zeros(()))
+    turn = {name: np.linalg.eigh(K[place, place])[1] for name, place in middle.equations.blocks.items()}
     equations = middle.equations.reduced(turn)
-    return [ModalSystem(equations, s.motion) for s in systems], turn["bending"].T @ tip
+    return [ModalSystem(equations, s.motion) for s in systems]
 
 
-class _Run:
-    """One stretch of equal steps: the records that it fills as it advances."""
+class _SegmentRun:
+    """One segment of equal steps of all cases: the records that it fills as it advances."""
 
-    def __init__(
-        self, systems: Sequence[ModalSystem], tip: np.ndarray, start: float, h: float, steps: int
-    ) -> None:
+    def __init__(self, systems: Sequence[ModalSystem], start: float, h: float, steps: int) -> None:
         C, n = len(systems), systems[0].size
         self.systems, self.start, self.h, self.steps = systems, start, h, steps
-        self.tip = np.concatenate([tip, np.zeros(n - len(tip))])
+        self.tip = systems[0].tip
         self.tips = np.empty((steps + 1, 2, C))
         self.accelerations = np.empty((steps, STAGES, C))
-        self.checked = checked_steps(steps)
+        self.checked = choose_checked_steps(steps)
         self.states = np.ones((len(self.checked), C, 2 * n + 1))
         self.reached = np.empty((len(self.checked), C, 2 * n))
         self.converged, self.iterations = True, 2
 
     def advance(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Advance all cases from (q, v), shapes (C, n), to the end of the stretch."""
+        """Advance all cases from (q, v), shapes (C, n), to the end of the segment."""
         table, h, check = tableau(STAGES), self.h, {k: i for i, k in enumerate(self.checked.tolist())}
         for k, step in enumerate(self._steps(table)):
             self.tips[k] = q @ self.tip, v @ self.tip
@@ -186,7 +174,7 @@ class _Run:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Accelerations at the nodes and what they move the nodes by, both of shape (s, C, n)."""
         table, h = tableau(STAGES), self.h
-        forward, back, _ = _spectrum(STAGES)
+        forward, back, _ = _decompose_A2(STAGES)
         still = q + h * table.c[:, None, None] * v  # displacement at the nodes without acceleration
         shape, a, moved, rate = still.shape, still, np.zeros_like(still), v if step.damping else None
         for _ in range(iterations):
@@ -200,15 +188,15 @@ class _Run:
                 rate = v + (h * table.A @ a).reshape(shape)
         return a.reshape(shape), moved
 
-    def piece(self, case: int) -> Piece:
+    def segment(self, case: int) -> Segment:
         """The tip deflection of a case."""
         state = np.concatenate([np.ones((self.steps + 1, 1)), self.tips[:, :, case]], axis=1)
-        return Piece(self.start, self.h, state, self.accelerations[:, :, case, None].copy())
+        return Segment(self.start, self.h, state, self.accelerations[:, :, case, None].copy())
 
-    def checks(self, case: int) -> Checks:
+    def checks(self, case: int) -> CheckedSteps:
         """The checked steps of a case."""
         starts = self.start + self.h * self.checked
-        return Checks(starts, self.h, self.steps, self.states[:, case], self.reached[:, case])
+        return CheckedSteps(starts, self.h, self.steps, self.states[:, case], self.reached[:, case])
 
 
 @dataclass(frozen=True)
@@ -232,7 +220,7 @@ class _Step:
 
 
 @cache
-def _spectrum(stages: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _decompose_A2(stages: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Spectrum of A2, whose eigenvalues come in conjugate pairs, in real arithmetic.
 
     Returns
@@ -255,12 +243,12 @@ def _spectrum(stages: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _coefficients(systems: Sequence[ModalSystem], times: np.ndarray, h: float) -> Iterator[_Step]:
     """Coefficients of the steps whose nodes, then middles, are the rows of `times`."""
     roots = [s.root(times) for s in systems]
-    system, (_, _, beta) = systems[0], _spectrum(STAGES)
-    stiffness, damping = ([(name, G) for name, G in system.parts[order].items()] for order in (0, 1))
+    system, (_, _, beta) = systems[0], _decompose_A2(STAGES)
+    stiffness, damping = ([*system.equations.matrices[order].items()] for order in (0, 1))
     names = {name for name, _ in (*stiffness, *damping)}
     quantity = {name: np.stack([getattr(r, name) for r in roots], axis=-1)[..., None] for name in names}
     diagonal = sum(quantity[name][:, -1] * np.diag(G) for name, G in stiffness)  # at mid-step: (N, C, n)
-    load = np.stack([_load(system, r) for r in roots], axis=2)
+    load = np.stack([system.equations.load(r) for r in roots], axis=2)
     inverse = 1 / (1 + h**2 * beta[:, None, None] * np.asarray(diagonal)[:, None])
     for k in range(len(times)):
         yield _Step(
@@ -270,7 +258,3 @@ def _coefficients(systems: Sequence[ModalSystem], times: np.ndarray, h: float) -
             diagonal=np.asarray(diagonal)[k],
             inverse=inverse[k],
         )
-
-
-def _load(system: ModalSystem, root: RootMotion) -> np.ndarray:
-    return system.equations.load(root)

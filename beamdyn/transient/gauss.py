@@ -175,19 +175,9 @@ def _right(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: 
     return right.reshape(N, s * n, 2 * n + 1)
 
 
-def _without_repeats(
-    C: np.ndarray | None, K: np.ndarray, f: np.ndarray
-) -> tuple[np.ndarray | None, np.ndarray, np.ndarray, int]:
-    """One step in place of a block of equal ones, and how many it stands for."""
-    same = len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f))
-    if not same:
-        return C, K, f, 1
-    return None if C is None else C[:1], K[:1], f[:1], len(f)
-
-
 @dataclass(frozen=True)
-class Piece:
-    """A stretch of a trajectory in equal steps.
+class Segment:
+    """A segment of a trajectory, in equal steps.
 
     Parameters
     ----------
@@ -260,7 +250,7 @@ def interior(
 
 def propagate(
     system: LinearSystem, t0: float, t1: float, steps: int, q0: np.ndarray, v0: np.ndarray, stages: int = 8
-) -> Piece:
+) -> Segment:
     """Advance a state over equal steps.
 
     Parameters
@@ -278,7 +268,7 @@ def propagate(
 
     Returns
     -------
-    Piece
+    Segment
     """
     h, n = (t1 - t0) / steps, system.size
     state = np.empty((steps + 1, 2 * n + 1))
@@ -290,7 +280,7 @@ def propagate(
         maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
         powers = _advance(maps, state[block.start : block.stop + 1], powers)
         acceleration[block] = (maps.stages @ state[block, None, :, None])[..., 0]
-    return Piece(t0, h, state, acceleration)
+    return Segment(t0, h, state, acceleration)
 
 
 def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
@@ -418,13 +408,13 @@ class GaussCollocation(OdeSolver):
 
     def _dense_output_impl(self) -> DenseOutput:
         state = np.stack([self.begin, self.augmented()])
-        return _Dense(Piece(self.start, self.taken, state, self.accelerations[None]))
+        return _Dense(Segment(self.start, self.taken, state, self.accelerations[None]))
 
 
 class _Dense(DenseOutput):
     """A step's collocation polynomials in the form that `solve_ivp` asks for."""
 
-    def __init__(self, piece: Piece) -> None:
+    def __init__(self, piece: Segment) -> None:
         super().__init__(piece.start, piece.end)
         self.piece = piece
 

@@ -6,41 +6,32 @@ import pathlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.integrate import OdeSolver, solve_ivp
+from scipy.integrate import OdeSolver
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.operators import Discretization
-from beamdyn.modal.error_estimate import Model, choose, roomy
-from beamdyn.modal.modal_basis import FEWEST, SAMPLED_TIMES, Kept, ModalEquations, range_of_speed
+from beamdyn.modal.choice import DiscretizationChoice, choose_model, with_room
+from beamdyn.modal.modal_basis import FEWEST_MODES, SPEED_SAMPLES, ModalBasis, find_speed_range
+from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.modes import LARGE_DEFLECTION
-from beamdyn.transient.gauss import GaussCollocation
-from beamdyn.transient.step_size import (
-    SAMPLES,
-    TOLERANCES,
-    Path,
-    integrate,
-    largest_deflection,
-    tip_deflection,
-)
+from beamdyn.scene.validity import warn_of_deflection, warn_of_road
+from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
+from beamdyn.transient.step_size import TOLERANCES, integrate
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import Path, largest_deflection
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_STOCK = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
-_GRAVITY = 9.81
 _UNBOUNDED = 1000.0  # deflection over the length, past which no digit means anything
-_UNRESOLVED = 0.3  # what a richer run may add, over the largest deflection, to tell an error
+_UNRESOLVED = 0.3  # difference of the refined run, over the largest deflection, past which it tells no error
 _COMPARED = 20_000  # times at which runs are compared, at most twice as many
 
 
@@ -57,8 +48,8 @@ class Transient(Result):
     coordinates, velocities : ndarray, shape (n, m)
         Modal coordinates [kg^1/2 m] and their rates.
     time_error : float
-        Estimated largest error of the tip deflection by the steps in time [m]; nan for the stock
-        methods of `solve_ivp`, which only bound the error of each step.
+        Estimated time-integration error of the tip deflection [m]: its largest; nan for the methods
+        of `solve_ivp`, which only bound the error of each step.
     largest : float
         Largest tip deflection of the run, either way [m].
     warnings : tuple of str
@@ -68,7 +59,7 @@ class Transient(Result):
 
     Notes
     -----
-    The error by the modes left out is `mode_error`, which takes a second run when first asked for.
+    The modal truncation error is `mode_error`, which takes a second run when first asked for.
     """
 
     t: np.ndarray
@@ -79,38 +70,37 @@ class Transient(Result):
     largest: float
     warnings: tuple[str, ...]
     provenance: Provenance
-    modal: ModalEquations = field(repr=False)
     system: ModalSystem = field(repr=False)
     path: Path = field(repr=False)
-    task: Task = field(repr=False)
+    request: TransientRequest = field(repr=False)
 
     @property
     def scene(self) -> Scene:
         """The scene."""
-        return self.task.scene
+        return self.request.scene
 
     @cached_property
-    def richer(self) -> Transient | None:
-        """The same run with half as many modes more, at least two; None if there is no richer model."""
-        return self.task.richer()
+    def refined(self) -> Transient | None:
+        """The same run with half as many modes more, at least two; None if there is no larger model."""
+        return self.request.run_refined()
 
     @cached_property
     def mode_error(self) -> float:
-        """Estimated largest error of the tip deflection by the modes left out [m]: twice what `richer` adds.
+        """Estimated modal truncation error of the tip deflection [m]: twice its distance from `refined`.
 
-        What that one leaves out in turn is less than half of what it adds: measured on random runs by
-        `benchmarks/coverage_transients.py`.  Infinite if there is no richer model, or one so far away that
-        the two tell nothing of a third.
+        What that one leaves out in turn is less than half of the distance: measured on random runs by
+        the benchmark of the coverage of transients.  Infinite if there is no larger model, or one so far
+        away that the two tell nothing of a third.
         """
-        if self.richer is None:
+        if self.refined is None:
             return np.inf
-        added = self.away_from(self.richer)
+        added = self.distance_from(self.refined)
         return np.inf if added > _UNRESOLVED * self.largest else 2 * added
 
-    def away_from(self, other: Transient) -> float:
+    def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
         t, q, _ = (x[:: 1 + len(x) // _COMPARED] for x in self.path.samples)
-        return float(np.abs(tip_deflection(self.modal.tip, q) - other.deflection(t)).max())
+        return float(np.abs(q @ self.system.tip - other.deflection(t)).max())
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, `mode_error` included."""
@@ -125,7 +115,7 @@ class Transient(Result):
 
     def shape(self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x))."""
-        return self._bending(t) @ self.modal.shape(np.asarray(x) / self.scene.beam.length)
+        return self.at(t)[0] @ self.system.equations.deflection(np.asarray(x) / self.scene.beam.length)
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Bending strain of the outer fibre at the root at times t [s]."""
@@ -133,11 +123,8 @@ class Transient(Result):
         if beam.outer_fibre is None:
             raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
         root = np.zeros(1)
-        curvature = self._bending(t) @ self.modal.shape(root, order=2)[:, 0] / beam.length**2
+        curvature = self.at(t)[0] @ self.system.equations.deflection(root, order=2)[:, 0] / beam.length**2
         return curvature * beam.outer_fibre(root)[0]
-
-    def _bending(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        return self.at(t)[0][:, : self.modal.vectors.shape[1]]
 
     def deflection(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Tip deflection [m] at times t [s]."""
@@ -153,7 +140,7 @@ class Transient(Result):
     def peak(self, start: float, end: float) -> float:
         """Largest tip deflection, either way, from `start` to `end` [s], also between samples [m]."""
         _check_window(start, end, self.path)
-        return largest_deflection(self.modal.tip, self.path, start, end)
+        return largest_deflection(self.system.tip, self.path, start, end)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
@@ -191,12 +178,12 @@ def simulate(
     modes: int | str | None = "auto",
     tolerance: float = 1e-5,
     method: str | type[OdeSolver] = "auto",
-    discretization: str | Discretization = "ritz",
+    discretization: DiscretizationChoice = "ritz",
     initial: str | np.ndarray = "rest",
     t_eval: np.ndarray | Sequence[float] | None = None,
     **options: Any,
 ) -> Transient:
-    """Motion of the beam from time 0 to `t_end`, in modal coordinates of the beam at rest.
+    """Integrate the motion of the beam from time 0 to `t_end`, in modal coordinates.
 
     Parameters
     ----------
@@ -205,12 +192,12 @@ def simulate(
     t_end : float
         End of the run [s].
     modes : int, "auto" or None
-        Number of modes at rest that are kept of each field.  "auto" keeps modes at the slowest and at the
-        fastest speed, as few as leave no more than the tolerance out; None keeps all functions of the
-        discretization.
+        Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
+        speed: the smallest modal basis whose truncation error meets the tolerance.  None keeps all
+        functions of the discretization.
     tolerance : float
-        Error in time that is aimed at, and with ``modes="auto"`` also the error by the modes left out,
-        each relative to the largest tip deflection.
+        Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
+        relative to the largest tip deflection.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
         Our Gauss collocation with a step from the tolerance, or any method of `solve_ivp`.
     discretization : {"ritz", "fem"} or Discretization
@@ -238,93 +225,92 @@ def simulate(
     if scene.motion is None:
         raise ValueError("scene.motion is None: a transient needs a motion, such as SteadyRotation(50.0)")
     times = None if t_eval is None else _times(t_eval, t_end)
-    kept = None if modes == "auto" else Kept(None if modes is None else count("modes", modes))
-    if kept is None and not isinstance(initial, str):
+    basis = None if modes == "auto" else ModalBasis(None if modes is None else count("modes", modes))
+    if basis is None and not isinstance(initial, str):
         raise ValueError('initial is an array: give the number of its modes, not modes = "auto"')
-    fewest = kept or Kept(FEWEST, range_of_speed(scene.motion, t_end))
-    task = Task(scene, t_end, tolerance, method, discretization, initial, times, options, fewest)
-    return task.run() if kept else task.cheapest()
+    fewest = basis or ModalBasis(FEWEST_MODES, find_speed_range(scene.motion, t_end))
+    request = TransientRequest(
+        scene, t_end, tolerance, method, discretization, initial, times, options, fewest
+    )
+    return request.run() if basis else request.run_cheapest()
 
 
 @dataclass(frozen=True)
-class Task:
-    """What is asked of a run: see `simulate`."""
+class TransientRequest:
+    """The arguments of `simulate`, checked, with the modal basis in place of the number of modes."""
 
     scene: Scene
     t_end: float
     tolerance: float
     method: str | type[OdeSolver]
-    discretization: str | Discretization
+    discretization: DiscretizationChoice
     initial: str | np.ndarray
     t_eval: np.ndarray | None
     options: dict[str, Any]
-    kept: Kept
+    basis: ModalBasis
 
     def run(self) -> Transient:
-        """The run."""
+        """Integrate with this basis."""
         began = perf_counter()
         motion, t_end = self.motion, self.t_end
         model = self._model
         _check_motion(motion, t_end, model)
-        modal = model.modal(self.kept)
-        system = ModalSystem(modal.equations, motion)
-        path, error, name = self._integrated(modal, system, _initial(self.initial, system))
+        system = ModalSystem(model.modal_equations(self.basis), motion)
+        path, error, name = self._integrate(system, _initial_state(self.initial, system))
         t, q, v = path.samples
-        largest = largest_deflection(modal.tip, path, path.start, path.end)
+        largest = largest_deflection(system.tip, path, path.start, path.end)
         _check_growth(self.scene, largest)
         if self.t_eval is not None:
             t = self.t_eval
             q, v = path.at(t)
         return Transient(
             t=t,
-            tip=tip_deflection(modal.tip, q),
+            tip=q @ system.tip,
             coordinates=q,
             velocities=v,
             time_error=error,
             largest=largest,
             warnings=tuple(_warnings(self.scene, t_end, largest)),
             provenance=Provenance(
-                __version__, f"{name}, {self.kept} of {model.discretization}", "", perf_counter() - began
+                __version__, f"{name}, {self.basis} of {model.discretization}", "", perf_counter() - began
             ),
-            modal=modal,
             system=system,
             path=path,
-            task=self,
+            request=self,
         )
 
-    def richer(self) -> Transient | None:
-        """The run by our integrator with more modes; None if there is no richer model or answer."""
+    def run_refined(self) -> Transient | None:
+        """Integrate by our integrator with more modes; None if there is no larger model or no answer."""
         own = replace(self, method="auto", t_eval=None)
-        task = own._finer() if self.kept.modes is None else own._more(self.kept.modes)
+        request = own._with_finer_functions() if self.basis.modes is None else own._with_more_modes()
         try:
-            return task and task.run()
+            return request and request.run()
         except ArithmeticError:  # with more modes the motion grows without bound
             return None
 
-    def cheapest(self) -> Transient:
-        """The run with the fewest modes that keeps the tolerance, or else with the most."""
+    def run_cheapest(self) -> Transient:
+        """Integrate with the smallest basis that meets the tolerance, or else with the largest."""
         run = replace(self, method="auto", t_eval=None).run()
-        if run.mode_error > self.tolerance * run.largest and run.richer is not None:
-            # What a sudden motion sets swinging are many modes; they are as good at rest, and fewer.
-            rest = replace(run.task, kept=Kept(run.modal.vectors.shape[1])).run()
-            run = rest if rest.away_from(run.richer) < run.away_from(run.richer) else run
-        while run.mode_error > self.tolerance * run.largest and run.richer is not None:
-            run = run.richer
+        if run.mode_error > self.tolerance * run.largest and run.refined is not None:
+            # A sudden motion excites many modes; as many at rest serve as well.
+            rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
+            run = rest if rest.distance_from(run.refined) < run.distance_from(run.refined) else run
+        while run.mode_error > self.tolerance * run.largest and run.refined is not None:
+            run = run.refined
         plain = self.method == "auto" and self.t_eval is None
-        return run if plain else replace(self, kept=run.task.kept).run()
+        return run if plain else replace(self, basis=run.request.basis).run()
 
-    def _more(self, modes: int) -> Task | None:
-        """More modes, in a basis of our choice where the given one is too small."""
-        kept = self.kept.more()
-        if kept is None or kept.modes is None:
+    def _with_more_modes(self) -> TransientRequest | None:
+        """The request with more modes, by "ritz" where the discretization has too few functions."""
+        basis = self.basis.refined()
+        if basis is None or basis.modes is None or self.basis.modes is None:
             return None
-        initial = self._padded(modes, kept.modes)
-        return replace(
-            self, kept=kept, discretization=roomy(self.discretization, kept.modes), initial=initial
-        )
+        initial = self._pad_initial(self.basis.modes, basis.modes)
+        discretization = with_room(self.discretization, basis.modes)
+        return replace(self, basis=basis, discretization=discretization, initial=initial)
 
-    def _finer(self) -> Task | None:
-        """All functions of the next finer discretization."""
+    def _with_finer_functions(self) -> TransientRequest | None:
+        """The request with all functions of the next finer discretization."""
         finer = self._model.discretization.finer()
         return None if finer is None else replace(self, discretization=finer)
 
@@ -336,22 +322,19 @@ class Task:
 
     @property
     def _model(self) -> Model:
-        wanted, target = self.kept.modes or 1, 1e-3 * self.tolerance
-        return choose(self.scene, self.discretization, np.array(self.kept.speeds), wanted, target)
+        modes, target = self.basis.modes or 1, 1e-3 * self.tolerance
+        return choose_model(self.scene, self.discretization, np.array(self.basis.speeds), modes, target)
 
-    def _integrated(
-        self, modal: ModalEquations, system: ModalSystem, y0: np.ndarray
-    ) -> tuple[Path, float, str]:
-        """The path, its error by the steps in time [m], and what was done."""
+    def _integrate(self, system: ModalSystem, y0: np.ndarray) -> tuple[Path, float, str]:
+        """The path, its time-integration error [m], and the name of the integrator."""
         if self.method == "auto":
-            return integrate(modal.tip, system, y0, self.t_end, self.tolerance)
-        absolute = _absolute(modal, system, y0, self.t_end, self.tolerance)
-        options = {"rtol": self.tolerance, "atol": absolute, **self.options}
+            return integrate(system, y0, self.t_end, self.tolerance)
         name = self.method if isinstance(self.method, str) else self.method.__name__
-        return _stock(system, y0, self.t_end, self.method, options), np.nan, name
+        path = integrate_by_solve_ivp(system, y0, self.t_end, self.method, self.tolerance, self.options)
+        return path, np.nan, name
 
-    def _padded(self, modes: int, more: int) -> str | np.ndarray:
-        """Initial coordinates and velocities of more modes: those added are at rest."""
+    def _pad_initial(self, modes: int, more: int) -> str | np.ndarray:
+        """Initial coordinates and velocities for more modes: those added are at rest."""
         if isinstance(self.initial, str):
             return self.initial
         parts = np.reshape(self.initial, (-1, modes))
@@ -367,7 +350,7 @@ def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
 
 def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
     """Refuse a motion that ends early or passes the critical speed, before any long work."""
-    t = np.linspace(0, t_end, SAMPLED_TIMES)
+    t = np.linspace(0, t_end, SPEED_SAMPLES)
     speed = np.abs(motion.at(t).speed)
     critical = model.solver.critical_speed
     if speed.max() >= critical:
@@ -389,7 +372,7 @@ def _check_growth(scene: Scene, largest: float) -> None:
         )
 
 
-def _initial(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
+def _initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
     n = system.size
     if isinstance(initial, str):
         if initial == "rest":
@@ -407,66 +390,7 @@ def _initial(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
 
 
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
-    motion, length = scene.motion, scene.beam.length
-    if largest > LARGE_DEFLECTION * length:
-        yield f"the tip moves by {largest / length:.2g} of the length: past 0.1 it is outside linear theory"
-    road = (
-        np.abs(motion.at(np.linspace(0, t_end, SAMPLED_TIMES)).carrier_acceleration[:, 1]).max()
-        if motion
-        else 0.0
-    )
-    if road > _GRAVITY:
-        yield (
-            f"the road accelerates the wheel by {road:.3g} m/s2, more than gravity: it would leave the road; "
-            "was a velocity amplitude given as a height?"
-        )
-
-
-# Stock integrators --------------------------------------------------------------------------------
-
-
-def _absolute(
-    modal: ModalEquations, system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float
-) -> np.ndarray:
-    """Absolute tolerances of the coordinates and velocities, from a quick run of ours."""
-    path, _, _ = integrate(modal.tip, system, y0, t_end, 1e-2)
-    sizes = [np.abs(x).max(axis=0) for x in path.samples[1:]]
-    return 0.1 * tolerance * np.concatenate(sizes) + 1e-300
-
-
-@dataclass(frozen=True)
-class _StockTrajectory:
-    """A solution of `solve_ivp` in the form of a path."""
-
-    solution: Any
-    times: np.ndarray
-
-    @property
-    def start(self) -> float:
-        return float(self.times[0])
-
-    @property
-    def end(self) -> float:
-        return float(self.times[-1])
-
-    @property
-    def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        return self.times, *self.at(self.times)
-
-    def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        q, v = np.split(self.solution(t), 2)
-        return q.T, v.T
-
-
-def _stock(system: ModalSystem, y0: np.ndarray, t_end: float, method: Any, options: dict[str, Any]) -> Any:
-    if isinstance(method, str) and method not in _STOCK:
-        raise ValueError(f"method = {method!r}: give 'auto', {', '.join(map(repr, _STOCK))} or an OdeSolver")
-    if isinstance(method, type) and issubclass(method, GaussCollocation):
-        options = {"system": system, **options}
-    elif method in ("Radau", "BDF", "LSODA"):
-        options = {"jac": system.jacobian, **options}
-    solved = solve_ivp(system.rhs, (0.0, t_end), y0, method=method, dense_output=True, **options)
-    if not solved.success:
-        raise ArithmeticError(f"solve_ivp stopped at t = {solved.t[-1]:g} s: {solved.message}")
-    steps = [np.linspace(a, b, SAMPLES + 1)[:-1] for a, b in pairwise(solved.t)]
-    return _StockTrajectory(solved.sol, np.concatenate([*steps, [t_end]]))
+    yield from warn_of_deflection(np.array([largest]), scene.beam.length)
+    if scene.motion is not None:
+        road = scene.motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
+        yield from warn_of_road(np.array([np.abs(road).max()]))

@@ -4,60 +4,33 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, Future, as_completed
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive, real, within
-from beamdyn.common.parallel.store import Store, fingerprint
-from beamdyn.common.parallel.workers import Workers, one_blas_thread
+from beamdyn.common.parallel.store import Store
+from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.operators import Discretization
-from beamdyn.modal.modal_basis import FEWEST, Kept, range_of_speed
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.modal.modal_basis import FEWEST_MODES, SPEED_SAMPLES, ModalBasis, find_speed_range
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.modes import LARGE_DEFLECTION
-from beamdyn.transient.chunks import DONE, Case, Request, solve
-from beamdyn.transient.simulate import Task, Transient
+from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
+from beamdyn.transient.chunk_collector import ChunkCollector, Progress
+from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
+from beamdyn.transient.simulate import Transient, TransientRequest
 from beamdyn.transient.step_size import TOLERANCES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _KIND = "beamdyn sweep"
-_VERSIONS = (__version__, np.__version__, scipy.__version__)  # whose bits are stored
-_GRAVITY = 9.81  # past this acceleration [m/s2] a wheel leaves the road
-
-Progress = Callable[[int, int], object]
-
-
-class SweepInterrupted(RuntimeError):
-    """The executor broke before all cases were done.
-
-    Parameters
-    ----------
-    done, total : int
-        Cases that were done, and all cases.
-    stored : bool
-        Whether those that were done are in a store.
-    """
-
-    def __init__(self, done: int, total: int, stored: bool) -> None:
-        super().__init__(done, total, stored)
-        self.done, self.total, self.stored = done, total, stored
-
-    def __str__(self) -> str:
-        if self.stored:
-            hint = "stored; the same call with a working executor resumes"
-        else:
-            hint = "done, but not kept: give a store= and the same call resumes"
-        return f"the executor broke with {self.done} of {self.total} cases {hint}"
 
 
 @dataclass(frozen=True)
@@ -119,7 +92,7 @@ def sweep(
     executor: Executor | None = None,
     store: str | Path | None = None,
     progress: Progress | None = None,
-    discretization: str | Discretization = "ritz",
+    discretization: DiscretizationChoice = "ritz",
     chunk: int = 40,
 ) -> Sweep:
     """Peak of the tip deflection in a window of time, from rest, for each final speed of the motion.
@@ -138,10 +111,10 @@ def sweep(
     t_end : float, optional
         End of each run [s]; the window's end if not given.
     modes : int or "auto"
-        Number of modes of each field at rest.  "auto" keeps modes at the slowest and at the fastest speed, as
-        few as leave no more than the tolerance out at three of the speeds.
+        Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
+        speed: the smallest modal basis whose truncation error meets the tolerance at three of the speeds.
     tolerance : float
-        Error in time that is aimed at, and with ``modes="auto"`` also the error by the modes left out, each
+        Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
         relative to the largest deflection of a case.
     workers : int
         Processes of our own; 1 computes in this one.
@@ -170,37 +143,38 @@ def sweep(
     """
     began = perf_counter()
     cases = tuple(ascending("speeds", speeds).tolist())
-    request = _request(scene, window, t_end, tolerance, discretization)
+    request = _check_request(scene, window, t_end, tolerance, discretization)
     workers, chunk = count("workers", workers), count("chunk", chunk)
     if executor is not None and workers > 1:
         raise ValueError(f"workers = {workers} and an executor are given: give one of them")
-    kept = None if modes == "auto" else Kept(count("modes", modes))
-    _check_speeds(request := replace(request, kept=kept or _fewest(request, cases)), cases)
+    basis = None if modes == "auto" else ModalBasis(count("modes", modes))
+    _check_speeds(request := replace(request, basis=basis or _smallest_basis(request, cases)), cases)
     if store is not None or executor is not None or workers > 1:
         _check_sendable(request, importable=workers > 1)
-    tried = _tried(request, cases, Task.run) if kept else _agreed(request, cases)
-    request = replace(request, kept=max((each.task.kept for each in tried), key=lambda kept: kept.modes or 0))
-    run = _Run(request, _chunks(cases, chunk), None if store is None else Store(store, _KIND), progress)
-    run.collect(executor, workers)
-    method = f"Gauss collocation in batches of {chunk}, {request.kept} of {request.model().discretization}"
+    samples = _run_samples(request, cases, TransientRequest.run) if basis else _choose_basis(request, cases)
+    largest = max((run.request.basis for run in samples), key=lambda basis: basis.modes or 0)
+    request, place = replace(request, basis=largest), None if store is None else Store(store, _KIND)
+    collector = ChunkCollector(request, _split(cases, chunk), place, progress)
+    collector.collect(executor, workers)
+    method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model().discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - began)
-    return _result(request, np.array(cases), run.cases(), _left_out(tried), provenance)
+    return _assemble_result(request, np.array(cases), collector.cases(), _truncation(samples), provenance)
 
 
-def _chunks(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
+def _split(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
     return [speeds[k : k + size] for k in range(0, len(speeds), size)]
 
 
 # Requests -----------------------------------------------------------------------------------------
 
 
-def _request(
+def _check_request(
     scene: Scene,
     window: tuple[float, float],
     t_end: float | None,
     tolerance: float,
-    discretization: str | Discretization,
-) -> Request:
+    discretization: DiscretizationChoice,
+) -> SweepRequest:
     if scene.motion is None:
         raise ValueError("scene.motion is None: a sweep needs a motion, such as SpinUp(50.0, duration=10.0)")
     if not isinstance(window, tuple | list) or len(window) != 2:
@@ -212,52 +186,56 @@ def _request(
             f"window = {start:g} ... {end:g} s: it must begin before it ends, "
             f"and lie in the run, 0 ... {last:g} s"
         )
-    return Request(scene, (start, end), last, within("tolerance", tolerance, *TOLERANCES), discretization)
+    return SweepRequest(
+        scene, (start, end), last, within("tolerance", tolerance, *TOLERANCES), discretization
+    )
 
 
-def _check_speeds(request: Request, speeds: tuple[float, ...]) -> None:
+def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     """Refuse a case that passes the critical speed, or a motion that does not last to the end."""
-    model, t = request.model(), np.linspace(0, request.t_end, 2001)
+    model, t = request.model(), np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
     if (fastest >= critical).any():
         past = np.array(speeds)[fastest >= critical]
         raise ValueError(
-            f"speeds: {len(past)} of {len(speeds)} ({_range(past)}) pass the critical speed "
+            f"speeds: {len(past)} of {len(speeds)} ({list_range(past)}) pass the critical speed "
             f"{critical:.6g} rad/s, where the beam buckles and linear theory has no answer; leave them out"
         )
 
 
-def _fewest(request: Request, speeds: tuple[float, ...]) -> Kept:
-    """The fewest modes that are tried, at the slowest and at the fastest speed of all cases."""
-    ends = [range_of_speed(motion, request.t_end) for motion in request.motions((speeds[0], speeds[-1]))]
-    return Kept(FEWEST, tuple(np.unique([ends[0][0], ends[1][-1]]).tolist()))
+def _smallest_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
+    """The smallest basis that is tried, at the slowest and at the fastest speed of all cases."""
+    ends = [find_speed_range(motion, request.t_end) for motion in request.motions((speeds[0], speeds[-1]))]
+    return ModalBasis(FEWEST_MODES, tuple(np.unique([ends[0][0], ends[1][-1]]).tolist()))
 
 
 @one_blas_thread()
-def _tried(request: Request, speeds: tuple[float, ...], run: Callable[[Task], Transient]) -> list[Transient]:
-    """Runs at the fastest speed, in the middle, and halfway between: they tell what the modes leave out."""
+def _run_samples(
+    request: SweepRequest, speeds: tuple[float, ...], run: Callable[[TransientRequest], Transient]
+) -> list[Transient]:
+    """Runs at the fastest speed, in the middle, and halfway between, for the modal truncation error."""
     some = sorted({speeds[k * (len(speeds) - 1) // 4] for k in (2, 3, 4)})
-    return [run(request.task(motion)) for motion in request.motions(some)]
+    return [run(request.single(motion)) for motion in request.motions(some)]
 
 
-def _agreed(request: Request, speeds: tuple[float, ...]) -> list[Transient]:
-    """The cheapest of these runs; if their families of modes differ, all in that which leaves out least."""
-    tried = _tried(request, speeds, Task.cheapest)
-    families = {each.task.kept.speeds for each in tried}
+def _choose_basis(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
+    """Runs in the smallest basis of each; if they are of modes at different speeds, all in the best one."""
+    samples = _run_samples(request, speeds, TransientRequest.run_cheapest)
+    families = {run.request.basis.speeds for run in samples}
     if len(families) == 1:
-        return tried
-    most = max(each.task.kept.modes or 0 for each in tried)
-    alike = (replace(request, kept=Kept(most, family)) for family in sorted(families))
-    return min((_tried(each, speeds, Task.run) for each in alike), key=_left_out)
+        return samples
+    most = max(run.request.basis.modes or 0 for run in samples)
+    alike = (replace(request, basis=ModalBasis(most, family)) for family in sorted(families))
+    return min((_run_samples(each, speeds, TransientRequest.run) for each in alike), key=_truncation)
 
 
-def _left_out(tried: Sequence[Transient]) -> float:
-    """Largest estimated error of some runs by the modes left out, over their largest deflection."""
-    return max((each.mode_error / each.largest for each in tried if each.largest), default=0.0)
+def _truncation(runs: Sequence[Transient]) -> float:
+    """Largest modal truncation error of some runs, relative to their largest deflection."""
+    return max((run.mode_error / run.largest for run in runs if run.largest), default=0.0)
 
 
-def _check_sendable(request: Request, importable: bool) -> None:
+def _check_sendable(request: SweepRequest, importable: bool) -> None:
     """Refuse what cannot be stored or sent to workers; to our own only what they can import."""
     assert request.scene.motion is not None
     check_picklable(request.scene.motion)
@@ -272,129 +250,18 @@ def _check_sendable(request: Request, importable: bool) -> None:
         )
 
 
-# Running ------------------------------------------------------------------------------------------
-
-
-class _Run:
-    """The chunks of a sweep and what is known of them.
-
-    Parameters
-    ----------
-    request : Request
-        What is asked.
-    chunks : list of tuple of float
-        Speeds of each chunk [rad/s].
-    store : Store, optional
-        Where finished chunks are kept.
-    progress : callable, optional
-        Called with the number of cases done and of all.
-    """
-
-    def __init__(
-        self,
-        request: Request,
-        chunks: list[tuple[float, ...]],
-        store: Store | None,
-        progress: Progress | None,
-    ) -> None:
-        self.request, self.chunks, self.store, self.progress = request, chunks, store, progress
-        self.known: dict[int, list[Case]] = {}
-        self.futures: dict[Future[Any], int] = {}
-        if store is not None:
-            self.keys = [fingerprint(_VERSIONS, request, speeds) for speeds in chunks]
-            stored = ((k, store.read(key)) for k, key in enumerate(self.keys))
-            self.known = {k: [Case(*c) for c in record["cases"]] for k, record in stored if record}
-
-    @property
-    def missing(self) -> list[int]:
-        """Chunks still to compute, those of high speeds first: they take longest."""
-        return [k for k in reversed(range(len(self.chunks))) if k not in self.known]
-
-    def cases(self) -> list[Case]:
-        """All cases by ascending speed."""
-        return [case for k in range(len(self.chunks)) for case in self.known[k]]
-
-    def collect(self, executor: Executor | None, workers: int) -> None:
-        """Compute what is missing."""
-        self._report()
-        missing = self.missing
-        workers = min(workers, len(missing))
-        if executor is not None:
-            self._submit(executor, missing)
-        elif workers > 1:
-            with Workers(workers) as pool:
-                self._submit(pool, missing)
-        else:
-            for k in missing:
-                self._keep(k, solve(self.request, self.chunks[k]))
-                self._report()
-
-    def _submit(self, executor: Executor, missing: list[int]) -> None:
-        """Compute chunks by an executor; at an error keep what is finished and cancel the rest."""
-        try:
-            for k in missing:
-                future = self._ask(executor.submit, _attempt, self.request, self.chunks[k])
-                self.futures[future] = k
-            for future in as_completed(list(self.futures)):
-                found = self._ask(future.result)
-                self._keep(self.futures.pop(future), found)
-                self._report()
-        finally:
-            self._settle()
-
-    def _ask(self, action: Callable[..., Any], *args: Any) -> Any:
-        """What the executor answers: tasks return their errors, so that one that is raised is its own."""
-        try:
-            return action(*args)
-        except Exception as error:
-            self._settle()
-            raise SweepInterrupted(*self._count(), stored=self.store is not None) from error
-
-    def _settle(self) -> None:
-        """Cancel what has not begun; keep what has finished meanwhile."""
-        for future in self.futures:
-            future.cancel()
-        while self.futures:
-            future, k = self.futures.popitem()
-            if (
-                future.done()
-                and not future.cancelled()
-                and isinstance(future.exception() or future.result(), list)
-            ):
-                self._keep(k, future.result())
-
-    def _keep(self, k: int, found: list[Case] | Exception) -> None:
-        if isinstance(found, Exception):
-            raise found
-        if self.store is not None:
-            self.store.write(self.keys[k], {"speeds": self.chunks[k], "fields": Case._fields, "cases": found})
-        self.known[k] = found
-
-    def _count(self) -> tuple[int, int]:
-        """Cases that are done, and all."""
-        return sum(len(self.chunks[k]) for k in self.known), sum(map(len, self.chunks))
-
-    def _report(self) -> None:
-        if self.progress is not None:
-            self.progress(*self._count())
-
-
-def _attempt(request: Request, speeds: tuple[float, ...]) -> list[Case] | Exception:
-    """Solve a chunk; return its error, for what an executor raises is its own."""
-    try:
-        return solve(request, speeds)
-    except Exception as error:
-        return error
-
-
 # Results ------------------------------------------------------------------------------------------
 
 
-def _result(
-    request: Request, speeds: np.ndarray, cases: Sequence[Case], mode_error: float, provenance: Provenance
+def _assemble_result(
+    request: SweepRequest,
+    speeds: np.ndarray,
+    cases: Sequence[CaseResult],
+    mode_error: float,
+    provenance: Provenance,
 ) -> Sweep:
     peaks, largest, time_error, status = zip(*cases, strict=True)
-    found = Sweep(
+    result = Sweep(
         speeds=speeds,
         peaks=np.array(peaks),
         largest=np.array(largest),
@@ -407,25 +274,15 @@ def _result(
         provenance=provenance,
         scene=request.scene,
     )
-    return replace(found, warnings=tuple(_warnings(found, request.tolerance)))
+    return replace(result, warnings=tuple(_warnings(result, request.tolerance)))
 
 
-def _warnings(found: Sweep, tolerance: float) -> Iterator[str]:
-    speeds, motion, length = found.speeds, found.scene.motion, found.scene.beam.length
-    if (at := speeds[np.array([s != DONE for s in found.status])]).size:
-        yield f"{len(at)} of {len(speeds)} cases failed, at {_range(at)}: see status"
-    if (at := speeds[found.largest > LARGE_DEFLECTION * length]).size:
-        yield f"the tip deflects by more than 0.1 of the length at {_range(at)}: outside linear theory"
-    road = np.array([0.0 if motion is None else motion.road_acceleration(v) for v in speeds])
-    if (at := speeds[road > _GRAVITY]).size:
-        yield (
-            f"the road accelerates the wheel by up to {road.max():.4g} m/s2, past gravity, at {_range(at)}: "
-            "the wheel leaves the road; was a velocity given as a height?"
-        )
-    if (at := speeds[found.time_error > tolerance * found.largest]).size:
-        yield f"the steps in time do not reach the tolerance {tolerance:g} at {_range(at)}; see time_error"
-
-
-def _range(speeds: np.ndarray) -> str:
-    ends = [f"{speed:.6g}" for speed in (speeds.min(), speeds.max())]
-    return " to ".join(dict.fromkeys(ends)) + " rad/s"
+def _warnings(sweep: Sweep, tolerance: float) -> Iterator[str]:
+    speeds, motion = sweep.speeds, sweep.scene.motion
+    if (at := speeds[np.array([s != DONE for s in sweep.status])]).size:
+        yield f"{len(at)} of {len(speeds)} cases failed, at {list_range(at)}: see status"
+    yield from warn_of_deflection(sweep.largest, sweep.scene.beam.length, speeds)
+    if motion is not None:
+        yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
+    if (at := speeds[sweep.time_error > tolerance * sweep.largest]).size:
+        yield (f"the time-integration error exceeds the tolerance {tolerance:g} at {list_range(at)}")

@@ -1,15 +1,17 @@
-"""The equations of a scene in modal coordinates, following its motion."""
+"""The equations of a scene over its motion: coefficients at times, for the integrators."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
 
 import numpy as np
 
-from beamdyn.equations.equations_of_motion import Equations, RootMotion
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.root_motion import CONSTANT_AT_STEADY_SPEED, Quantity, RootMotion
 from beamdyn.scene.motion import Motion
-from beamdyn.transient.weakly_modulated import Modulation
+from beamdyn.transient.weakly_modulated import ModulatedSystem
+
+_MEAN_SAMPLES = 257  # of the root's motion, for the mean stiffness
 
 
 @dataclass(frozen=True)
@@ -29,54 +31,49 @@ class ModalSystem:
 
     @property
     def size(self) -> int:
-        """Number of coordinates."""
+        """Number n of coordinates."""
         return self.equations.size
 
-    @cached_property
-    def parts(self) -> dict[int, dict[str, np.ndarray]]:
-        """For each order, the sum of the matrices that one quantity of the motion multiplies."""
-        parts: dict[int, dict[str, np.ndarray]] = {0: {}, 1: {}}
-        for term in self.equations.terms:
-            if term.order < 2:
-                whole = parts[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
-                whole[self.equations.fields[term.rows], self.equations.fields[term.columns]] += (
-                    term.factor * term.matrix
-                )
-        return parts
+    @property
+    def tip(self) -> np.ndarray:
+        """Tip deflection by unit coordinates, shape (n,)."""
+        return self.equations.tip
 
     def root(self, t: np.ndarray) -> RootMotion:
         """Motion of the root at times t [s]."""
         return self.equations.root(self.motion.at(t))
 
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """C (None if zero), K and f at times t."""
+        """C (None if zero), K and f at times t [s]."""
         root = self.root(np.asarray(t, dtype=float))
-        C = _sum(self.parts[1], root) if self.parts[1] else None
-        return C, _sum(self.parts[0], root), self.equations.load(root)
+        return self._damping(root), self.equations.matrix(0, root), self.equations.load(root)
 
-    def modulation(self, start: float, end: float) -> Modulation | None:
-        """The equations from start to end [s] as constant ones that the root's acceleration modulates.
+    def _damping(self, root: RootMotion) -> np.ndarray | None:
+        return self.equations.matrix(1, root) if self.equations.matrices[1] else None
 
-        None where the speed changes.
+    def modulated(self, start: float, end: float) -> ModulatedSystem | None:
+        """The equations from start to end [s] as constant ones with a varying stiffness.
+
+        None where the speed changes, or where damping or gyroscopic terms vary.
         """
-        if self.motion.settled > start:
+        stiffness, damping, _ = self.equations.matrices
+        varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
+        if self.motion.settled > start or not set(damping) <= set(CONSTANT_AT_STEADY_SPEED):
             return None
-        root = self.root(np.linspace(start, end, 257)[1:-1])
+        root = self.root(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
         mean = RootMotion(*(np.asarray(getattr(root, f.name).mean()) for f in fields(RootMotion)))
-        loads = {f.quantity: np.zeros(self.size) for f in self.equations.loads}
-        for load in self.equations.loads:
-            loads[load.quantity][self.equations.fields[load.rows]] += load.factor * load.vector
+        loads = self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             now = self.root(t)
-            g = [getattr(now, quantity) for quantity in loads]
-            return now.root_axial - mean.root_axial, np.stack(g, axis=-1)
+            e = [getattr(now, name) - getattr(mean, name) for name in varying]
+            return _stack(e, t.shape), _stack([getattr(now, name) for name in loads], t.shape)
 
-        return Modulation(
-            C=_sum(self.parts[1], mean) if self.parts[1] else None,
-            K=_sum(self.parts[0], mean),
-            G=self.parts[0].get("root_axial", np.zeros((self.size, self.size))),
-            P=np.array(list(loads.values())),
+        return ModulatedSystem(
+            C=self._damping(mean),
+            K=self.equations.matrix(0, mean),
+            G=np.array([stiffness[name] for name in varying]).reshape(-1, self.size, self.size),
+            P=np.array([*loads.values()]).reshape(-1, self.size),
             scalars=scalars,
         )
 
@@ -97,9 +94,6 @@ class ModalSystem:
         return J
 
 
-def _sum(parts: dict[str, np.ndarray], root: RootMotion) -> np.ndarray:
-    """Sum of quantity times matrix, over the shape of the root's motion."""
-    total = np.zeros((*root.unity.shape, *next(iter(parts.values())).shape))
-    for quantity, matrix in parts.items():
-        total += getattr(root, quantity)[..., None, None] * matrix
-    return total
+def _stack(values: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    """Values of one shape along a new last axis, which may be empty."""
+    return np.stack(values, axis=-1) if values else np.empty((*shape, 0))

@@ -23,7 +23,8 @@ from beamdyn.equations.equations_of_motion import equations
 from beamdyn.equations.operators import assemble
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
-from beamdyn.scene.scene import Mount, Scene
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
 STRETCH = (1, 2)

@@ -11,7 +11,8 @@ from numpy.polynomial import Polynomial
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import SteadyRotation
 from beamdyn.scene.profile import Table, as_profile
-from beamdyn.scene.scene import Mount, Scene
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
 STIFFNESS = {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3}

@@ -17,7 +17,8 @@ from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, sce
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.scene.profile import Table
-from beamdyn.scene.scene import Mount, Scene
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

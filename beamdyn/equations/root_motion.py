@@ -1,0 +1,80 @@
+"""The motion of the beam's root: the quantities of time that multiply the terms of the equations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import Literal
+
+import numpy as np
+
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import Mount
+
+Quantity = Literal["unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse"]
+CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
+
+
+@dataclass(frozen=True)
+class RootMotion:
+    """The quantities of time in the equations of motion; arrays of one shape.
+
+    Parameters
+    ----------
+    unity : ndarray
+        1.
+    speed, acceleration, speed_squared : ndarray
+        omega [rad/s], omega' [rad/s2] and omega^2 [rad2/s2].
+    root_axial : ndarray
+        Acceleration a_O1 of the root along the beam [m/s2], less gravity.
+    root_transverse : ndarray
+        Acceleration c a_O2 + s a_O3 of the root in the direction of bending [m/s2], less gravity.
+    """
+
+    unity: np.ndarray
+    speed: np.ndarray
+    acceleration: np.ndarray
+    speed_squared: np.ndarray
+    root_axial: np.ndarray
+    root_transverse: np.ndarray
+
+
+def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> RootMotion:
+    """Compute the motion of the beam's root from that of the carrier.
+
+    Parameters
+    ----------
+    mount : Mount
+        Radius r, setting angle phi and bending angle psi.
+    sample : MotionSample
+        Motion of the carrier.
+    gravity : float
+        Gravity along -n2 [m/s2].
+
+    Returns
+    -------
+    RootMotion
+    """
+    cphi, sphi = exact_cos_sin(mount.setting_angle)
+    cpsi, spsi = exact_cos_sin(mount.bending_angle)
+    r, omega = mount.radius, sample.speed
+    v1, v2, v3 = np.moveaxis(sample.carrier_acceleration, -1, 0)
+    v2 = v2 + gravity
+    radial = omega**2 * r + v1 * np.cos(sample.angle) - v2 * np.sin(sample.angle)
+    tangential = v1 * np.sin(sample.angle) + v2 * np.cos(sample.angle) + sample.acceleration * r
+    a1 = cphi * radial - sphi * tangential
+    a2 = sphi * radial + cphi * tangential
+    return RootMotion(
+        unity=np.ones_like(omega),
+        speed=omega,
+        acceleration=sample.acceleration,
+        speed_squared=omega**2,
+        root_axial=a1,
+        root_transverse=cpsi * a2 + spsi * v3,
+    )
+
+
+def exact_cos_sin(angle: float) -> tuple[float, float]:
+    """Cosine and sine [angle in rad], exactly 0 where the angle is the double nearest to a quarter turn."""
+    c, s = cos(angle), sin(angle)
+    return (0.0 if abs(c) < 2e-16 else c), (0.0 if abs(s) < 2e-16 else s)

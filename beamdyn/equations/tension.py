@@ -1,0 +1,25 @@
+"""The axial force by rotation and by the root's acceleration."""
+
+from __future__ import annotations
+
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.profile import FRACTION, Profile
+
+
+def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
+    """Tension per unit root acceleration N_A [kg] and per squared unit speed N_B [kg m] over x/L.
+
+    The axial force at steady speed is omega^2 N_B - a_O1 N_A: Lee and Yoo (2019), eqs. (18), (19).
+    """
+    length, mass = beam.length, beam.mass_per_length
+    n_a = mass.scaled(length).outboard_integral()
+    n_b = (mass * FRACTION).scaled(length**2).outboard_integral()
+    if beam.tip is None:
+        return n_a, n_b
+    reach = length + beam.tip.offset
+    return _add_constant(n_a, beam.tip.mass), _add_constant(n_b, beam.tip.mass * reach)
+
+
+def _add_constant(profile: Profile, constant: float) -> Profile:
+    rows = tuple((row[0] + constant, *row[1:]) for row in profile.coefficients)
+    return Profile(profile.breakpoints, rows)

@@ -1,0 +1,109 @@
+"""The methods of `scipy.integrate.solve_ivp` on our equations, as paths."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.integrate import OdeSolver, solve_ivp
+
+from beamdyn.transient.gauss import GaussCollocation
+from beamdyn.transient.step_size import integrate
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import SAMPLES
+
+_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
+_WITH_JACOBIAN = ("Radau", "BDF", "LSODA")
+_ROUGH = 1e-2  # tolerance of the run that gives the sizes of the coordinates
+
+
+@dataclass(frozen=True)
+class SolveIvpPath:
+    """A solution of `solve_ivp` as a path.
+
+    Parameters
+    ----------
+    solution : OdeSolution
+        Its dense output.
+    times : ndarray
+        Sampled times [s].
+    """
+
+    solution: Any
+    times: np.ndarray
+
+    @property
+    def start(self) -> float:
+        """First time [s]."""
+        return float(self.times[0])
+
+    @property
+    def end(self) -> float:
+        """Last time [s]."""
+        return float(self.times[-1])
+
+    @property
+    def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Times, coordinates and velocities, several in each step."""
+        return self.times, *self.at(self.times)
+
+    def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and velocities at times t [s]."""
+        q, v = np.split(self.solution(t), 2)
+        return q.T, v.T
+
+
+def integrate_by_solve_ivp(
+    system: ModalSystem,
+    y0: np.ndarray,
+    t_end: float,
+    method: str | type[OdeSolver],
+    tolerance: float,
+    options: dict[str, Any],
+) -> SolveIvpPath:
+    """Integrate by a method of `solve_ivp`.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        The equations.
+    y0 : ndarray, shape (2 n,)
+        Coordinates and velocities at time 0.
+    t_end : float
+        End [s].
+    method : str or OdeSolver
+        The method.
+    tolerance : float
+        Default of rtol; that of atol is a tenth of it, relative to the size of each coordinate.
+    options : dict
+        Further options of the method.
+
+    Raises
+    ------
+    ValueError
+        If the method is unknown.
+    ArithmeticError
+        If it fails.
+    """
+    if isinstance(method, str) and method not in _METHODS:
+        known = ", ".join(map(repr, _METHODS))
+        raise ValueError(f"method = {method!r}: give 'auto', {known} or an OdeSolver")
+    options = {"rtol": tolerance, "atol": _absolute_tolerance(system, y0, t_end, tolerance), **options}
+    if isinstance(method, type) and issubclass(method, GaussCollocation):
+        options = {"system": system, **options}
+    elif method in _WITH_JACOBIAN:
+        options = {"jac": system.jacobian, **options}
+    result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=method, dense_output=True, **options)
+    if not result.success:
+        raise ArithmeticError(f"solve_ivp stopped at t = {result.t[-1]:g} s: {result.message}")
+    steps = [np.linspace(a, b, SAMPLES + 1)[:-1] for a, b in pairwise(result.t)]
+    return SolveIvpPath(result.sol, np.concatenate([*steps, [t_end]]))
+
+
+def _absolute_tolerance(system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float) -> np.ndarray:
+    """Absolute tolerances of coordinates and velocities, from a rough run of our own integrator."""
+    path, _, _ = integrate(system, y0, t_end, _ROUGH)
+    sizes = [np.abs(x).max(axis=0) for x in path.samples[1:]]
+    return 0.1 * tolerance * np.concatenate(sizes) + 1e-300
