@@ -13,8 +13,8 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.spectrum.bounds import frequency_bounds
-from benchmarks.beam_core import Row, show
-from tests.invariants.test_bounds import draw, encloses, relative_width
+from benchmarks.cases.enclosure import encloses, random_nondimensional_scene, relative_width
+from benchmarks.rows import Row, show
 
 MODES = 3
 FIRST_SEED = 10_000
@@ -22,7 +22,7 @@ FIRST_SEED = 10_000
 
 def measured(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
     """Whether the bounds of one scene hold, their relative widths, and the time [s]."""
-    case = draw(np.random.default_rng(seed))
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     start = perf_counter()
     found = frequency_bounds(case.scene, case.gamma, MODES)
     time = perf_counter() - start

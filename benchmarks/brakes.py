@@ -10,8 +10,8 @@ from time import perf_counter
 
 import numpy as np
 
-from benchmarks.beam_core import Row, best_time, show
 from benchmarks.cases import mechanisms
+from benchmarks.rows import Row, best_time, show
 from brakes import calipers, forklift
 from brakes.forklift import Levers, Truck, internal_forces
 from brakes.planar import solve, stroke

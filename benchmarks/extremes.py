@@ -23,9 +23,10 @@ from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from benchmarks.beam_core import Row, show
+from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
 from benchmarks.cases.reference.of_scene import exact, relative_errors
-from benchmarks.coverage import MOST_TENSION, largest_tension, time_unit
+from benchmarks.cases.scenes import time_unit
+from benchmarks.rows import Row, show
 
 _EPS = float(np.finfo(float).eps)
 

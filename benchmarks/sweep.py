@@ -8,7 +8,6 @@ from __future__ import annotations
 import resource
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -18,18 +17,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 import beamdyn as bd
 from beamdyn.modal.modal_basis import Kept
 from beamdyn.transient.chunks import Request, solve
-from benchmarks.beam_core import Row, show
-from benchmarks.cases.scenes import HARVESTER
+from benchmarks.cases.scenes import ROLLING
+from benchmarks.rows import Row, show
 
 WORKERS = 2
-SCENE = replace(
-    HARVESTER,
-    motion=bd.RollingWheel(
-        rolling_radius=0.3,
-        speed=bd.SpinUp(55.0, duration=10.0),
-        road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01),
-    ),
-)
 
 
 def measured(modes: int | str) -> tuple[bd.Sweep, float]:
@@ -39,7 +30,7 @@ def measured(modes: int | str) -> tuple[bd.Sweep, float]:
         task = bar.add_task("speeds")
         start = perf_counter()
         found = bd.sweep(
-            SCENE,
+            ROLLING,
             np.linspace(0, 150, 151),
             modes=modes,
             workers=WORKERS,
@@ -67,7 +58,7 @@ def two_largest(found: bd.Sweep) -> list[tuple[float, float]]:
 
 def chunk_time() -> float:
     """Time of the last chunk, the slowest, in this process [s]."""
-    request = Request(SCENE, (20.0, 30.0), 30.0, 1e-5, "ritz", Kept(5))
+    request = Request(ROLLING, (20.0, 30.0), 30.0, 1e-5, "ritz", Kept(5))
     start = perf_counter()
     solve(request, tuple(np.arange(111.0, 151.0)))
     return perf_counter() - start

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import date
 from functools import partial
@@ -32,9 +32,10 @@ from beamdyn.tradeoffs import (
     transient_modes_diagram,
 )
 from beamdyn.tradeoffs.transients import OURS
-from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
-from benchmarks.peers.tables import grid, seconds
-from benchmarks.transient import lean, system
+from benchmarks import rows
+from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_harvester
+from benchmarks.cases.table_3 import handwritten, modal_system
+from benchmarks.rows import markdown_table, time_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,14 +74,7 @@ def scenes() -> dict[str, tuple[bd.Scene, float]]:
 
 
 # The published scene sped up in 1 s instead of 10, so that the stock integrators can be run often.
-HURRIED = replace(
-    ROLLING,
-    motion=bd.RollingWheel(
-        rolling_radius=0.3,
-        speed=bd.SpinUp(55.0, duration=1.0),
-        road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01),
-    ),
-)
+HURRIED = rolling_harvester(bd.SpinUp(55.0, duration=1.0))
 
 
 DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 rad/s;
@@ -92,14 +86,7 @@ DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 
   root's, at a nondimensional speed of 10."""
 
 
-def best_time(action: Callable[[], object], runs: int = 7) -> float:
-    """Shortest processor time of several runs [s]."""
-    times = []
-    for _ in range(runs):
-        start = process_time()
-        action()
-        times.append(process_time() - start)
-    return min(times)
+best_time = partial(rows.best_time, clock=process_time)  # one thread: other programs do not count
 
 
 # What tolerance= chooses --------------------------------------------------------------------------
@@ -130,7 +117,7 @@ class Choice:
             str(self.chosen),
             f"{self.error:.0e}",
             f"{self.estimate:.0e}",
-            seconds(self.cheapest),
+            time_text(self.cheapest),
             f"{self.own / self.cheapest:.2f}",
             f"{self.call / self.cheapest:.1f}",
         )
@@ -202,7 +189,7 @@ def locus_rows() -> Iterator[tuple[str, ...]]:
     for tolerance, time in times.items():
         error = called(ROLLING, speeds, tolerance).error.max()
         name = "not given" if tolerance is None else f"{tolerance:.0e}"
-        yield name, seconds(time), f"{times[1e-10] / time:.1f}", f"{error:.0e}"
+        yield name, time_text(time), f"{times[1e-10] / time:.1f}", f"{error:.0e}"
 
 
 def transient_rows() -> Iterator[tuple[str, ...]]:
@@ -218,7 +205,7 @@ def transient_rows() -> Iterator[tuple[str, ...]]:
     for tolerance, time, error, estimate in rows:
         yield (
             f"{tolerance:.0e}",
-            seconds(time),
+            time_text(time),
             f"{rows[-1][1] / time:.1f}",
             f"{error:.0e}",
             f"{estimate:.0e}",
@@ -327,9 +314,11 @@ def page(
         transients="\n".join(section(d) for d in motion if d.title.startswith("transient")),
         steady="\n".join(section(d) for d in motion if d.title.startswith("steady")),
         rules=rules([*single.values(), *many.values()], single["published"], motion, chosen),
-        choices=grid(CHOICE_HEAD, (c.row() for c in chosen)),
-        loose_locus=grid(("tolerance", "time", "cheaper than 1e-10 by", "estimated error"), locus_rows()),
-        loose_transient=grid(
+        choices=markdown_table(CHOICE_HEAD, (c.row() for c in chosen)),
+        loose_locus=markdown_table(
+            ("tolerance", "time", "cheaper than 1e-10 by", "estimated error"), locus_rows()
+        ),
+        loose_transient=markdown_table(
             ("tolerance", "time", "cheaper than 1e-10 by", "error", "estimated"), transient_rows()
         ),
         lean=hand_written(),
@@ -339,9 +328,10 @@ def page(
 
 def hand_written() -> float:
     """How much faster a right-hand side is that was written by hand for the published scene."""
-    equations, y = system(), np.linspace(1e-6, 2e-6, 10)
+    (equations, _), y = modal_system(5), np.linspace(1e-6, 2e-6, 10)
     general, own = (
-        best_time(lambda f=f: [f(12.3, y) for _ in range(200)]) for f in (equations.rhs, lean(equations)[0])
+        best_time(lambda f=f: [f(12.3, y) for _ in range(200)])
+        for f in (equations.rhs, handwritten(equations)[0])
     )
     return general / own
 
@@ -354,7 +344,7 @@ def digits(diagrams: dict[str, Diagram]) -> str:
     """The cost of each digit, a column for each scene."""
     most = max(len(d.per_digit) for d in diagrams.values())
     rows = ((f"1e-{k + 1:02d}", *(cell(d, k) for d in diagrams.values())) for k in range(most))
-    return grid(("error", *diagrams), rows)
+    return markdown_table(("error", *diagrams), rows)
 
 
 def cell(diagram: Diagram, k: int) -> str:
@@ -363,24 +353,24 @@ def cell(diagram: Diagram, k: int) -> str:
     digit = diagram.per_digit[k]
     number = digit.setting.split()[0]
     ratio = "" if math.isnan(digit.ratio) else f" ({digit.ratio:.2f})"
-    return f"{FAMILIES[digit.family]}: {number}, {seconds(digit.time)}{ratio}"
+    return f"{FAMILIES[digit.family]}: {number}, {time_text(digit.time)}{ratio}"
 
 
 def section(diagram: Diagram) -> str:
     """A diagram's measurements, its front marked, and its costs."""
     rows = (
-        (m.family, m.setting, seconds(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
+        (m.family, m.setting, time_text(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
         for m in diagram.measurements
     )
     costs = ", then ".join(
-        f"{d.error:.0e} {seconds(d.time)}" + ("" if math.isnan(d.ratio) else f" ({d.ratio:.2f})")
+        f"{d.error:.0e} {time_text(d.time)}" + ("" if math.isnan(d.ratio) else f" ({d.ratio:.2f})")
         for d in diagram.per_digit
     )
     skipped = "".join(f"- {sentence}\n" for sentence in diagram.skipped)
     return (
         f"### {diagram.title[:1].upper()}{diagram.title[1:]}\n\nError of {diagram.error_of}.\n"
         f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that.\n\n"
-        f"{grid(('method', 'setting', 'time', 'error', 'in the front'), rows)}\n"
+        f"{markdown_table(('method', 'setting', 'time', 'error', 'in the front'), rows)}\n"
         f"The cost of each digit (over the digit before): {costs or 'not a digit is right'}.\n"
         + (f"\nNot measured:\n{skipped}" if skipped else "")
     )

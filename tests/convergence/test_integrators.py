@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import beamdyn as bd
 from beamdyn.transient.gauss import propagate, tableau
+from benchmarks.cases.oscillators import Oscillator
 
 
 class Mathieu:
@@ -103,14 +104,6 @@ def test_energy_is_kept_and_steps_of_any_length_are_stable(stages: int) -> None:
     for steps in (2000, 50):
         states = propagate(Constant(), 0.0, 2000.0, steps, Q0, V0, stages).state
         np.testing.assert_allclose(energy(states), energy(states[0]), rtol=1e-11)
-
-
-class Oscillator:
-    size = 1
-
-    def coefficients(self, t):
-        t = np.asarray(t)[..., None]
-        return None, 1 + 0 * t[..., None], 0 * t
 
 
 def test_energy_over_a_hundred_thousand_periods() -> None:

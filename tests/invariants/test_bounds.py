@@ -2,92 +2,27 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from mpmath import mpf
-from numpy.polynomial import Polynomial, legendre
+from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import FrequencyBounds, Split, _flexibility, _reciprocal, frequency_bounds
-from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
+from beamdyn.spectrum.bounds import Split, _flexibility, _reciprocal, frequency_bounds
+from benchmarks.cases.enclosure import (
+    NondimensionalScene,
+    encloses,
+    random_nondimensional_scene,
+    relative_width,
+)
 from benchmarks.cases.scenes import HARVESTER
-
-
-@dataclass(frozen=True)
-class Draw:
-    """A random nondimensional scene and its speed, as beamdyn and as the reference take it."""
-
-    scene: bd.Scene
-    gamma: float
-    delta: float
-    mass: list[float]
-    stiffness: list[float]
-    tip: Tip | None
-
-    def exact(self, modes: int) -> list[mpf]:
-        """The eigenvalues lambda^2 to 25 digits."""
-        psi = self.scene.mount.bending_angle
-        return bending_eigenvalues(
-            self.gamma, self.delta, psi, self.mass, self.stiffness, self.tip, modes, digits=25
-        )
-
-
-def draw(rng: np.random.Generator) -> Draw:
-    """Uniform or tapered, with or without tip body, inward or outward, below or past the critical speed."""
-    taper, delta = _taper(rng), round(rng.uniform(-10, 5), 4)
-    mass, stiffness = ([1.0, -taper], _power(taper, 3)) if rng.random() < 0.7 else ([1.0], [1.0])
-    tip = _tip(rng) if rng.random() < 0.5 else None
-    body = bd.TipMass(*(float(v) for v in vars(tip).values())) if tip else None
-    beam = bd.Beam.from_stiffness(1.0, Polynomial(mass), Polynomial(stiffness), tip=body)
-    phi = rng.uniform(-1.2, 1.2) if rng.random() < 0.3 else 0.0
-    mount = bd.Mount(
-        abs(delta) / math.cos(phi), phi if delta < 0 else math.pi - phi, float(rng.uniform(0, 1.57))
-    )
-    scene = bd.Scene(beam, mount)
-    return Draw(scene, _speed(rng, scene), delta, mass, stiffness, tip)
-
-
-def _taper(rng: np.random.Generator) -> float:
-    return round(rng.uniform(-0.5, 0.85), 3)
-
-
-def _power(taper: float, exponent: int) -> list[float]:
-    """Coefficients of (1 - taper x)^exponent, to 12 digits: they are the problem, not the power."""
-    return [round(float(c), 12) for c in (Polynomial([1.0, -taper]) ** exponent).coef]
-
-
-def _tip(rng: np.random.Generator) -> Tip:
-    mass, offset = round(10 ** rng.uniform(-2, 1), 4), round(rng.uniform(-0.2, 0.3), 3)
-    inertia = round(mass * rng.uniform(0, 0.1), 6)
-    return Tip(mass, offset, inertia, inertia, round(inertia * rng.uniform(0, 2), 6))
-
-
-def _speed(rng: np.random.Generator, scene: bd.Scene) -> float:
-    """Up to 12 and six times the critical speed (the reference needs that), half of them near the latter."""
-    critical = bd.critical_speed(scene)
-    near = rng.random() < 0.5 and critical < 12
-    return float(critical * rng.uniform(0, 1.5) if near else rng.uniform(0, min(12, 6 * critical)))
-
-
-def encloses(found: FrequencyBounds, exact: list[mpf]) -> np.ndarray:
-    """Whether each exact value lies between the bounds; a missing bound is none."""
-    low, high = found.lower_squared, found.upper_squared
-    below = [np.isnan(a) or mpf(float(a)) <= z for a, z in zip(low, exact, strict=True)]
-    return np.array(below) & [z <= mpf(float(b)) for b, z in zip(high, exact, strict=True)]
-
-
-def relative_width(found: FrequencyBounds) -> np.ndarray:
-    """Width of the bounds of the squares, relative to these."""
-    return (found.upper_squared - found.lower_squared) / np.abs(found.upper_squared)
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_they_enclose_the_exact_frequencies(seed: int) -> None:
-    case = draw(np.random.default_rng(seed))
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     found = frequency_bounds(case.scene, case.gamma, 3)
     assert encloses(found, case.exact(3)).all()
     assert np.isfinite(found.lower_squared).all()
@@ -102,7 +37,7 @@ def test_they_are_sharp_for_ordinary_scenes() -> None:
 @pytest.mark.parametrize("functions", [4, 6, 9])
 @pytest.mark.parametrize("seed", range(5))
 def test_small_bases_give_wide_bounds_but_true_ones(seed: int, functions: int) -> None:
-    case = draw(np.random.default_rng(seed))
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     lower, upper = _split(case, functions).bounds(3)
     exact = np.array([float(z) for z in case.exact(3)])
     assert (upper > exact).all()
@@ -111,7 +46,7 @@ def test_small_bases_give_wide_bounds_but_true_ones(seed: int, functions: int) -
 
 @pytest.mark.parametrize("seed", range(10))
 def test_the_tail_keeps_within_its_traces(seed: int) -> None:
-    case = draw(np.random.default_rng(seed))
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     small, large = _split(case, 5), _split(case, 60)
     assert np.isin(small.head, large.head).all()
     K, head = large.stiffness, small.head
@@ -120,7 +55,7 @@ def test_the_tail_keeps_within_its_traces(seed: int) -> None:
         assert eigh(tail.T @ part @ tail, tail.T @ K @ tail, eigvals_only=True)[-1] <= bound
 
 
-def _split(case: Draw, functions: int) -> Split:
+def _split(case: NondimensionalScene, functions: int) -> Split:
     flexibility = _flexibility(case.scene.beam.bending_stiffness)
     return Split(case.scene, functions, case.gamma, flexibility)
 
@@ -137,7 +72,7 @@ def test_the_flexibility_is_above_and_close(stiffness: tuple[float, ...]) -> Non
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1000, 1040))  # benchmarks/bounds.py draws many more
 def test_they_enclose_the_exact_frequencies_of_more_scenes(seed: int) -> None:
-    case = draw(np.random.default_rng(seed))
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     assert encloses(frequency_bounds(case.scene, case.gamma, 4), case.exact(4)).all()
 
 

@@ -21,8 +21,8 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.modal.modal_basis import Kept, range_of_speed
 from beamdyn.transient.simulate import Transient
-from benchmarks.beam_core import Row, show
-from benchmarks.coverage import random_beam
+from benchmarks.cases.random_scenes import random_beam
+from benchmarks.rows import Row, show
 
 _BOUND = 0.99
 _FUNCTIONS = 120  # of the reference

@@ -7,29 +7,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from time import perf_counter
+from collections.abc import Iterator
 
 import numpy as np
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 import beamdyn as bd
 from benchmarks.cases.scenes import HARVESTER, generated_cases, of_case, published_cases
-from tests.convergence.test_ritz import five_lowest, solved
-
-Row = tuple[str, str, str]  # what, measured, bound
-
-
-def best_time(action: Callable[[], object], runs: int = 7) -> float:
-    """Shortest of several runs [s]: these machines are noisy, and noise only adds."""
-    times = []
-    for _ in range(runs):
-        start = perf_counter()
-        action()
-        times.append(perf_counter() - start)
-    return min(times)
+from benchmarks.cases.uniform_blade import computed_eigenvalues, exact_eigenvalues
+from benchmarks.rows import Row, best_time, show
 
 
 def tables() -> Iterator[Row]:
@@ -71,9 +56,9 @@ def published_scene() -> Iterator[Row]:
 def many_functions() -> Iterator[Row]:
     """Whether digits are lost as the basis grows."""
     for gamma in (0, 12):
-        expected, worst = five_lowest(gamma), 0.0
+        expected, worst = exact_eigenvalues(gamma), 0.0
         for n in (20, 40, 80, 120, 160, 200):
-            worst = max(worst, float(np.abs(solved(gamma, bd.Ritz(n)) / expected - 1).max()))
+            worst = max(worst, float(np.abs(computed_eigenvalues(gamma, bd.Ritz(n)) / expected - 1).max()))
         yield f"five lowest, 20...200 functions, gamma {gamma}: worst error", f"{worst:.1e}", "1e-12"
 
 
@@ -96,16 +81,6 @@ def speed() -> Iterator[Row]:
 
 
 PARTS = tables, published_scene, many_functions, speed
-
-
-def show(title: str, *parts: Callable[[], Iterator[Row]]) -> list[Row]:
-    """Print the rows of all parts as one table."""
-    table = Table("what", "measured", "bound", title=title)
-    rows = [row for part in parts for row in part()]
-    for row in rows:
-        table.add_row(*map(escape, row))
-    Console(width=120).print(table)
-    return rows
 
 
 def main() -> None:

@@ -13,7 +13,7 @@ from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.documents import Program
 from beamdyn.common.app.session import Work
-from benchmarks.beam_core import Row, show
+from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
 RUNS, BOUND = 9, 100  # how often each is done, and what "at once" is [ms]

@@ -8,7 +8,6 @@ more) have commands of their own.
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from datetime import date
 from importlib.metadata import version
@@ -18,32 +17,32 @@ from pathlib import Path
 
 from beamdyn import __version__
 from benchmarks import (
-    app,
-    beam_core,
     bounds,
     brakes,
-    coverage,
-    coverage_transients,
     extremes,
+    frequencies,
+    screens,
+    stated_frequency_errors,
+    stated_transient_errors,
     steady,
     sweep,
     tradeoff,
     transient,
 )
-from benchmarks.beam_core import Row, show
+from benchmarks.rows import Row, show
 
 PAGE = Path(__file__).parents[1] / "docs" / "measured.md"
-SECTIONS: dict[str, tuple[Callable[[], Iterator[Row]], ...]] = {
-    "Frequencies (`benchmarks.beam_core`)": beam_core.PARTS,
-    "Transients (`benchmarks.transient`)": transient.PARTS,
-    "Steady response (`benchmarks.steady`)": steady.PARTS,
-    "Sweeps (`benchmarks.sweep`)": sweep.PARTS,
-    "Guaranteed bounds, a sample (`benchmarks.bounds`)": bounds.PARTS,
-    "Stated errors of frequencies, a sample (`benchmarks.coverage`)": coverage.PARTS,
-    "Stated errors of transients, a sample (`benchmarks.coverage_transients`)": coverage_transients.PARTS,
-    "The whole range of inputs, a sample (`benchmarks.extremes`)": extremes.PARTS,
-    "Brakes (`benchmarks.brakes`)": brakes.PARTS,
-    "Screens of the interactive programs (`benchmarks.app`)": app.PARTS,
+SECTIONS = {
+    "Frequencies": frequencies,
+    "Transients": transient,
+    "Steady response": steady,
+    "Sweeps": sweep,
+    "Guaranteed bounds, a sample": bounds,
+    "Stated errors of frequencies, a sample": stated_frequency_errors,
+    "Stated errors of transients, a sample": stated_transient_errors,
+    "The whole range of inputs, a sample": extremes,
+    "Brakes": brakes,
+    "Screens of the interactive programs": screens,
 }
 README = PAGE.parents[1] / "README.md"
 MARKS = "<!-- measured -->", "<!-- end -->"
@@ -93,7 +92,7 @@ def section(title: str, rows: list[Row]) -> str:
 
 def measured(title: str) -> list[Row]:
     """Rows of a section, which are printed too."""
-    return show(title, *SECTIONS[title])
+    return show(title, *SECTIONS[title].PARTS)
 
 
 def quote(page: str) -> None:
@@ -112,7 +111,7 @@ def main() -> None:
     for title in SECTIONS:
         # Each in a process of its own: what one holds or has cached does not count for the next.
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-            text += section(title, pool.submit(measured, title).result())
+            text += section(f"{title} (`{SECTIONS[title].__name__}`)", pool.submit(measured, title).result())
         PAGE.write_text(text, encoding="utf-8")
     quote(text)
     tradeoff.main()
