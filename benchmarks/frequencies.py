@@ -1,6 +1,6 @@
-"""Accuracy and speed of the beam core.  Run: python -m benchmarks.beam_core
+"""Accuracy and speed of natural frequencies and their limits.  Run: python -m benchmarks.frequencies
 
-Prints every figure that the README quotes of it, each beside its bound.
+Held against the power series, published tables and the published harvester.
 """
 
 from __future__ import annotations
@@ -17,31 +17,37 @@ from benchmarks.cases.uniform_blade import computed_eigenvalues, exact_eigenvalu
 from benchmarks.rows import Row, best_time, show
 
 
-def tables() -> Iterator[Row]:
-    """All published and generated rotating beams, by both methods."""
-    for method, bound in (("ritz", "1e-9"), ("fem", "1e-6")):
+def compare_with_tables() -> Iterator[Row]:
+    """All published and generated rotating beams, by both discretizations."""
+    for discretization, bound in (("ritz", "1e-9"), ("fem", "1e-6")):
         worst, covered, values = 0.0, 0, 0
         for case in generated_cases():
             squared = np.array([float(text) for text in case["lambda_squared"]])
-            found = bd.natural_modes(of_case(case), case["gamma"], len(squared), method)
-            true = np.abs(np.abs(found.eigenvalue) / np.sqrt(np.abs(squared)) - 1)
+            modes = bd.natural_modes(of_case(case), case["gamma"], len(squared), discretization)
+            true = np.abs(np.abs(modes.eigenvalue) / np.sqrt(np.abs(squared)) - 1)
             worst, values = max(worst, float(true.max())), values + len(true)
-            covered += int((true <= found.error).sum())
-        yield f"{values} values of the power series, {method}: worst relative error", f"{worst:.1e}", bound
-        yield f"... of which the stated error covers the true one, {method}", f"{covered}", f"{values}"
-        worst = max(float(deviation(case, method).max()) for case in published_cases())
-        yield f"published tables (9 to 13 digits), {method}: worst relative deviation", f"{worst:.1e}", bound
+            covered += int((true <= modes.error).sum())
+        name = f"{values} values of the power series, {discretization}"
+        yield f"{name}: worst relative error", f"{worst:.1e}", bound
+        yield (
+            f"... of which the stated error covers the true one, {discretization}",
+            str(covered),
+            str(values),
+        )
+        worst = max(float(find_deviation(case, discretization).max()) for case in published_cases())
+        name = f"published tables (9 to 13 digits), {discretization}"
+        yield f"{name}: worst relative deviation", f"{worst:.1e}", bound
 
 
-def deviation(case: dict, method: str) -> np.ndarray:
-    """Relative deviations from the published digits."""
+def find_deviation(case: dict, discretization: str) -> np.ndarray:
+    """Relative deviations from the digits of a published case."""
     expected = np.array(case["frequency"])
-    found = bd.natural_modes(of_case(case), case["gamma"], len(expected), method)
-    return np.abs(2 * np.pi * found.frequency / expected - 1)
+    modes = bd.natural_modes(of_case(case), case["gamma"], len(expected), discretization)
+    return np.abs(2 * np.pi * modes.frequency / expected - 1)
 
 
-def published_scene() -> Iterator[Row]:
-    """The tyre harvester."""
+def compare_published_scene() -> Iterator[Row]:
+    """Frequencies, buckling speed and setting-angle limits of the tyre harvester."""
     for speed, ansys in ((0.0, 65.230), (50.0, 61.963), (100.0, 50.907)):
         f = bd.natural_modes(HARVESTER, speed, 1).frequency[0]
         yield f"Table 2 at {speed:g} rad/s [Hz]", f"{f:.8f}", f"ANSYS {ansys:.3f} +- 0.001"
@@ -53,8 +59,8 @@ def published_scene() -> Iterator[Row]:
     yield "second, five eigenfunctions [deg]", f"{np.degrees(five):.4f}", "89.6267"
 
 
-def many_functions() -> Iterator[Row]:
-    """Whether digits are lost as the basis grows."""
+def check_many_functions() -> Iterator[Row]:
+    """Largest error as the basis grows: no digit may be lost."""
     for gamma in (0, 12):
         expected, worst = exact_eigenvalues(gamma), 0.0
         for n in (20, 40, 80, 120, 160, 200):
@@ -62,8 +68,8 @@ def many_functions() -> Iterator[Row]:
         yield f"five lowest, 20...200 functions, gamma {gamma}: worst error", f"{worst:.1e}", "1e-12"
 
 
-def speed() -> Iterator[Row]:
-    """Times after import, and of the commands."""
+def time_locus() -> Iterator[Row]:
+    """Time and error of a locus, time of the command's help."""
     speeds = np.linspace(0, 150, 1000)
     locus = bd.frequency_locus(HARVESTER, speeds, 3)
     time = best_time(lambda: bd.frequency_locus(HARVESTER, speeds, 3))
@@ -80,11 +86,11 @@ def speed() -> Iterator[Row]:
     yield "beamdyn --help [s]", f"{help_time:.2f}", "0.5"
 
 
-PARTS = tables, published_scene, many_functions, speed
+PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus
 
 
 def main() -> None:
-    show("beam core", *PARTS)
+    show("frequencies", *PARTS)
 
 
 if __name__ == "__main__":
