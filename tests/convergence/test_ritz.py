@@ -43,7 +43,7 @@ def test_eigenfunctions_are_stable_to_number_150() -> None:
 
 
 @pytest.mark.parametrize("basis", ["legendre", "eigenfunctions"])
-def test_from_above(basis: str) -> None:
+def test_frequencies_do_not_rise_as_the_basis_grows(basis: str) -> None:
     """Frequencies of a larger Ritz space are not higher (Courant-Fischer)."""
     found = [computed_eigenvalues(12, bd.Ritz(n, basis), 3) for n in (8, 12, 16, 24)]  # pyright: ignore[reportArgumentType]
     assert (np.diff(found, axis=0) < 1e-12 * np.array(found[0])).all()

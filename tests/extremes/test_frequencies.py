@@ -53,7 +53,7 @@ def assert_right(found: bd.Modes, allowed: float = 0.0) -> None:
         ({"tip": 1e6, "hub": 2.0, "setting": INWARD}, 0.001),
     ],
 )
-def test_ends_of_the_ranges(changes: dict[str, float], gamma: float) -> None:
+def test_frequencies_at_the_ends_of_the_ranges(changes: dict[str, float], gamma: float) -> None:
     made = steel_strip(**changes)
     assert_right(bd.natural_modes(made, at(gamma, made)))
 

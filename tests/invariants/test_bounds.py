@@ -1,4 +1,4 @@
-"""Guaranteed bounds of frequencies enclose the power-series reference, whatever the scene."""
+"""Guaranteed bounds of frequencies enclose those of the power series, in random scenes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from benchmarks.cases.scenes import HARVESTER
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_they_enclose_the_exact_frequencies(seed: int) -> None:
+def test_bounds_enclose_the_exact_frequencies(seed: int) -> None:
     case = random_nondimensional_scene(np.random.default_rng(seed))
     found = frequency_bounds(case.scene, case.gamma, 3)
     assert encloses(found, case.exact(3)).all()
@@ -29,14 +29,14 @@ def test_they_enclose_the_exact_frequencies(seed: int) -> None:
     assert (relative_width(found) < 1e-6).all()
 
 
-def test_they_are_sharp_for_ordinary_scenes() -> None:
+def test_bounds_are_tight_for_ordinary_scenes() -> None:
     for speed in (0.0, 50.0, 100.0, 150.0):
         assert (frequency_bounds(HARVESTER, speed).width < 1e-9).all()
 
 
 @pytest.mark.parametrize("functions", [4, 6, 9])
 @pytest.mark.parametrize("seed", range(5))
-def test_small_bases_give_wide_bounds_but_true_ones(seed: int, functions: int) -> None:
+def test_bounds_of_small_bases_are_wide_but_hold(seed: int, functions: int) -> None:
     case = random_nondimensional_scene(np.random.default_rng(seed))
     lower, upper = _split(case, functions).bounds(3)
     exact = np.array([float(z) for z in case.exact(3)])
@@ -45,7 +45,7 @@ def test_small_bases_give_wide_bounds_but_true_ones(seed: int, functions: int) -
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_the_tail_keeps_within_its_traces(seed: int) -> None:
+def test_eigenvalues_of_the_neglected_functions_stay_below_their_traces(seed: int) -> None:
     case = random_nondimensional_scene(np.random.default_rng(seed))
     small, large = _split(case, 5), _split(case, 60)
     assert np.isin(small.head, large.head).all()
@@ -61,7 +61,7 @@ def _split(case: NondimensionalScene, functions: int) -> Split:
 
 
 @pytest.mark.parametrize("stiffness", [(1.0,), (1.0, -0.9), (0.7, 0.1, -0.3, 0.2)])
-def test_the_flexibility_is_above_and_close(stiffness: tuple[float, ...]) -> None:
+def test_approximate_flexibility_is_barely_above_the_exact_one(stiffness: tuple[float, ...]) -> None:
     excess = np.array(_reciprocal(np.array(stiffness)))
     t = np.linspace(-1, 1, 1001)
     product = legendre.legval(t, stiffness) * legendre.legval(t, excess)
@@ -71,12 +71,12 @@ def test_the_flexibility_is_above_and_close(stiffness: tuple[float, ...]) -> Non
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1000, 1040))  # benchmarks/bounds.py draws many more
-def test_they_enclose_the_exact_frequencies_of_more_scenes(seed: int) -> None:
+def test_bounds_enclose_the_exact_frequencies_of_more_scenes(seed: int) -> None:
     case = random_nondimensional_scene(np.random.default_rng(seed))
     assert encloses(frequency_bounds(case.scene, case.gamma, 4), case.exact(4)).all()
 
 
-def test_a_breakpoint_that_changes_nothing_keeps_them_valid() -> None:
+def test_bounds_hold_with_a_breakpoint_where_nothing_changes() -> None:
     split = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, breakpoints=(0.3, 0.55))
     parts = frequency_bounds(replace(HARVESTER, beam=split), 50.0)
     whole = frequency_bounds(HARVESTER, 50.0)
@@ -85,7 +85,7 @@ def test_a_breakpoint_that_changes_nothing_keeps_them_valid() -> None:
     assert (parts.width < 1e-9).all()
 
 
-def test_they_agree_with_the_modes_of_a_stepped_beam() -> None:
+def test_bounds_agree_with_the_modes_of_a_stepped_beam() -> None:
     steps = bd.Table((0, 0.4, 0.4, 0.7, 1), (4e-4, 4e-4, 3e-4, 3e-4, 2e-4))
     beam = bd.Beam.rectangular(0.1, 0.01, steps, 70e9, 2700.0, tip=bd.TipMass(2e-4, 1e-3, 3e-10))
     scene = bd.Scene(beam, bd.Mount(0.1, 2.0, 0.7))
@@ -102,14 +102,14 @@ def test_an_unstable_mode_has_bounds_of_its_square() -> None:
     assert "mode(s) 1 are unstable" in found.warnings[0]
 
 
-def test_a_sign_that_cannot_be_told_is_said() -> None:
+def test_undecided_stability_is_warned_of() -> None:
     found = frequency_bounds(HARVESTER, bd.critical_speed(HARVESTER))
     assert found.lower_squared[0] < 0 < found.upper_squared[0]
     assert np.isnan(found.lower[0])
     assert "may be stable or not" in found.warnings[0]
 
 
-def test_no_bound_rather_than_a_wrong_one() -> None:
+def test_a_bound_that_cannot_be_guaranteed_is_missing() -> None:
     found = frequency_bounds(HARVESTER, 1e6)
     assert np.isnan(found.lower_squared).all()
     assert "no lower bound" in found.warnings[0]

@@ -33,7 +33,7 @@ def test_parametric_crossings() -> None:
     )
 
 
-def test_steady_amplitude_is_a_seventh_of_the_published_ring_down() -> None:
+def test_steady_amplitude_is_a_seventh_of_the_published_peak() -> None:
     found = bd.steady_response(STEADY_ROLLING, [55.0], modes=5)
     assert abs(found.amplitude[0] - 0.261876e-3) < 5e-10
     assert abs(found.bound[0] - 0.261951e-3) < 5e-10
