@@ -7,6 +7,7 @@ reads the imports.  The picture leaves out an arrow where a path through other r
 
 from __future__ import annotations
 
+import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -208,6 +209,7 @@ def main() -> None:
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
+    sys.path.insert(0, str(ROOT))  # the code beside this script, not what is installed
     mpl.rcParams["svg.hashsalt"] = "architecture"  # the same file each time
     ax, left, counts = Figure(figsize=(10.4, 9.4)).add_axes((0, 0, 1, 1)), 0.0, []
     for package in COLOURS:
