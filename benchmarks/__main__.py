@@ -1,6 +1,6 @@
-"""All figures that the README quotes, in one run.  Run: python -m benchmarks"""
+"""All figures that the README quotes, in one run: `python -m benchmarks`."""
 
-from benchmarks.page import main
+from benchmarks.measured_page import main
 
-if __name__ == "__main__":  # the processes that it starts find what they run in a module of its own
+if __name__ == "__main__":  # in a module of its own, so that the processes it starts can import it
     main()

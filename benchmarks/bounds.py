@@ -13,26 +13,26 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.spectrum.bounds import frequency_bounds
-from benchmarks.beam_core import Row, show
-from tests.invariants.test_bounds import draw, encloses, relative_width
+from benchmarks.cases.enclosure import encloses, random_nondimensional_scene, relative_width
+from benchmarks.rows import Row, show
 
 MODES = 3
 FIRST_SEED = 10_000
 
 
-def measured(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
+def measure(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
     """Whether the bounds of one scene hold, their relative widths, and the time [s]."""
-    case = draw(np.random.default_rng(seed))
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     start = perf_counter()
-    found = frequency_bounds(case.scene, case.gamma, MODES)
+    bounds = frequency_bounds(case.scene, case.gamma, MODES)
     time = perf_counter() - start
-    return encloses(found, case.exact(MODES)), relative_width(found), time
+    return encloses(bounds, case.exact(MODES)), relative_width(bounds), time
 
 
-def rows(scenes: int) -> Iterator[Row]:
-    """How the bounds of so many scenes hold."""
-    found = map(measured, range(FIRST_SEED, FIRST_SEED + scenes))
-    held, width, time = map(np.array, zip(*found, strict=True))
+def summarize(scenes: int) -> Iterator[Row]:
+    """How many exact frequencies lie outside their bounds, how wide these are, and the time."""
+    measurements = map(measure, range(FIRST_SEED, FIRST_SEED + scenes))
+    held, width, time = map(np.array, zip(*measurements, strict=True))
     yield "random scenes with guaranteed bounds of three modes", f"{scenes}", "1000"
     yield "... frequencies outside their bounds", f"{(~held).sum()} of {held.size}", "0"
     yield "... lower bounds missing", f"{np.isnan(width).sum()}", ""
@@ -41,17 +41,17 @@ def rows(scenes: int) -> Iterator[Row]:
     yield "... time a scene, median [ms]", f"{np.median(time) * 1e3:.0f}", ""
 
 
-def sample() -> Iterator[Row]:
-    """The first 100 scenes."""
-    yield from rows(100)
+def measure_sample() -> Iterator[Row]:
+    """The first 100 random scenes."""
+    yield from summarize(100)
 
 
-PARTS = (sample,)
+PARTS = (measure_sample,)
 
 
 def main() -> None:
     scenes = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    show("guaranteed bounds", lambda: rows(scenes))
+    show("guaranteed bounds", lambda: summarize(scenes))
 
 
 if __name__ == "__main__":

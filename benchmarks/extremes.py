@@ -23,9 +23,10 @@ from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from benchmarks.beam_core import Row, show
+from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
 from benchmarks.cases.reference.of_scene import exact, relative_errors
-from benchmarks.coverage import MOST_TENSION, largest_tension, time_unit
+from benchmarks.cases.scenes import time_unit
+from benchmarks.rows import Row, show
 
 _EPS = float(np.finfo(float).eps)
 
@@ -48,7 +49,7 @@ class Outcome:
 # Draws --------------------------------------------------------------------------------------------
 
 
-def beam_of(rng: np.random.Generator, taper: bool = True, tip: bool = True) -> bd.Beam:
+def draw_beam(rng: np.random.Generator, taper: bool = True, tip: bool = True) -> bd.Beam:
     """Ten micrometres to 100 m long, slenderness 10 to 1e6, up to 1e6 beam masses at its tip."""
     length = 10 ** rng.uniform(-5, 2)
     thickness = length / 10 ** rng.uniform(1, 6)
@@ -59,9 +60,9 @@ def beam_of(rng: np.random.Generator, taper: bool = True, tip: bool = True) -> b
     return bd.Beam.rectangular(length, *sides, *_STEEL, tip=body)
 
 
-def scene_of(rng: np.random.Generator) -> tuple[bd.Scene, float]:
+def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     """Any scene and speed: hubs to 1e6 lengths, gamma to 1e4, past the critical speed, all angles."""
-    beam = beam_of(rng)
+    beam = draw_beam(rng)
     angles = [0.0, np.pi, _QUARTER, _QUARTER + rng.choice([-1, 1]) * 1e-12, rng.uniform(-np.pi, np.pi)]
     mount = bd.Mount(
         beam.length * rng.choice([0.0, 10 ** rng.uniform(-3, 6)]),
@@ -79,46 +80,46 @@ def scene_of(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 # What is known ------------------------------------------------------------------------------------
 
 
-def by_bounds(rng: np.random.Generator) -> Outcome:
+def check_by_bounds(rng: np.random.Generator) -> Outcome:
     """Three modes against the guaranteed bounds of their squares."""
-    scene, speed = scene_of(rng)
-    found = bd.natural_modes(scene, speed)
-    known = bd.frequency_bounds(scene, speed)
-    squared = -np.real(found.eigenvalue**2)
+    scene, speed = draw_scene(rng)
+    modes = bd.natural_modes(scene, speed)
+    bounds = bd.frequency_bounds(scene, speed)
+    squared = -np.real(modes.eigenvalue**2)
     # Near the critical speed the squared frequency is a small difference: 4 eps times its condition.
     cond = np.abs(squared[-1] / squared) if len(squared) else 1.0
-    error = np.maximum(found.error, 4 * _EPS * cond)
+    error = np.maximum(modes.error, 4 * _EPS * cond)
     room = np.abs(squared) * (2 * error + error**2)
-    low, high = known.lower_squared, known.upper_squared
+    low, high = bounds.lower_squared, bounds.upper_squared
     low, high = np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
     fits = bool((np.maximum(low - squared, squared - high) <= room).all())
     width = float(np.median((high - low) / np.abs(squared))) / 2
-    return outcome("guaranteed bounds", found, fits, width, f"{scene} at {speed!r}")
+    return judge("guaranteed bounds", modes, fits, width, f"{scene} at {speed!r}")
 
 
-def by_series(rng: np.random.Generator) -> Outcome:
+def check_by_series(rng: np.random.Generator) -> Outcome:
     """Three modes against the power series, which is exact, up to a tension of 1e5 EI / L^2."""
-    scene, speed = scene_of(rng)
+    scene, speed = draw_scene(rng)
     speed = float(np.sign(speed) * min(abs(speed), np.sqrt(MOST_TENSION / largest_tension(scene))))
-    found = bd.natural_modes(scene, speed)
-    true = np.array(relative_errors(found, exact(scene, speed, digits=22)))
-    squared = np.abs(found.eigenvalue) ** 2
-    fits = bool((true <= np.maximum(found.error, 4 * _EPS * squared[-1] / squared)).all())
-    return outcome("power series", found, fits, 1e-20, f"{scene} at {speed!r}")
+    modes = bd.natural_modes(scene, speed)
+    true = np.array(relative_errors(modes, exact(scene, speed, digits=22)))
+    squared = np.abs(modes.eigenvalue) ** 2
+    fits = bool((true <= np.maximum(modes.error, 4 * _EPS * squared[-1] / squared)).all())
+    return judge("power series", modes, fits, 1e-20, f"{scene} at {speed!r}")
 
 
-def at_rest(rng: np.random.Generator) -> Outcome:
+def check_at_rest(rng: np.random.Generator) -> Outcome:
     """Up to 200 modes of a uniform beam at rest against the roots of cos x cosh x = -1."""
-    beam = beam_of(rng, taper=False, tip=False)
-    modes = int(10 ** rng.uniform(0, np.log10(200)))
-    found = bd.natural_modes(bd.Scene(beam, bd.Mount(0.0)), 0.0, modes)
-    exact = np.array([root(n) for n in range(1, modes + 1)]) ** 2 / time_unit(beam) / (2 * np.pi)
-    true = np.abs(found.frequency / exact - 1)
-    fits = bool((true <= np.maximum(found.error, 8 * _EPS)).all())
-    return outcome("closed form at rest, to 200 modes", found, fits, _EPS, f"{beam}, {modes} modes")
+    beam = draw_beam(rng, taper=False, tip=False)
+    count = int(10 ** rng.uniform(0, np.log10(200)))
+    modes = bd.natural_modes(bd.Scene(beam, bd.Mount(0.0)), 0.0, count)
+    exact = np.array([find_root(n) for n in range(1, count + 1)]) ** 2 / time_unit(beam) / (2 * np.pi)
+    true = np.abs(modes.frequency / exact - 1)
+    fits = bool((true <= np.maximum(modes.error, 8 * _EPS)).all())
+    return judge("closed form at rest, to 200 modes", modes, fits, _EPS, f"{beam}, {count} modes")
 
 
-def root(n: int) -> float:
+def find_root(n: int) -> float:
     """The n-th root of cos x = -1 / cosh x."""
     middle = (n - 0.5) * np.pi
     return (
@@ -128,9 +129,9 @@ def root(n: int) -> float:
     )
 
 
-def with_stretch(rng: np.random.Generator) -> Outcome:
+def check_with_stretch(rng: np.random.Generator) -> Outcome:
     """Stretch with axial stiffness ratios EA L^2 / EI to 1e16, against finite elements."""
-    beam = beam_of(rng, tip=False)
+    beam = draw_beam(rng, tip=False)
     ratio = 10 ** rng.uniform(3, 16)
     soft = bd.Beam.from_stiffness(
         beam.length,
@@ -140,32 +141,32 @@ def with_stretch(rng: np.random.Generator) -> Outcome:
     )
     scene = bd.Scene(soft, bd.Mount(beam.length * 10 ** rng.uniform(-2, 1), np.pi), stretch=True)
     speed = min(10 ** rng.uniform(-2, 1.5), 0.3 * np.sqrt(ratio)) / time_unit(beam)
-    found, other = (bd.natural_modes(scene, speed, 2, method) for method in ("ritz", "fem"))
-    apart = np.abs(found.eigenvalue - other.eigenvalue) / np.abs(found.eigenvalue)
-    fits = bool((apart <= found.error + other.error).all())
-    return outcome(
-        "finite elements, with stretch", found, fits, float(other.error.max()), f"{scene} at {speed!r}"
+    modes, other = (bd.natural_modes(scene, speed, 2, discretization) for discretization in ("ritz", "fem"))
+    apart = np.abs(modes.eigenvalue - other.eigenvalue) / np.abs(modes.eigenvalue)
+    fits = bool((apart <= modes.error + other.error).all())
+    return judge(
+        "finite elements, with stretch", modes, fits, float(other.error.max()), f"{scene} at {speed!r}"
     )
 
 
-def outcome(kind: str, found: bd.Modes, fits: bool, known: float, detail: str) -> Outcome:
-    """The verdict on an answer."""
+def judge(kind: str, modes: bd.Modes, fits: bool, known: float, detail: str) -> Outcome:
+    """The outcome for an answer that agrees with what is known, or does not."""
     if not fits:
         return Outcome(kind, "wrong in silence", known, detail)
-    warned = found.error.max() > _WARNED
+    warned = modes.error.max() > _WARNED
     return Outcome(kind, "right, with a warning" if warned else "right", known)
 
 
 _KINDS: tuple[tuple[str, float, Callable[[np.random.Generator], Outcome]], ...] = (
-    ("guaranteed bounds", 0.94, by_bounds),
-    ("power series", 0.01, by_series),
-    ("closed form at rest, to 200 modes", 0.03, at_rest),
-    ("finite elements, with stretch", 0.02, with_stretch),
+    ("guaranteed bounds", 0.94, check_by_bounds),
+    ("power series", 0.01, check_by_series),
+    ("closed form at rest, to 200 modes", 0.03, check_at_rest),
+    ("finite elements, with stretch", 0.02, check_with_stretch),
 )
 
 
-def measured(number: int, seed: int) -> Outcome:
-    """One draw, told by its number."""
+def draw_and_check(number: int, seed: int) -> Outcome:
+    """The outcome of the draw with this number."""
     rng = np.random.default_rng([seed, number])
     name, _, check = _KINDS[rng.choice(len(_KINDS), p=[share for _, share, _ in _KINDS])]
     try:
@@ -179,7 +180,7 @@ def measured(number: int, seed: int) -> Outcome:
 # Report -------------------------------------------------------------------------------------------
 
 
-def rows(outcomes: Sequence[Outcome]) -> Iterator[Row]:
+def summarize(outcomes: Sequence[Outcome]) -> Iterator[Row]:
     """Counts of verdicts, and what was refused."""
     verdicts = Counter(o.verdict for o in outcomes)
     yield "random draws", str(len(outcomes)), "100000"
@@ -205,18 +206,18 @@ def rows(outcomes: Sequence[Outcome]) -> Iterator[Row]:
         yield "refused", f"{many}", reason
 
 
-def run(first: int, scenes: int, workers: int, seed: int) -> list[Outcome]:
-    """Make so many draws."""
+def draw_all(first: int, scenes: int, workers: int, seed: int) -> list[Outcome]:
+    """All draws from a first one, on several processes."""
     with ProcessPoolExecutor(workers) as pool:
-        return list(pool.map(partial(measured, seed=seed), range(first, first + scenes), chunksize=64))
+        return list(pool.map(partial(draw_and_check, seed=seed), range(first, first + scenes), chunksize=64))
 
 
-def sample() -> Iterator[Row]:
+def measure_sample() -> Iterator[Row]:
     """The first 1000 draws."""
-    yield from rows(run(0, 1000, 2, SEED))
+    yield from summarize(draw_all(0, 1000, 2, SEED))
 
 
-PARTS = (sample,)
+PARTS = (measure_sample,)
 
 
 def main() -> None:
@@ -226,8 +227,8 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--seed", type=int, default=SEED)
     options = parser.parse_args()
-    outcomes = run(options.first, options.scenes, options.workers, options.seed)
-    show("the whole range of inputs", lambda: rows(outcomes))
+    outcomes = draw_all(options.first, options.scenes, options.workers, options.seed)
+    show("the whole range of inputs", lambda: summarize(outcomes))
 
 
 if __name__ == "__main__":

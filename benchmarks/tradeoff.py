@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import date
 from functools import partial
@@ -32,9 +32,10 @@ from beamdyn.tradeoffs import (
     transient_modes_diagram,
 )
 from beamdyn.tradeoffs.transients import OURS
-from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
-from benchmarks.peers.tables import grid, seconds
-from benchmarks.transient import lean, system
+from benchmarks import rows
+from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_harvester
+from benchmarks.cases.table_3 import handwritten, modal_system
+from benchmarks.rows import markdown_table, time_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +57,7 @@ FAMILIES = {
 # Scenes -------------------------------------------------------------------------------------------
 
 
-def scenes() -> dict[str, tuple[bd.Scene, float]]:
+def make_scenes() -> dict[str, tuple[bd.Scene, float]]:
     """Five scenes of different character, and a speed [rad/s] for each."""
     beam_mass = 7850 * 0.05 * 0.01 * 0.0002
     body = bd.TipMass(20 * beam_mass, offset=0.003, inertia=2e-8)
@@ -73,14 +74,7 @@ def scenes() -> dict[str, tuple[bd.Scene, float]]:
 
 
 # The published scene sped up in 1 s instead of 10, so that the stock integrators can be run often.
-HURRIED = replace(
-    ROLLING,
-    motion=bd.RollingWheel(
-        rolling_radius=0.3,
-        speed=bd.SpinUp(55.0, duration=1.0),
-        road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01),
-    ),
-)
+HURRIED = rolling_harvester(bd.SpinUp(55.0, duration=1.0))
 
 
 DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 rad/s;
@@ -92,14 +86,7 @@ DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 
   root's, at a nondimensional speed of 10."""
 
 
-def best_time(action: Callable[[], object], runs: int = 7) -> float:
-    """Shortest processor time of several runs [s]."""
-    times = []
-    for _ in range(runs):
-        start = process_time()
-        action()
-        times.append(process_time() - start)
-    return min(times)
+best_time = partial(rows.best_time, clock=process_time)  # one thread: other programs do not count
 
 
 # What tolerance= chooses --------------------------------------------------------------------------
@@ -107,17 +94,17 @@ def best_time(action: Callable[[], object], runs: int = 7) -> float:
 
 @dataclass(frozen=True)
 class Choice:
-    """What `tolerance=` makes of a request, beside the least that would do."""
+    """The model that `tolerance=` chooses for a request, beside the smallest that meets the tolerance."""
 
     scene: str
     speeds: int
     tolerance: float
-    needed: int  # Legendre functions, from which on the error keeps the tolerance
+    needed: int  # fewest Legendre functions whose error meets the tolerance, as do those of all larger bases
     chosen: int
     error: float
     estimate: float
-    floor: float  # of the error, by the reference
-    cheapest: float  # time of the model with so many as are needed [s]
+    floor: float  # error of the reference: smaller ones cannot be told
+    cheapest: float  # time of the model with the functions needed [s]
     own: float  # time of the model that was chosen
     call: float  # time of the whole call
 
@@ -130,7 +117,7 @@ class Choice:
             str(self.chosen),
             f"{self.error:.0e}",
             f"{self.estimate:.0e}",
-            seconds(self.cheapest),
+            time_text(self.cheapest),
             f"{self.own / self.cheapest:.2f}",
             f"{self.call / self.cheapest:.1f}",
         )
@@ -150,8 +137,8 @@ CHOICE_HEAD = (
 )
 
 
-def choices(name: str, scene: bd.Scene, speed: float, count: int) -> Iterator[Choice]:
-    """All tolerances for one scene, at one speed or over a locus."""
+def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Iterator[Choice]:
+    """What is chosen at each tolerance for one scene, at one speed or over a locus."""
     speeds = np.linspace(0, speed, count) if count > 1 else np.array([speed])
 
     def solve(functions: int) -> np.ndarray:
@@ -166,26 +153,26 @@ def choices(name: str, scene: bd.Scene, speed: float, count: int) -> Iterator[Ch
     errors = {n: error(solve(n)) for n in range(MODES, 40)}
     for tolerance in TOLERANCES:
         needed = 1 + max((n for n, e in errors.items() if e > max(tolerance, floor)), default=MODES - 1)
-        found = called(scene, speeds, tolerance)
-        # of a locus, the size is read from the sentence that says how it was found
-        chosen = int(found.provenance.method.split("functions=")[1].split(",")[0])
+        result = call_beamdyn(scene, speeds, tolerance)
+        # the size of a locus' basis stands only in the sentence about its method
+        chosen = int(result.provenance.method.split("functions=")[1].split(",")[0])
         yield Choice(
             scene=name,
             speeds=count,
             tolerance=tolerance,
             needed=needed,
             chosen=chosen,
-            error=error(found.eigenvalue.reshape(len(speeds), MODES)),
-            estimate=float(found.error.max()),
+            error=error(result.eigenvalue.reshape(len(speeds), MODES)),
+            estimate=float(result.error.max()),
             floor=floor,
             cheapest=best_time(partial(solve, needed)),
             own=best_time(partial(solve, chosen)),
-            call=best_time(partial(called, scene, speeds, tolerance)),
+            call=best_time(partial(call_beamdyn, scene, speeds, tolerance)),
         )
 
 
-def called(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -> bd.Modes | bd.Locus:
-    """The call that a user makes."""
+def call_beamdyn(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -> bd.Modes | bd.Locus:
+    """Frequencies as a user asks for them: of one speed or of a locus."""
     if len(speeds) == 1:
         return bd.natural_modes(scene, speeds[0], MODES, tolerance=tolerance)
     return bd.frequency_locus(scene, speeds, MODES, tolerance=tolerance)
@@ -194,31 +181,31 @@ def called(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -> bd.M
 # Loose against tight ------------------------------------------------------------------------------
 
 
-def locus_rows() -> Iterator[tuple[str, ...]]:
+def measure_locus() -> Iterator[tuple[str, ...]]:
     """The published locus of 1000 speeds: tolerance, time, over the tightest."""
     speeds = np.linspace(0, 150, 1000)
-    asked: tuple[float | None, ...] = (1e-3, 1e-5, 1e-7, 1e-10, None)
-    times = {t: best_time(partial(called, ROLLING, speeds, t), 5) for t in asked}
+    tolerances: tuple[float | None, ...] = (1e-3, 1e-5, 1e-7, 1e-10, None)
+    times = {t: best_time(partial(call_beamdyn, ROLLING, speeds, t), 5) for t in tolerances}
     for tolerance, time in times.items():
-        error = called(ROLLING, speeds, tolerance).error.max()
+        error = call_beamdyn(ROLLING, speeds, tolerance).error.max()
         name = "not given" if tolerance is None else f"{tolerance:.0e}"
-        yield name, seconds(time), f"{times[1e-10] / time:.1f}", f"{error:.0e}"
+        yield name, time_text(time), f"{times[1e-10] / time:.1f}", f"{error:.0e}"
 
 
-def transient_rows() -> Iterator[tuple[str, ...]]:
+def measure_transient() -> Iterator[tuple[str, ...]]:
     """Table 3's transient: tolerance, time, over the tightest, error, estimate."""
     t = np.linspace(0, 30, 30_001)
     exact = bd.simulate(ROLLING, 30.0, 5, tolerance=1e-11, discretization=bd.Ritz(20))
     true, rows = exact.deflection(t), []
     for tolerance in (1e-2, 1e-3, 1e-5, 1e-7, 1e-8, 1e-9, 1e-10):
         run = partial(bd.simulate, ROLLING, 30.0, 5, tolerance=tolerance, discretization=bd.Ritz(20))
-        found, time = run(), best_time(run, 3)
-        error = np.abs(found.deflection(t) - true).max() / exact.largest
-        rows.append((tolerance, time, error, found.time_error / exact.largest))
+        result, time = run(), best_time(run, 3)
+        error = np.abs(result.deflection(t) - true).max() / exact.largest
+        rows.append((tolerance, time, error, result.time_error / exact.largest))
     for tolerance, time, error, estimate in rows:
         yield (
             f"{tolerance:.0e}",
-            seconds(time),
+            time_text(time),
             f"{rows[-1][1] / time:.1f}",
             f"{error:.0e}",
             f"{estimate:.0e}",
@@ -277,7 +264,7 @@ would make them faster by nearly as much: `python -m benchmarks.transient` races
 Loose against tight, on the published locus of 1000 speeds to 150 rad/s (estimated error of the result):
 
 {loose_locus}
-and on Table 3's transient (30 s, 5 modes; error by the steps in time, over the largest deflection):
+and on Table 3's transient (30 s, 5 modes; time-integration error, over the largest deflection):
 
 {loose_transient}"""
 
@@ -300,10 +287,10 @@ RULES = """The rules follow from the fronts:
 - **Transients.** {transient} points of the fronts among integrators are ours; the step follows the
   tolerance, as the tables above and below show. Modes at rest, which the papers keep, converge slowly under
   rotation; modes at the slowest and at the fastest speed together need far fewer. `tolerance=` takes these,
-  two at each speed first, then half as many more until a richer run adds less than half the tolerance."""
+  two at each speed first, then half as many more until a refined run adds less than half the tolerance."""
 
 
-def page(
+def write_page(
     single: dict[str, Diagram],
     many: dict[str, Diagram],
     motion: Sequence[Diagram],
@@ -321,72 +308,75 @@ def page(
         described=DESCRIBED,
         modes=MODES,
         locus=LOCUS,
-        fronts="\n".join(fronts(single, "one speed") + fronts(many, f"{LOCUS} speeds")),
-        single=digits(single),
-        many=digits(many),
-        transients="\n".join(section(d) for d in motion if d.title.startswith("transient")),
-        steady="\n".join(section(d) for d in motion if d.title.startswith("steady")),
-        rules=rules([*single.values(), *many.values()], single["published"], motion, chosen),
-        choices=grid(CHOICE_HEAD, (c.row() for c in chosen)),
-        loose_locus=grid(("tolerance", "time", "cheaper than 1e-10 by", "estimated error"), locus_rows()),
-        loose_transient=grid(
-            ("tolerance", "time", "cheaper than 1e-10 by", "error", "estimated"), transient_rows()
+        fronts="\n".join(list_fronts(single, "one speed") + list_fronts(many, f"{LOCUS} speeds")),
+        single=tabulate_digits(single),
+        many=tabulate_digits(many),
+        transients="\n".join(write_section(d) for d in motion if d.title.startswith("transient")),
+        steady="\n".join(write_section(d) for d in motion if d.title.startswith("steady")),
+        rules=write_rules([*single.values(), *many.values()], single["published"], motion, chosen),
+        choices=markdown_table(CHOICE_HEAD, (c.row() for c in chosen)),
+        loose_locus=markdown_table(
+            ("tolerance", "time", "cheaper than 1e-10 by", "estimated error"), measure_locus()
         ),
-        lean=hand_written(),
+        loose_transient=markdown_table(
+            ("tolerance", "time", "cheaper than 1e-10 by", "error", "estimated"), measure_transient()
+        ),
+        lean=compare_handwritten(),
         time=perf_counter() - start,
     )
 
 
-def hand_written() -> float:
-    """How much faster a right-hand side is that was written by hand for the published scene."""
-    equations, y = system(), np.linspace(1e-6, 2e-6, 10)
+def compare_handwritten() -> float:
+    """Time of the general right-hand side over that of the one written by hand for the published scene."""
+    (equations, _), y = modal_system(5), np.linspace(1e-6, 2e-6, 10)
     general, own = (
-        best_time(lambda f=f: [f(12.3, y) for _ in range(200)]) for f in (equations.rhs, lean(equations)[0])
+        best_time(lambda f=f: [f(12.3, y) for _ in range(200)])
+        for f in (equations.rhs, handwritten(equations)[0])
     )
     return general / own
 
 
-def fronts(diagrams: dict[str, Diagram], where: str) -> list[str]:
+def list_fronts(diagrams: dict[str, Diagram], where: str) -> list[str]:
     return [f"- {name}, {where}: {diagram.summary}." for name, diagram in diagrams.items()]
 
 
-def digits(diagrams: dict[str, Diagram]) -> str:
+def tabulate_digits(diagrams: dict[str, Diagram]) -> str:
     """The cost of each digit, a column for each scene."""
     most = max(len(d.per_digit) for d in diagrams.values())
-    rows = ((f"1e-{k + 1:02d}", *(cell(d, k) for d in diagrams.values())) for k in range(most))
-    return grid(("error", *diagrams), rows)
+    rows = ((f"1e-{k + 1:02d}", *(write_cell(d, k) for d in diagrams.values())) for k in range(most))
+    return markdown_table(("error", *diagrams), rows)
 
 
-def cell(diagram: Diagram, k: int) -> str:
+def write_cell(diagram: Diagram, k: int) -> str:
     if k >= len(diagram.per_digit):
         return ""
     digit = diagram.per_digit[k]
     number = digit.setting.split()[0]
     ratio = "" if math.isnan(digit.ratio) else f" ({digit.ratio:.2f})"
-    return f"{FAMILIES[digit.family]}: {number}, {seconds(digit.time)}{ratio}"
+    return f"{FAMILIES[digit.family]}: {number}, {time_text(digit.time)}{ratio}"
 
 
-def section(diagram: Diagram) -> str:
+def write_section(diagram: Diagram) -> str:
     """A diagram's measurements, its front marked, and its costs."""
     rows = (
-        (m.family, m.setting, seconds(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
+        (m.family, m.setting, time_text(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
         for m in diagram.measurements
     )
     costs = ", then ".join(
-        f"{d.error:.0e} {seconds(d.time)}" + ("" if math.isnan(d.ratio) else f" ({d.ratio:.2f})")
+        f"{d.error:.0e} {time_text(d.time)}" + ("" if math.isnan(d.ratio) else f" ({d.ratio:.2f})")
         for d in diagram.per_digit
     )
     skipped = "".join(f"- {sentence}\n" for sentence in diagram.skipped)
     return (
         f"### {diagram.title[:1].upper()}{diagram.title[1:]}\n\nError of {diagram.error_of}.\n"
         f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that.\n\n"
-        f"{grid(('method', 'setting', 'time', 'error', 'in the front'), rows)}\n"
+        f"{markdown_table(('method', 'setting', 'time', 'error', 'in the front'), rows)}\n"
         f"The cost of each digit (over the digit before): {costs or 'not a digit is right'}.\n"
         + (f"\nNot measured:\n{skipped}" if skipped else "")
     )
 
 
-def rules(
+def write_rules(
     diagrams: Sequence[Diagram], published: Diagram, motion: Sequence[Diagram], chosen: Sequence[Choice]
 ) -> str:
     """What the measurements say of the choice."""
@@ -419,16 +409,16 @@ def rules(
 # The picture --------------------------------------------------------------------------------------
 
 
-def picture(many: dict[str, Diagram], transient: Diagram, path: Path) -> None:
+def draw_picture(many: dict[str, Diagram], transient: Diagram, path: Path) -> None:
     """Frequencies of all scenes, with one legend, and the published transient."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 8.6), layout="constrained")
     axes = figure.subplots(2, 3).ravel()
     for ax, (name, diagram) in zip(axes, many.items(), strict=False):
-        frame(ax, diagram, name)
+        draw_frame(ax, diagram, name)
         ax.set(ylim=(3e-15, 3))
-    frame(axes[-1], transient, f"published: transient, {MODES} modes")
+    draw_frame(axes[-1], transient, f"published: transient, {MODES} modes")
     figure.suptitle(
         f"Error against time: {MODES} frequencies at {LOCUS} speeds in five scenes, and a transient"
     )
@@ -439,7 +429,7 @@ def picture(many: dict[str, Diagram], transient: Diagram, path: Path) -> None:
     figure.savefig(path, dpi=110)
 
 
-def frame(ax: Axes, diagram: Diagram, title: str) -> None:
+def draw_frame(ax: Axes, diagram: Diagram, title: str) -> None:
     diagram.plot(ax)
     legend = ax.get_legend()
     if legend is not None:
@@ -451,11 +441,11 @@ def frame(ax: Axes, diagram: Diagram, title: str) -> None:
 def main() -> None:
     start = perf_counter()
     single, many, chosen = {}, {}, []
-    for name, (scene, speed) in scenes().items():
+    for name, (scene, speed) in make_scenes().items():
         single[name] = frequency_diagram(scene, np.array([speed]), MODES, 6.0)
         many[name] = frequency_diagram(scene, np.linspace(0, speed, LOCUS), MODES, 10.0)
-        chosen += [c for count in (1, LOCUS) for c in choices(name, scene, speed, count)]
-    blade = replace(scenes()["outward blade"][0], damping_ratio=0.01)
+        chosen += [c for count in (1, LOCUS) for c in measure_choices(name, scene, speed, count)]
+    blade = replace(make_scenes()["outward blade"][0], damping_ratio=0.01)
     transient = integrators_diagram(HURRIED, 2.0, MODES, 50.0)
     motion = [
         transient,
@@ -466,8 +456,8 @@ def main() -> None:
     for scene, speed in ((ROLLING, 55.0), (blade, 6.0)):
         speeds = np.linspace(0, speed, 51)[1:]
         motion += [harmonics_diagram(scene, speeds, MODES, 4.0), steady_modes_diagram(scene, speeds, 4.0)]
-    (DOCS / "tradeoff.md").write_text(page(single, many, motion, chosen, start), encoding="utf-8")
-    picture(many, transient, DOCS / "tradeoff.png")
+    (DOCS / "tradeoff.md").write_text(write_page(single, many, motion, chosen, start), encoding="utf-8")
+    draw_picture(many, transient, DOCS / "tradeoff.png")
 
 
 if __name__ == "__main__":

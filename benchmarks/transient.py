@@ -5,20 +5,18 @@ Run: python -m benchmarks.transient            (some minutes: the stock integrat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from math import cos, pi, sin
+from collections.abc import Iterator
 from time import perf_counter
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.modal.error_estimate import Model
 from beamdyn.transient.gauss import propagate
-from beamdyn.transient.system import ModalSystem
-from benchmarks.beam_core import Row, best_time, show
+from benchmarks.cases.oscillators import Oscillator
 from benchmarks.cases.scenes import ROLLING
-from tests.convergence.test_integrators import Oscillator
+from benchmarks.cases.table_3 import handwritten, modal_system
+from benchmarks.rows import Row, best_time, show
 
 T_END, MODES = 30.0, 5
 STOCK = [  # rtol, and atol in the modal coordinates, which are some 1e-5 kg^1/2 m
@@ -28,49 +26,7 @@ STOCK = [  # rtol, and atol in the modal coordinates, which are some 1e-5 kg^1/2
 ]
 
 
-def lean(system: ModalSystem) -> tuple[Callable, Callable]:
-    """The published scene's right-hand side and Jacobian, written by hand with scalars."""
-    parts, loads = system.parts[0], {f.quantity: f.factor * f.vector for f in system.equations.loads}
-    base, spin, axial = (parts[name] for name in ("unity", "speed_squared", "root_axial"))
-    P, Q, n = loads["root_transverse"], loads["acceleration"], system.size
-    top, T, R, C, k, r = 55.0, 10.0, 0.3, 0.01, 2 * pi, 0.215
-    y_dot, J = np.empty(2 * n), np.zeros((2 * n, 2 * n))
-    J[:n, n:] = np.eye(n)
-
-    def motion(t: float) -> tuple[float, float, float, float]:
-        if t < T:
-            x = 2 * pi * t / T
-            w, dw = top * (t / T - sin(x) / (2 * pi)), top / T * (1 - cos(x))
-            angle = top * T * ((t / T) ** 2 / 2 + (cos(x) - 1) / (4 * pi**2))
-        else:
-            w, dw, angle = top, 0.0, top * T / 2 + top * (t - T)
-        c, s = cos(angle), sin(angle)
-        v1, v2 = R * dw, C * k * w * cos(k * angle)
-        return w * w, dw, w * w * r + v1 * c - v2 * s, v1 * s + v2 * c + dw * r
-
-    def rhs(t: float, y: np.ndarray) -> np.ndarray:
-        w2, dw, a1, a2 = motion(t)
-        q = y[:n]
-        y_dot[:n] = y[n:]
-        y_dot[n:] = dw * Q + a2 * P - base.dot(q) - w2 * spin.dot(q) - a1 * axial.dot(q)
-        return y_dot.copy()
-
-    def jacobian(t: float, y: np.ndarray) -> np.ndarray:
-        w2, _, a1, _ = motion(t)
-        J[n:, :n] = -(base + w2 * spin + a1 * axial)
-        return J
-
-    return rhs, jacobian
-
-
-def system() -> ModalSystem:
-    """The modal equations of Table 3."""
-    modal = Model(ROLLING, bd.Ritz(20)).modal(MODES)
-    assert ROLLING.motion is not None
-    return ModalSystem(modal.equations, ROLLING.motion)
-
-
-def race() -> Iterator[Row]:
+def race_stock_integrators() -> Iterator[Row]:
     """Times and errors in one run; errors against a far finer run of ours, over the peak.
 
     Ours is measured everywhere, between steps too; the stock methods only at their own steps.
@@ -85,20 +41,18 @@ def race() -> Iterator[Row]:
     yield "... estimated", f"{run.time_error / peak:.1e}", "above the error"
     comparable = []
     for method, rtol, atol in STOCK:
-        time, stock_error, found = stock(method, rtol, atol, exact, system())
+        time, stock_error, peak_of_stock = run_stock(method, rtol, atol, exact)
         if stock_error / peak >= error:
             comparable.append(time)
         yield f"solve_ivp {method}, rtol {rtol:g}: time [s]", f"{time:.1f}", ""
         yield "... largest error over the peak", f"{stock_error / peak:.1e}", ""
-        yield "... its peak in 20...30 s [mm]", f"{1e3 * found:.6f}", "1.942558 +- 3e-5"
+        yield "... its peak in 20...30 s [mm]", f"{1e3 * peak_of_stock:.6f}", "1.942558 +- 3e-5"
     yield "fastest of these with an error not below ours, over ours", f"{min(comparable) / ours:.0f}", "250"
 
 
-def stock(
-    method: str, rtol: float, atol: float, exact: bd.Transient, equations: ModalSystem
-) -> tuple[float, float, float]:
+def run_stock(method: str, rtol: float, atol: float, exact: bd.Transient) -> tuple[float, float, float]:
     """Time of a stock method, its largest error [m] and its peak [m]; between steps where they are long."""
-    rhs, jacobian = lean(equations)
+    rhs, jacobian = handwritten(modal_system(MODES)[0])
     extra = {"dense_output": False} if method == "DOP853" else {"jac": jacobian, "dense_output": True}
     start = perf_counter()
     solved = solve_ivp(rhs, (0, T_END), np.zeros(2 * MODES), method, rtol=rtol, atol=atol, **extra)
@@ -107,10 +61,10 @@ def stock(
     t = np.linspace(0, T_END, 300_001) if solved.sol else solved.t[thin]
     y = solved.sol(t) if solved.sol else solved.y[:, thin]
     tip = y[:MODES].T @ exact.modal.tip
-    return time, float(np.abs(tip - exact.deflection(t)).max()), summit(np.abs(tip[t >= 20]))
+    return time, float(np.abs(tip - exact.deflection(t)).max()), find_summit(np.abs(tip[t >= 20]))
 
 
-def summit(size: np.ndarray) -> float:
+def find_summit(size: np.ndarray) -> float:
     """Largest of equally spaced samples, by the parabolas through each maximum and its neighbours."""
     left, middle, right = size[:-2], size[1:-1], size[2:]
     top = (middle >= left) & (middle > right)
@@ -118,10 +72,10 @@ def summit(size: np.ndarray) -> float:
     return float((middle[top] + (right[top] - left[top]) ** 2 / (8 * bend)).max())
 
 
-def lean_cost() -> Iterator[Row]:
+def time_handwritten() -> Iterator[Row]:
     """A call of the hand-written right-hand side, and that it is the equations."""
-    equations = system()
-    rhs, _ = lean(equations)
+    equations, _ = modal_system(MODES)
+    rhs, _ = handwritten(equations)
     y = np.linspace(1e-6, 2e-6, 2 * MODES)
     time = best_time(lambda: [rhs(12.3, y) for _ in range(1000)]) * 1e3
     yield "hand-written right-hand side [us a call]", f"{time:.1f}", "25"
@@ -129,7 +83,7 @@ def lean_cost() -> Iterator[Row]:
     yield "... its deviation from the equations", f"{off:.0e}", "1e-9"
 
 
-def table_3() -> Iterator[Row]:
+def compare_table_3() -> Iterator[Row]:
     """The peak of Table 3, by the number of modes and by finite elements."""
     for modes in (1, 2, 3, 4, 5, 6):
         run = bd.simulate(ROLLING, T_END, modes, tolerance=1e-6)
@@ -140,8 +94,8 @@ def table_3() -> Iterator[Row]:
     yield "the same by 20 elements, not reduced [mm]", f"{1e3 * full.peak(20, 30):.6f}", "1.94246 +- 1e-4"
 
 
-def chosen_modes() -> Iterator[Row]:
-    """What `tolerance=` makes of it: modes at the slowest and at the fastest speed."""
+def measure_chosen_modes() -> Iterator[Row]:
+    """Time and error with five modes at rest, and with the modal basis that `tolerance=` chooses."""
     exact = bd.simulate(ROLLING, T_END, tolerance=1e-8)
     t = np.linspace(0, T_END, 30001)
     tip = exact.deflection(t)
@@ -152,22 +106,22 @@ def chosen_modes() -> Iterator[Row]:
         stated = (run.time_error + run.mode_error) / run.largest
         name = f"{run.task.kept}, tolerance {tolerance:g}"
         yield f"{name}: time [s]", f"{time:.3f}", ""
-        yield f"{name}: error by steps and modes", f"{error:.1e}", f"{stated:.1e} stated"
+        yield f"{name}: time-integration and modal truncation error", f"{error:.1e}", f"{stated:.1e} stated"
     loose, tight = (
         best_time(lambda tol=tol: bd.simulate(ROLLING, T_END, MODES, tol)) for tol in (1e-3, 1e-10)
     )
     yield "tolerance 1e-3 instead of 1e-10, 5 modes: times faster", f"{tight / loose:.0f}", "5"
 
 
-def energy() -> Iterator[Row]:
+def measure_energy_drift() -> Iterator[Row]:
     """An oscillator over a million periods in ten steps each."""
     periods = 1_000_000
-    piece = propagate(Oscillator(), 0, 2 * np.pi * periods, 10 * periods, np.ones(1), np.zeros(1), 8)
-    drift = np.abs((piece.state[:, 1:] ** 2).sum(axis=1) - 1).max()
+    segment = propagate(Oscillator(), 0, 2 * np.pi * periods, 10 * periods, np.ones(1), np.zeros(1), 8)
+    drift = np.abs((segment.state[:, 1:] ** 2).sum(axis=1) - 1).max()
     yield "energy drift over 1e6 periods, 10 steps each", f"{drift:.1e}", "1e-9"
 
 
-PARTS = lean_cost, table_3, chosen_modes, energy, race
+PARTS = time_handwritten, compare_table_3, measure_chosen_modes, measure_energy_drift, race_stock_integrators
 
 
 def main() -> None:

@@ -16,8 +16,8 @@ from scipy.linalg import solve_triangular
 from beamdyn.equations.equations_of_motion import SteadyPencil
 
 _EPS = np.finfo(float).eps
-# Rounding, fitted by benchmarks/coverage.py to 720 frequencies of random scenes; the matrices are graded,
-# and keep more digits than their norm tells.
+# Rounding, fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of random scenes; the matrices
+# are graded, and keep more digits than their norm tells.
 _BACKWARD = 8 * _EPS  # of the stiffness, relative to the sum of its terms and to its norm
 _FORWARD = 0.5 * _EPS  # of the eigensolution, relative to its largest eigenvalue; a fifth is seen at mode 100
 _SAFE = 0.1  # share of the stiffness at rest that must be left for a solution without a shift

@@ -1,4 +1,4 @@
-"""Mechanisms that several tests use."""
+"""Planar mechanisms that tests and benchmarks share: the eeBrake, random ones, and their virtual work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scenes that several tests share."""
+"""Scenes that tests and benchmarks share."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
@@ -18,19 +19,44 @@ HARVESTER = bd.Scene(
     bd.Mount(radius=0.215),
 )
 
-ROLLING = replace(
-    HARVESTER,
-    motion=bd.RollingWheel(
-        rolling_radius=0.3,
-        speed=bd.SpinUp(55.0, duration=10.0),
-        road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01),
-    ),
-)
+
+def rolling_harvester(speed: float | bd.SpinUp) -> bd.Scene:
+    """The harvester of Lee and Yoo (2019) in its wheel on the wavy road, at or up to a speed [rad/s]."""
+    road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
+    return replace(HARVESTER, motion=bd.RollingWheel(rolling_radius=0.3, speed=speed, road=road))
+
+
+ROLLING = rolling_harvester(bd.SpinUp(55.0, duration=10.0))  # Table 3
+STEADY_ROLLING = rolling_harvester(55.0)
+STEADY_ROLLING_IN_GRAVITY = replace(STEADY_ROLLING, gravity=9.81)
+SHORT_SPIN_UP = rolling_harvester(bd.SpinUp(55.0, duration=0.2))  # a sweep over it takes a moment
+AFTER_SHORT_SPIN_UP = (0.3, 0.5)  # a window of time in which peaks of `SHORT_SPIN_UP` are taken [s]
 BLADE_SPIN_UP = bd.Scene(
     bd.Beam.from_stiffness(10.0, 1.2, 1.4e4, axial_stiffness=2.8e7),
     bd.Mount(0.0, math.pi),
     bd.SpinUp(6.0, duration=15.0),
 )
+
+
+def steel_strip(
+    slenderness: float = 100.0,
+    length: float = 1.0,
+    hub: float = 0.0,
+    setting: float = math.pi,
+    bending: float = 0.0,
+    tip: float = 0.0,
+) -> bd.Scene:
+    """A steel strip ten thicknesses wide; the hub's radius in lengths, the tip body in beam masses."""
+    thickness = length / slenderness
+    body = bd.TipMass(tip * 7850 * 10 * thickness**2 * length) if tip else None
+    beam = bd.Beam.rectangular(length, 10 * thickness, thickness, 200e9, 7850.0, body)
+    return bd.Scene(beam, bd.Mount(hub * length, setting, bending))
+
+
+def time_unit(beam: bd.Beam) -> float:
+    """sqrt(rho A L^4 / EI) at the root [s]."""
+    root = np.zeros(1)
+    return float(beam.length**2 * np.sqrt(beam.mass_per_length(root) / beam.bending_stiffness(root))[0])
 
 
 def of_case(case: dict[str, Any]) -> bd.Scene:

@@ -189,7 +189,7 @@ def clamp(system: Any, node: int) -> Iterator[Any]:
     for k in range(4):
         moved = system.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
         constraint = system.AddObject(CoordinateConstraint(markerNumbers=[fixed, moved]))
-        name = "offsetUserFunction"
+        name = name_user_function("offset")
         function = symbolic(system, offset(k), name, itemIndex=constraint)
         system.SetObjectParameter(constraint, name, function)
         yield function
@@ -216,10 +216,15 @@ def loads(system: Any, elements: list[int]) -> Iterator[Any]:
     for item in elements:
         marker = system.AddMarker(MarkerBodyMass(bodyNumber=item))
         number = system.AddLoad(LoadMassProportional(markerNumber=marker, loadVector=[0, 0, 0]))
-        name = "loadVectorUserFunction"
+        name = name_user_function("loadVector")
         written = symbolic(system, function, name, itemTypeName="LoadMassProportional")
         system.SetLoadParameter(number, name, written)
         yield written
+
+
+def name_user_function(quantity: str) -> str:
+    """Exudyn's name of the parameter that takes a quantity as a function of time."""
+    return f"{quantity}UserFunction"
 
 
 def symbolic(system: Any, function: Callable[..., Any], name: str, **item: Any) -> Any:

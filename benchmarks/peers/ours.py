@@ -23,38 +23,38 @@ def version() -> str:
 
 
 def points() -> Iterator[Point]:
-    yield from frequencies(measure.HARVESTER, HARVESTER, measure.harvester_frequencies(), 1001)
+    yield from measure_frequencies(measure.HARVESTER, HARVESTER, measure.harvester_frequencies(), 1001)
     exact = {speed: f / (2 * math.pi) for speed, f in measure.blade_frequencies().items()}
-    yield from frequencies(measure.BLADE, BLADE_SCENE, exact, 1201)
+    yield from measure_frequencies(measure.BLADE, BLADE_SCENE, exact, 1201)
     for modes, tolerance in TRANSIENTS:
-        yield transient(modes, tolerance)
+        yield measure_transient(modes, tolerance)
 
 
-def frequencies(case: str, scene: bd.Scene, exact: dict[float, float], count: int) -> Iterator[Point]:
+def measure_frequencies(case: str, scene: bd.Scene, exact: dict[float, float], count: int) -> Iterator[Point]:
     """A locus up to the largest speed of those whose frequency is known, and these by themselves."""
     speeds = np.linspace(0, max(exact), count)
     for tolerance in TOLERANCES:
-        yield locus(case, scene, speeds, exact, tolerance)
+        yield measure_locus(case, scene, speeds, exact, tolerance)
     for tolerance in TOLERANCES:
-        yield alone(case, scene, exact, tolerance)
+        yield measure_alone(case, scene, exact, tolerance)
 
 
-def locus(
+def measure_locus(
     case: str, scene: bd.Scene, speeds: np.ndarray, exact: dict[float, float], tolerance: float | None
 ) -> Point:
     """Time per speed of a locus."""
-    time, found = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, tolerance=tolerance))
+    time, locus = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, tolerance=tolerance))
     rows = [int(np.abs(speeds - speed).argmin()) for speed in exact]
-    error = measure.largest_error(dict(zip(exact, found.frequency[rows, 0], strict=True)), exact)
+    error = measure.largest_error(dict(zip(exact, locus.frequency[rows, 0], strict=True)), exact)
     return Point(case, OURS, f"locus of {len(speeds)} speeds, {name(tolerance)}", time / len(speeds), error)
 
 
-def alone(case: str, scene: bd.Scene, exact: dict[float, float], tolerance: float | None) -> Point:
+def measure_alone(case: str, scene: bd.Scene, exact: dict[float, float], tolerance: float | None) -> Point:
     """Time of one speed by itself."""
-    time, found = best_threads(
+    time, results = best_threads(
         lambda: [bd.natural_modes(scene, speed, 1, tolerance=tolerance) for speed in exact]
     )
-    error = measure.largest_error({m.speed: m.frequency[0] for m in found}, exact)
+    error = measure.largest_error({m.speed: m.frequency[0] for m in results}, exact)
     return Point(case, OURS, f"{ALONE}, {name(tolerance)}", time / len(exact), error)
 
 
@@ -62,17 +62,17 @@ def name(tolerance: float | None) -> str:
     return DEFAULT if tolerance is None else f"tolerance {tolerance:g}"
 
 
-def transient(modes: int | str, tolerance: float) -> Point:
-    """Time and error of the largest deflection, found in the time."""
-    time, found = best_threads(
+def measure_transient(modes: int | str, tolerance: float) -> Point:
+    """Time of a run with its largest deflection, and the error of that."""
+    time, largest = best_threads(
         lambda: bd.simulate(ROLLING, measure.T_END, modes, tolerance).peak(*measure.WINDOW)
     )
-    error = abs(found / largest_deflection() - 1)
-    kept = "modes by tolerance" if modes == "auto" else f"{modes} modes at rest, tolerance"
-    return Point(measure.ROLLING, OURS, f"{kept} {tolerance:g}", time, error)
+    error = abs(largest / largest_deflection() - 1)
+    basis = "modes by tolerance" if modes == "auto" else f"{modes} modes at rest, tolerance"
+    return Point(measure.ROLLING, OURS, f"{basis} {tolerance:g}", time, error)
 
 
 @lru_cache
 def largest_deflection() -> float:
-    """Largest deflection of the linear model [m]: to 1e-8; 16 modes at rest agree to 3e-7, as k^-5 tells."""
+    """Largest deflection of the linear model [m], right to 1e-8; 16 modes at rest agree to 3e-7."""
     return bd.simulate(ROLLING, measure.T_END, tolerance=1e-8).peak(*measure.WINDOW)

@@ -8,14 +8,10 @@ import numpy as np
 import scipy
 from scipy.integrate import solve_ivp
 
-import beamdyn as bd
-from beamdyn.modal.error_estimate import Model
-from beamdyn.transient.system import ModalSystem
-from benchmarks.cases.scenes import ROLLING
+from benchmarks.cases.table_3 import handwritten, modal_system
 from benchmarks.peers import measure
 from benchmarks.peers.measure import Point, peak, shortest
 from benchmarks.peers.ours import largest_deflection
-from benchmarks.transient import lean
 
 NAME = "solve_ivp"
 BETTER = "any equations, linear or not, given as a function; stops at events"
@@ -30,8 +26,8 @@ def version() -> str | None:
 
 
 def points() -> Iterator[Point]:
-    system, tip = equations()
-    rhs, jacobian = lean(system)
+    system, tip = modal_system(MODES)
+    rhs, jacobian = handwritten(system)
     t = np.linspace(*measure.WINDOW, SAMPLES)
     for method, rtol in SETTINGS:
         extra = {} if method == "DOP853" else {"jac": jacobian}
@@ -44,10 +40,3 @@ def points() -> Iterator[Point]:
         )
         error = abs(peak(t, tip @ solved.y[:MODES]) / largest_deflection() - 1)
         yield Point(measure.ROLLING, NAME, f"{method}, rtol {rtol:g}, {MODES} modes", time, error)
-
-
-def equations() -> tuple[ModalSystem, np.ndarray]:
-    """The modal equations, and the tip deflections of the modes."""
-    modal = Model(ROLLING, bd.Ritz(20)).modal(MODES)
-    assert ROLLING.motion is not None
-    return ModalSystem(modal.equations, ROLLING.motion), modal.tip

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from benchmarks.peers.measure import ALONE, CASES, DEFAULT, OURS, Point
+from benchmarks.rows import markdown_table, time_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,7 +76,7 @@ def rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, 
         shown = case
         for point in (p for p in points if p.case == case):
             faster = ("", "") if point.program == OURS else ratios(point, points)
-            yield shown, point.program, point.setting, seconds(point.time), f"{point.error:.1e}", *faster
+            yield shown, point.program, point.setting, time_text(point.time), f"{point.error:.1e}", *faster
             shown = ""
     for peer in peers:
         if peer.version() is None:
@@ -103,13 +104,6 @@ def times(value: float) -> str:
     return "" if math.isnan(value) else f"{value:.0f}" if value >= 10 else f"{value:.1g}"
 
 
-def seconds(time: float) -> str:
-    for unit, size in (("s", 1.0), ("ms", 1e-3)):
-        if time >= size:
-            return f"{time / size:.3g} {unit}"
-    return f"{time / 1e-6:.3g} µs"
-
-
 HEAD = ("case", "program", "setting", "time", "error", "beamdyn faster by", "one by itself")
 TARGET_HEAD = (
     "program",
@@ -132,17 +126,12 @@ def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
     better = "\n".join(f"- {peer.NAME}: {peer.BETTER}." for peer in peers)
     parts = (
         first,
-        grid(HEAD, rows(points, peers)),
-        grid(TARGET_HEAD, target_rows(points, peers)),
+        markdown_table(HEAD, rows(points, peers)),
+        markdown_table(TARGET_HEAD, target_rows(points, peers)),
         f"## Where they are better\n\n{better}\n",
         NOTES,
     )
     return "\n".join(parts)
-
-
-def grid(head: Sequence[str], body: Iterator[tuple[str, ...]]) -> str:
-    lines = [head, ["---"] * len(head), *body]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def picture(points: Sequence[Point], path: Path) -> None:

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import beamdyn as bd
 from beamdyn.transient.gauss import propagate, tableau
+from benchmarks.cases.oscillators import Oscillator
 
 
 class Mathieu:
@@ -67,7 +68,7 @@ def test_order_is_twice_the_stages(system, stages: int, counts: tuple[int, int])
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2 * stages, abs=0.35)
 
 
-def test_eight_stages_reach_rounding_with_four_radians_a_step() -> None:
+def test_eight_stages_reach_rounding_error_at_four_radians_a_step() -> None:
     exact = reference(SpinUp(), 4.0)
     found = propagate(SpinUp(), 0.0, 4.0, 6, Q0, V0, 8).state[-1, 1:]
     np.testing.assert_allclose(found, exact, atol=1e-11)
@@ -93,7 +94,7 @@ def test_tableau_is_that_of_gauss() -> None:
 
 
 @pytest.mark.parametrize("stages", [1, 4, 8])
-def test_energy_is_kept_and_steps_of_any_length_are_stable(stages: int) -> None:
+def test_energy_is_conserved_at_any_step_size(stages: int) -> None:
     K = Constant.K
 
     def energy(y):
@@ -105,14 +106,6 @@ def test_energy_is_kept_and_steps_of_any_length_are_stable(stages: int) -> None:
         np.testing.assert_allclose(energy(states), energy(states[0]), rtol=1e-11)
 
 
-class Oscillator:
-    size = 1
-
-    def coefficients(self, t):
-        t = np.asarray(t)[..., None]
-        return None, 1 + 0 * t[..., None], 0 * t
-
-
 def test_energy_over_a_hundred_thousand_periods() -> None:
     """Ten steps a period; the benchmark runs a million periods."""
     periods = 100_000
@@ -121,7 +114,7 @@ def test_energy_over_a_hundred_thousand_periods() -> None:
     assert np.abs(energy - 1).max() < 1e-10
 
 
-def test_solve_ivp_accepts_it_with_events_and_times() -> None:
+def test_solve_ivp_runs_it_with_events_and_output_times() -> None:
     system, t = Mathieu(), np.linspace(0, 4, 41)
     y0 = np.concatenate([Q0, V0])
 

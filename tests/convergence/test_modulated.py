@@ -24,7 +24,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_same_as_step_by_step(name: str) -> None:
+def test_series_agrees_with_steps_factorised_one_by_one(name: str) -> None:
     scene = SCENES[name]
     system = ModalSystem(Model(scene, bd.Ritz(16)).modal(3).equations, scene.motion)
     y = np.random.default_rng(1).standard_normal(2 * system.size) * 1e-6
@@ -50,7 +50,7 @@ def test_error_is_of_third_order_in_the_modulation() -> None:
     assert 6 < errors[1] / errors[0] < 11
 
 
-def test_refused_where_it_is_too_strong_or_the_speed_changes() -> None:
+def test_strong_modulation_and_changing_speed_are_declined() -> None:
     system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal(2).equations, ROLLING.motion)
     assert system.modulation(5.0, 12.0) is None
     modulation = system.modulation(10.0, 30.0)

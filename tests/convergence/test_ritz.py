@@ -7,54 +7,43 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.equations.operators import assemble
-from benchmarks.cases.reference.power_series import bending_eigenvalues
-from benchmarks.cases.scenes import of_case
-
-UNIFORM = {"model": "bending", "delta": 0.0, "bending_angle_deg": 90.0, "mass": [1.0], "stiffness": [1.0]}
-
-
-def five_lowest(gamma: float) -> np.ndarray:
-    return np.sqrt([float(v) for v in bending_eigenvalues(gamma, 0, np.pi / 2, count=5)])
-
-
-def solved(gamma: float, discretization: bd.Ritz, modes: int = 5) -> np.ndarray:
-    return np.abs(bd.natural_modes(of_case(UNIFORM), gamma, modes, discretization).eigenvalue)
+from benchmarks.cases.uniform_blade import UNIFORM_BLADE, computed_eigenvalues, exact_eigenvalues
 
 
 @pytest.mark.parametrize("gamma", [0, 12])
 def test_no_digit_is_lost_as_the_basis_grows(gamma: int) -> None:
-    expected = five_lowest(gamma)
+    expected = exact_eigenvalues(gamma)
     for functions in (20, 30, 50, 80, 120, 160, 200):
-        np.testing.assert_allclose(solved(gamma, bd.Ritz(functions)), expected, rtol=1e-12)
+        np.testing.assert_allclose(computed_eigenvalues(gamma, bd.Ritz(functions)), expected, rtol=1e-12)
 
 
 def test_legendre_converges_faster_than_any_power() -> None:
-    expected = five_lowest(12)[0]
-    errors = [solved(12, bd.Ritz(n), 1)[0] / expected - 1 for n in (6, 8, 10, 12)]
+    expected = exact_eigenvalues(12)[0]
+    errors = [computed_eigenvalues(12, bd.Ritz(n), 1)[0] / expected - 1 for n in (6, 8, 10, 12)]
     orders = np.diff(np.log(errors)) / np.diff(np.log([6, 8, 10, 12]))
     assert (np.diff(orders) < 0).all() and orders[-1] < -15
 
 
 def test_eigenfunctions_converge_like_the_fifth_power() -> None:
-    expected = five_lowest(12)[0]
+    expected = exact_eigenvalues(12)[0]
     sizes = np.array([20, 40, 80])
-    errors = [solved(12, bd.Ritz(int(n), "eigenfunctions"), 1)[0] / expected - 1 for n in sizes]
+    errors = [computed_eigenvalues(12, bd.Ritz(int(n), "eigenfunctions"), 1)[0] / expected - 1 for n in sizes]
     slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
     assert -5.5 < slope < -4.5
 
 
 def test_eigenfunctions_are_stable_to_number_150() -> None:
     """Each is its own mode at rest: the Rayleigh quotients are the fourth powers of the wave numbers."""
-    op = assemble(of_case(UNIFORM).beam, bd.Ritz(150, "eigenfunctions")).bending
+    op = assemble(UNIFORM_BLADE.beam, bd.Ritz(150, "eigenfunctions")).bending
     b = np.sqrt(np.sqrt(np.diag(op.KB) / np.diag(op.M)))
     np.testing.assert_allclose(
         b[9:], np.pi * (np.arange(10, 151) - 0.5), rtol=1e-12
     )  # cosh b is inf to rounding
-    np.testing.assert_allclose(b[:5] ** 2, five_lowest(0), rtol=1e-12)
+    np.testing.assert_allclose(b[:5] ** 2, exact_eigenvalues(0), rtol=1e-12)
 
 
 @pytest.mark.parametrize("basis", ["legendre", "eigenfunctions"])
-def test_from_above(basis: str) -> None:
+def test_frequencies_do_not_rise_as_the_basis_grows(basis: str) -> None:
     """Frequencies of a larger Ritz space are not higher (Courant-Fischer)."""
-    found = [solved(12, bd.Ritz(n, basis), 3) for n in (8, 12, 16, 24)]  # pyright: ignore[reportArgumentType]
+    found = [computed_eigenvalues(12, bd.Ritz(n, basis), 3) for n in (8, 12, 16, 24)]  # pyright: ignore[reportArgumentType]
     assert (np.diff(found, axis=0) < 1e-12 * np.array(found[0])).all()

@@ -9,6 +9,7 @@ import pytest
 from benchmarks.cases.scenes import ROLLING
 from benchmarks.peers import calculix, exudyn, measure, pybmodes, stock, tables
 from benchmarks.peers.measure import BLADE, HARVESTER, OURS, Point
+from benchmarks.rows import time_text
 
 DAT = """
 
@@ -173,4 +174,4 @@ def test_peak_between_samples():
 
 @pytest.mark.parametrize(("time", "text"), [(12.34, "12.3 s"), (0.0123, "12.3 ms"), (7.6e-6, "7.6 µs")])
 def test_seconds(time, text):
-    assert tables.seconds(time) == text
+    assert time_text(time) == text

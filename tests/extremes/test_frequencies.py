@@ -13,32 +13,15 @@ import pytest
 
 import beamdyn as bd
 from benchmarks.cases.reference.of_scene import exact, relative_errors
+from benchmarks.cases.scenes import steel_strip, time_unit
 
 EPS = float(np.finfo(float).eps)
 INWARD, OUTWARD, TANGENTIAL = 0.0, math.pi, math.pi / 2
 
 
-def scene(
-    slenderness: float = 100.0,
-    length: float = 1.0,
-    hub: float = 0.0,
-    setting: float = OUTWARD,
-    bending: float = 0.0,
-    tip: float = 0.0,
-) -> bd.Scene:
-    """A steel strip; the hub in lengths, the tip body in beam masses."""
-    thickness = length / slenderness
-    body = bd.TipMass(tip * 7850 * 10 * thickness**2 * length) if tip else None
-    beam = bd.Beam.rectangular(length, 10 * thickness, thickness, 200e9, 7850.0, body)
-    return bd.Scene(beam, bd.Mount(hub * length, setting, bending))
-
-
 def at(gamma: float, made: bd.Scene) -> float:
     """The speed of a nondimensional one [rad/s]."""
-    beam, root = made.beam, np.zeros(1)
-    return gamma / float(
-        beam.length**2 * np.sqrt(beam.mass_per_length(root) / beam.bending_stiffness(root))[0]
-    )
+    return gamma / time_unit(made.beam)
 
 
 def assert_right(found: bd.Modes, allowed: float = 0.0) -> None:
@@ -70,22 +53,22 @@ def assert_right(found: bd.Modes, allowed: float = 0.0) -> None:
         ({"tip": 1e6, "hub": 2.0, "setting": INWARD}, 0.001),
     ],
 )
-def test_ends_of_the_ranges(changes: dict[str, float], gamma: float) -> None:
-    made = scene(**changes)
+def test_frequencies_at_the_ends_of_the_ranges(changes: dict[str, float], gamma: float) -> None:
+    made = steel_strip(**changes)
     assert_right(bd.natural_modes(made, at(gamma, made)))
 
 
 @pytest.mark.parametrize("hub", [0.5, 4.0, 1e6])
 @pytest.mark.parametrize("distance", [-1e-6, -1e-12, 1e-12, 1e-6, 3.0])
 def test_near_and_past_the_critical_speed(hub: float, distance: float) -> None:
-    made = scene(hub=hub, setting=INWARD)
+    made = steel_strip(hub=hub, setting=INWARD)
     found = bd.natural_modes(made, (1 + distance) * bd.critical_speed(made))
     assert_right(found, 4 * EPS / abs(distance))
     assert (found.status[0] == "divergence") == (distance > 0)
 
 
 def test_at_the_critical_speed_nothing_is_claimed_of_the_first_mode() -> None:
-    made = scene(hub=1.0, setting=INWARD)
+    made = steel_strip(hub=1.0, setting=INWARD)
     found = bd.natural_modes(made, bd.critical_speed(made))
     assert found.error[0] > 1e-4 and any("relative error" in text for text in found.warnings)
 
@@ -93,14 +76,14 @@ def test_at_the_critical_speed_nothing_is_claimed_of_the_first_mode() -> None:
 @pytest.mark.parametrize("angle", [TANGENTIAL, math.nextafter(TANGENTIAL, 2), math.nextafter(TANGENTIAL, 1)])
 def test_the_doubles_beside_a_quarter_turn(angle: float) -> None:
     """They differ from 90 deg by less than any user can mean; so do their frequencies."""
-    f, g = (bd.natural_modes(scene(hub=1e3, setting=a), 100.0).frequency for a in (angle, TANGENTIAL))
+    f, g = (bd.natural_modes(steel_strip(hub=1e3, setting=a), 100.0).frequency for a in (angle, TANGENTIAL))
     np.testing.assert_allclose(f, g, rtol=1e-10)
 
 
 @pytest.mark.parametrize("gamma", [1e3, 1e4])
 def test_very_fast_outward_blade_is_a_string(gamma: float) -> None:
     """Flapwise, without hub: lambda -> gamma sqrt(n (2 n - 1)) from above, as the stiffness is a layer."""
-    made = scene(slenderness=1e6, bending=math.pi / 2)
+    made = steel_strip(slenderness=1e6, bending=math.pi / 2)
     found = bd.natural_modes(made, at(gamma, made))
     n = np.arange(1, 4)
     string = at(gamma, made) * np.sqrt(n * (2 * n - 1))
@@ -112,7 +95,7 @@ def test_very_fast_outward_blade_is_a_string(gamma: float) -> None:
 @pytest.mark.parametrize("modes", [1, 10, 50, 100, 150])
 def test_many_modes_at_rest(modes: int) -> None:
     """Roots of cos b cosh b = -1, which are (n - 1/2) pi to rounding from the twelfth on."""
-    made = scene()
+    made = steel_strip()
     found = bd.natural_modes(made, 0.0, modes)
     b = math.pi * (np.arange(1, modes + 1) - 0.5)
     for _ in range(20):
@@ -126,7 +109,7 @@ def test_many_modes_at_rest(modes: int) -> None:
 @pytest.mark.parametrize("modes", [180, 200])
 def test_more_modes_than_can_be_checked_are_refused(modes: int) -> None:
     with pytest.raises(ValueError, match="fewer modes"):
-        bd.natural_modes(scene(), 0.0, modes)
+        bd.natural_modes(steel_strip(), 0.0, modes)
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-5, 1e-8])
@@ -134,7 +117,7 @@ def test_more_modes_than_can_be_checked_are_refused(modes: int) -> None:
     "changes, gamma", [({}, 30.0), ({"tip": 10.0}, 5.0), ({"hub": 2.0, "setting": INWARD}, 1.4)]
 )
 def test_tolerances(changes: dict[str, float], gamma: float, tolerance: float) -> None:
-    made = scene(**changes)
+    made = steel_strip(**changes)
     found = bd.natural_modes(made, at(gamma, made), tolerance=tolerance)
     fine = bd.natural_modes(made, at(gamma, made))
     true = np.abs(found.eigenvalue - fine.eigenvalue) / np.abs(fine.eigenvalue)

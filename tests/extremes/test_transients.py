@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from tests.extremes.test_frequencies import scene
+from benchmarks.cases.scenes import steel_strip
 
-BLADE = replace(scene(1000.0, length=100.0, hub=0.02, setting=math.pi / 3), damping_ratio=0.02)  # 2 minutes
+BLADE = replace(
+    steel_strip(1000.0, length=100.0, hub=0.02, setting=math.pi / 3), damping_ratio=0.02
+)  # 2 minutes
 
 
 def test_after_a_week_of_spin_up_the_blade_is_in_static_equilibrium() -> None:
@@ -23,7 +25,7 @@ def test_after_a_week_of_spin_up_the_blade_is_in_static_equilibrium() -> None:
 
 def test_a_millisecond_of_spin_up_is_a_blow() -> None:
     """What a blow leaves is a velocity: the angular load times the speed, in each mode at rest."""
-    still = scene(length=100.0, setting=math.pi / 3)  # the first period is 12 s
+    still = steel_strip(length=100.0, setting=math.pi / 3)  # the first period is 12 s
     modes = bd.natural_modes(still, 0.0, 4)
     start = np.concatenate([np.zeros(4), 0.2 * modes.angular_load])
     slow, blow = bd.SpinUp(0.2, duration=1e-3), bd.SteadyRotation(0.2)
@@ -35,7 +37,7 @@ def test_a_millisecond_of_spin_up_is_a_blow() -> None:
 
 
 def test_twenty_thousand_periods_of_one_mode() -> None:
-    made = replace(scene(), motion=bd.SteadyRotation(20.0))
+    made = replace(steel_strip(), motion=bd.SteadyRotation(20.0))
     run = bd.simulate(made, 1.0, modes=1, initial=np.array([1e-6, 0.0]))
     _, K, _ = run.system.coefficients(np.zeros(1))
     omega = math.sqrt(K[0, 0, 0])
@@ -48,19 +50,19 @@ def test_twenty_thousand_periods_of_one_mode() -> None:
 
 
 def test_nothing_moves_at_rest() -> None:
-    tangential = scene(hub=1.0, setting=math.pi / 2)
+    tangential = steel_strip(hub=1.0, setting=math.pi / 2)
     assert bd.simulate(replace(tangential, motion=bd.SteadyRotation(0.0)), 1.0).largest == 0
 
 
 def test_turning_back_mirrors_a_beam_without_static_load() -> None:
-    inward = scene(hub=1.0, setting=0.0)
+    inward = steel_strip(hub=1.0, setting=0.0)
     forth, back = (bd.simulate(replace(inward, motion=bd.SpinUp(v, 0.5)), 1.0, 3) for v in (9.0, -9.0))
     np.testing.assert_allclose(back.tip, -forth.tip, rtol=0, atol=1e-12 * forth.largest)
 
 
 @pytest.mark.parametrize("ratio", [1e8, 1e12, 1e16])
 def test_stretch_of_a_beam_that_hardly_stretches(ratio: float) -> None:
-    thin = scene(hub=1.0, setting=math.pi / 3).beam
+    thin = steel_strip(hub=1.0, setting=math.pi / 3).beam
     stiffness = ratio * float(thin.bending_stiffness(np.zeros(1))[0]) / thin.length**2
     beam = bd.Beam.from_stiffness(
         thin.length, thin.mass_per_length, thin.bending_stiffness, axial_stiffness=stiffness
@@ -75,7 +77,7 @@ def test_stretch_of_a_beam_that_hardly_stretches(ratio: float) -> None:
 @pytest.mark.parametrize("length", [1e-5, 100.0])
 def test_size_alone_changes_nothing(length: float) -> None:
     """Lengths by c, times by c: the tip moves by c."""
-    made = [scene(length=c, hub=1.0, setting=math.pi / 3) for c in (1.0, length)]
+    made = [steel_strip(length=c, hub=1.0, setting=math.pi / 3) for c in (1.0, length)]
     runs = [
         bd.simulate(replace(s, motion=bd.SpinUp(10.0 / c, 0.5 * c)), c, 3, t_eval=np.linspace(0, c, 51))
         for s, c in zip(made, (1.0, length), strict=True)

@@ -1,108 +1,43 @@
-"""Guaranteed bounds of frequencies enclose the power-series reference, whatever the scene."""
+"""Guaranteed bounds of frequencies enclose those of the power series, in random scenes."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from mpmath import mpf
-from numpy.polynomial import Polynomial, legendre
+from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import FrequencyBounds, Split, _flexibility, _reciprocal, frequency_bounds
-from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
+from beamdyn.spectrum.bounds import Split, _flexibility, _reciprocal, frequency_bounds
+from benchmarks.cases.enclosure import (
+    NondimensionalScene,
+    encloses,
+    random_nondimensional_scene,
+    relative_width,
+)
 from benchmarks.cases.scenes import HARVESTER
 
 
-@dataclass(frozen=True)
-class Draw:
-    """A random nondimensional scene and its speed, as beamdyn and as the reference take it."""
-
-    scene: bd.Scene
-    gamma: float
-    delta: float
-    mass: list[float]
-    stiffness: list[float]
-    tip: Tip | None
-
-    def exact(self, modes: int) -> list[mpf]:
-        """The eigenvalues lambda^2 to 25 digits."""
-        psi = self.scene.mount.bending_angle
-        return bending_eigenvalues(
-            self.gamma, self.delta, psi, self.mass, self.stiffness, self.tip, modes, digits=25
-        )
-
-
-def draw(rng: np.random.Generator) -> Draw:
-    """Uniform or tapered, with or without tip body, inward or outward, below or past the critical speed."""
-    taper, delta = _taper(rng), round(rng.uniform(-10, 5), 4)
-    mass, stiffness = ([1.0, -taper], _power(taper, 3)) if rng.random() < 0.7 else ([1.0], [1.0])
-    tip = _tip(rng) if rng.random() < 0.5 else None
-    body = bd.TipMass(*(float(v) for v in vars(tip).values())) if tip else None
-    beam = bd.Beam.from_stiffness(1.0, Polynomial(mass), Polynomial(stiffness), tip=body)
-    phi = rng.uniform(-1.2, 1.2) if rng.random() < 0.3 else 0.0
-    mount = bd.Mount(
-        abs(delta) / math.cos(phi), phi if delta < 0 else math.pi - phi, float(rng.uniform(0, 1.57))
-    )
-    scene = bd.Scene(beam, mount)
-    return Draw(scene, _speed(rng, scene), delta, mass, stiffness, tip)
-
-
-def _taper(rng: np.random.Generator) -> float:
-    return round(rng.uniform(-0.5, 0.85), 3)
-
-
-def _power(taper: float, exponent: int) -> list[float]:
-    """Coefficients of (1 - taper x)^exponent, to 12 digits: they are the problem, not the power."""
-    return [round(float(c), 12) for c in (Polynomial([1.0, -taper]) ** exponent).coef]
-
-
-def _tip(rng: np.random.Generator) -> Tip:
-    mass, offset = round(10 ** rng.uniform(-2, 1), 4), round(rng.uniform(-0.2, 0.3), 3)
-    inertia = round(mass * rng.uniform(0, 0.1), 6)
-    return Tip(mass, offset, inertia, inertia, round(inertia * rng.uniform(0, 2), 6))
-
-
-def _speed(rng: np.random.Generator, scene: bd.Scene) -> float:
-    """Up to 12 and six times the critical speed (the reference needs that), half of them near the latter."""
-    critical = bd.critical_speed(scene)
-    near = rng.random() < 0.5 and critical < 12
-    return float(critical * rng.uniform(0, 1.5) if near else rng.uniform(0, min(12, 6 * critical)))
-
-
-def encloses(found: FrequencyBounds, exact: list[mpf]) -> np.ndarray:
-    """Whether each exact value lies between the bounds; a missing bound is none."""
-    low, high = found.lower_squared, found.upper_squared
-    below = [np.isnan(a) or mpf(float(a)) <= z for a, z in zip(low, exact, strict=True)]
-    return np.array(below) & [z <= mpf(float(b)) for b, z in zip(high, exact, strict=True)]
-
-
-def relative_width(found: FrequencyBounds) -> np.ndarray:
-    """Width of the bounds of the squares, relative to these."""
-    return (found.upper_squared - found.lower_squared) / np.abs(found.upper_squared)
-
-
 @pytest.mark.parametrize("seed", range(60))
-def test_they_enclose_the_exact_frequencies(seed: int) -> None:
-    case = draw(np.random.default_rng(seed))
+def test_bounds_enclose_the_exact_frequencies(seed: int) -> None:
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     found = frequency_bounds(case.scene, case.gamma, 3)
     assert encloses(found, case.exact(3)).all()
     assert np.isfinite(found.lower_squared).all()
     assert (relative_width(found) < 1e-6).all()
 
 
-def test_they_are_sharp_for_ordinary_scenes() -> None:
+def test_bounds_are_tight_for_ordinary_scenes() -> None:
     for speed in (0.0, 50.0, 100.0, 150.0):
         assert (frequency_bounds(HARVESTER, speed).width < 1e-9).all()
 
 
 @pytest.mark.parametrize("functions", [4, 6, 9])
 @pytest.mark.parametrize("seed", range(5))
-def test_small_bases_give_wide_bounds_but_true_ones(seed: int, functions: int) -> None:
-    case = draw(np.random.default_rng(seed))
+def test_bounds_of_small_bases_are_wide_but_hold(seed: int, functions: int) -> None:
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     lower, upper = _split(case, functions).bounds(3)
     exact = np.array([float(z) for z in case.exact(3)])
     assert (upper > exact).all()
@@ -110,8 +45,8 @@ def test_small_bases_give_wide_bounds_but_true_ones(seed: int, functions: int) -
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_the_tail_keeps_within_its_traces(seed: int) -> None:
-    case = draw(np.random.default_rng(seed))
+def test_eigenvalues_of_the_neglected_functions_stay_below_their_traces(seed: int) -> None:
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     small, large = _split(case, 5), _split(case, 60)
     assert np.isin(small.head, large.head).all()
     K, head = large.stiffness, small.head
@@ -120,13 +55,13 @@ def test_the_tail_keeps_within_its_traces(seed: int) -> None:
         assert eigh(tail.T @ part @ tail, tail.T @ K @ tail, eigvals_only=True)[-1] <= bound
 
 
-def _split(case: Draw, functions: int) -> Split:
+def _split(case: NondimensionalScene, functions: int) -> Split:
     flexibility = _flexibility(case.scene.beam.bending_stiffness)
     return Split(case.scene, functions, case.gamma, flexibility)
 
 
 @pytest.mark.parametrize("stiffness", [(1.0,), (1.0, -0.9), (0.7, 0.1, -0.3, 0.2)])
-def test_the_flexibility_is_above_and_close(stiffness: tuple[float, ...]) -> None:
+def test_approximate_flexibility_is_barely_above_the_exact_one(stiffness: tuple[float, ...]) -> None:
     excess = np.array(_reciprocal(np.array(stiffness)))
     t = np.linspace(-1, 1, 1001)
     product = legendre.legval(t, stiffness) * legendre.legval(t, excess)
@@ -136,12 +71,12 @@ def test_the_flexibility_is_above_and_close(stiffness: tuple[float, ...]) -> Non
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1000, 1040))  # benchmarks/bounds.py draws many more
-def test_they_enclose_the_exact_frequencies_of_more_scenes(seed: int) -> None:
-    case = draw(np.random.default_rng(seed))
+def test_bounds_enclose_the_exact_frequencies_of_more_scenes(seed: int) -> None:
+    case = random_nondimensional_scene(np.random.default_rng(seed))
     assert encloses(frequency_bounds(case.scene, case.gamma, 4), case.exact(4)).all()
 
 
-def test_a_breakpoint_that_changes_nothing_keeps_them_valid() -> None:
+def test_bounds_hold_with_a_breakpoint_where_nothing_changes() -> None:
     split = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, breakpoints=(0.3, 0.55))
     parts = frequency_bounds(replace(HARVESTER, beam=split), 50.0)
     whole = frequency_bounds(HARVESTER, 50.0)
@@ -150,7 +85,7 @@ def test_a_breakpoint_that_changes_nothing_keeps_them_valid() -> None:
     assert (parts.width < 1e-9).all()
 
 
-def test_they_agree_with_the_modes_of_a_stepped_beam() -> None:
+def test_bounds_agree_with_the_modes_of_a_stepped_beam() -> None:
     steps = bd.Table((0, 0.4, 0.4, 0.7, 1), (4e-4, 4e-4, 3e-4, 3e-4, 2e-4))
     beam = bd.Beam.rectangular(0.1, 0.01, steps, 70e9, 2700.0, tip=bd.TipMass(2e-4, 1e-3, 3e-10))
     scene = bd.Scene(beam, bd.Mount(0.1, 2.0, 0.7))
@@ -167,14 +102,14 @@ def test_an_unstable_mode_has_bounds_of_its_square() -> None:
     assert "mode(s) 1 are unstable" in found.warnings[0]
 
 
-def test_a_sign_that_cannot_be_told_is_said() -> None:
+def test_undecided_stability_is_warned_of() -> None:
     found = frequency_bounds(HARVESTER, bd.critical_speed(HARVESTER))
     assert found.lower_squared[0] < 0 < found.upper_squared[0]
     assert np.isnan(found.lower[0])
     assert "may be stable or not" in found.warnings[0]
 
 
-def test_no_bound_rather_than_a_wrong_one() -> None:
+def test_a_bound_that_cannot_be_guaranteed_is_missing() -> None:
     found = frequency_bounds(HARVESTER, 1e6)
     assert np.isnan(found.lower_squared).all()
     assert "no lower bound" in found.warnings[0]

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from tests.unit.test_sweep import SCENE, WINDOW
+from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP as WINDOW
+from benchmarks.cases.scenes import SHORT_SPIN_UP as SCENE
 
 ROOT = Path(__file__).parents[2]
 SPEEDS = [0.0, 20.0, 40.0, 53.0, 55.0, 69.8, 90.0, 100.0, 120.0, 130.0, 149.0, 150.0]

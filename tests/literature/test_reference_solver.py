@@ -106,7 +106,7 @@ def test_second_setting_angle_limits(row):
     assert slope(row["value"] - half) < 0 < slope(row["value"] + half)
 
 
-def test_a_missed_root_is_noticed(monkeypatch):
+def test_a_skipped_root_is_an_error(monkeypatch):
     from benchmarks.cases.reference import power_series
 
     lowest = power_series._lowest

@@ -301,8 +301,8 @@ def test_steady_acceleration_is_that_of_the_motion(road):
     wheel, t = RollingWheel(0.3, 17.0, road), np.linspace(0, 3, 11)
     sample = wheel.at(t)
     chi = (wheel.road_multiple or 0.0) * sample.angle
-    torus = wheel.steady_acceleration(17.0, sample.angle, chi)
-    np.testing.assert_allclose(torus, sample.carrier_acceleration, atol=1e-11)
+    acceleration = wheel.steady_acceleration(17.0, sample.angle, chi)
+    np.testing.assert_allclose(acceleration, sample.carrier_acceleration, atol=1e-11)
 
 
 def test_steady_acceleration_broadcasts():

@@ -99,7 +99,7 @@ def test_enough_damping_closes_the_tongue() -> None:
     assert bd.steady_response(replace(COMMENSURATE, damping_ratio=0.01), [centre]).stable.all()
 
 
-def test_amplitude_is_the_largest_on_a_fine_torus() -> None:
+def test_amplitude_is_the_largest_over_a_fine_grid_of_phases() -> None:
     found = bd.steady_response(replace(ROLLING, gravity=9.81, damping_ratio=0.01), np.linspace(5, 155, 40))
     phase = np.linspace(0, 2 * math.pi, 181)
     sampled = np.abs(found.tip(phase[:, None], phase)).max(axis=(1, 2))

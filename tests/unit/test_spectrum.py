@@ -117,7 +117,7 @@ def test_provenance_says_what_was_chosen_and_compared() -> None:
 @pytest.mark.parametrize(
     "discretization, tolerance", [("ritz", 1e-14), ("fem", 1e-9), (bd.Ritz(6), 1e-6), (bd.Fem(8), 1e-6)]
 )
-def test_a_tolerance_that_is_not_reached_is_told(discretization, tolerance: float) -> None:
+def test_a_tolerance_that_is_not_met_is_warned_of(discretization, tolerance: float) -> None:
     modes = bd.natural_modes(
         HARVESTER, 100.0, 5 if discretization == "ritz" else 3, discretization, tolerance
     )

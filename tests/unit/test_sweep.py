@@ -8,12 +8,11 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.scene.motion import MotionSample
-from benchmarks.cases.scenes import HARVESTER
+from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 
-MOTION = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=0.2), bd.RoadWave(0.3, velocity_amplitude=0.01))
-SCENE = replace(HARVESTER, motion=MOTION)
+SCENE, WINDOW = SHORT_SPIN_UP, AFTER_SHORT_SPIN_UP
+MOTION = SCENE.motion
 SPEEDS = [0.0, 30.0, 53.0, 140.0]
-WINDOW = (0.3, 0.5)
 
 
 @pytest.fixture(scope="module")

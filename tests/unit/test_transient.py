@@ -217,7 +217,7 @@ def test_modes_chosen_serve_a_stock_integrator_and_times_too() -> None:
     np.testing.assert_allclose(stock.tip, ours.tip, rtol=0, atol=1e-4 * ours.largest)
 
 
-def test_initial_coordinates_go_with_the_richer_model() -> None:
+def test_initial_coordinates_are_those_of_the_refined_model_too() -> None:
     start = np.array([1e-6, -2e-6, 0.0, 1e-4])
     run = bd.simulate(ROLLING, 0.1, modes=2, initial=start)
     assert run.richer is not None

@@ -101,15 +101,15 @@ def section(mass: tuple[float, ...], stiffness: tuple[float, ...]) -> Case:
     return {"mass": list(map(float, mass)), "stiffness": list(map(float, stiffness))}
 
 
-def solved(case: Case, number: int) -> Case:
+def solve(case: Case, number: int) -> Case:
     squares = solve_case(case, digits=DIGITS + 5)
     with mp.workdps(DIGITS + 5):
         roots = [mp.sqrt(z) if z > 0 else mp.nan for z in squares]
     name = {"name": f"{number:02d} {case['name']}"}
-    return case | name | {"lambda_squared": printed(squares), "frequency": printed(roots)}
+    return case | name | {"lambda_squared": print_digits(squares), "frequency": print_digits(roots)}
 
 
-def printed(values: list[mpf]) -> list[str]:
+def print_digits(values: list[mpf]) -> list[str]:
     return [mp.nstr(value, DIGITS, strip_zeros=False) for value in values]
 
 
@@ -131,7 +131,7 @@ def table(case: Case) -> str:
 def main() -> None:
     random = Random(2019)
     cases = [case for family in (uniform, tapered, tipped, coupled) for case in family(random)]
-    tables = [table(solved(case, number)) for number, case in enumerate(cases, start=1)]
+    tables = [table(solve(case, number)) for number, case in enumerate(cases, start=1)]
     TARGET.write_text("\n\n".join([HEADER.rstrip(), *tables]) + "\n", encoding="utf-8")
 
 

@@ -1,8 +1,9 @@
-"""Whether the stated errors of transients hold.  Run: python -m benchmarks.coverage_transients [--scenes N]
+"""Whether the stated errors of transients cover the true ones.
 
-Random scenes in motion.  The error by the steps in time is measured against DOP853 of `solve_ivp`, or where
-that takes too long against our own steps at a tolerance of 1e-11; that by the modes left out against many
-modes at three speeds in a large basis.
+Run: python -m benchmarks.stated_transient_errors [--scenes N].  Random scenes in motion.  The
+time-integration error is measured against DOP853 of `solve_ivp`, or where that takes too long against our
+own steps at a tolerance of 1e-11; the modal truncation error against many modes at three speeds in a large
+basis.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.modal.modal_basis import Kept, range_of_speed
 from beamdyn.transient.simulate import Transient
-from benchmarks.beam_core import Row, show
-from benchmarks.coverage import random_beam
+from benchmarks.cases.random_scenes import random_beam
+from benchmarks.rows import Row, show
 
 _BOUND = 0.99
 _FUNCTIONS = 120  # of the reference
 _MANY = 8  # modes of the reference, at least, and three at two more speeds
-_DOP853 = 5e3  # largest angle that the fastest mode may turn for it [rad]
+_DOP853 = 5e3  # largest phase angle of the fastest mode up to which DOP853 is the reference [rad]
 SEED = 7
 _ROUNDING = 1e-8  # of the references, over the largest deflection
 _TIMES = 2000  # at which tips are compared
@@ -38,7 +39,7 @@ class Case:
     """One random run: its stated and true errors over the largest deflection, or why it was refused."""
 
     number: int
-    stated: tuple[float, float] = (0.0, 0.0)  # by the steps in time, by the modes left out
+    stated: tuple[float, float] = (0.0, 0.0)  # time integration, modal truncation
     true: tuple[float, float] = (0.0, 0.0)
     refusal: str = ""
 
@@ -84,8 +85,8 @@ def random_motion(rng: np.random.Generator, speed: float, t_end: float, length: 
     return bd.RollingWheel(radius, rotation, road if rng.integers(4) else None)
 
 
-def measured(number: int, seed: int) -> Case:
-    """One case, told by its number."""
+def measure(number: int, seed: int) -> Case:
+    """Stated and true errors of the run with this number."""
     given = random_run(np.random.default_rng([seed, number]))
     t = np.linspace(0, given["t_end"], _TIMES)
     try:
@@ -94,14 +95,14 @@ def measured(number: int, seed: int) -> Case:
         return Case(number, refusal=str(error))
     size = run.largest or 1.0
     stated = run.time_error / size, run.mode_error / size
-    return Case(number, stated, (time_error(run, t) / size, mode_error(run, t) / size))
+    return Case(number, stated, (find_time_error(run, t) / size, find_mode_error(run, t) / size))
 
 
-def time_error(run: Transient, t: np.ndarray) -> float:
-    """Largest distance from the same modes integrated nearly without error [m]."""
+def find_time_error(run: Transient, t: np.ndarray) -> float:
+    """Largest deviation from the same modes integrated nearly without error [m]."""
     _, K, _ = run.system.coefficients(np.zeros(1))
-    turned = run.path.end * float(np.sqrt(np.abs(np.linalg.eigvals(K)).max()))
-    if turned < _DOP853:
+    phase = run.path.end * float(np.sqrt(np.abs(np.linalg.eigvals(K)).max()))
+    if phase < _DOP853:
         options = {"atol": 1e-300 + 1e-13 * run.largest, "rtol": 3e-13}
         exact = replace(run.task, method="DOP853", options=options).run()
     else:
@@ -109,8 +110,8 @@ def time_error(run: Transient, t: np.ndarray) -> float:
     return float(np.abs(run.tip - exact.deflection(t)).max())
 
 
-def mode_error(run: Transient, t: np.ndarray) -> float:
-    """Largest distance from a run with many more modes, both nearly without error in time [m]."""
+def find_mode_error(run: Transient, t: np.ndarray) -> float:
+    """Largest deviation from a run with many more modes, both integrated nearly without error [m]."""
     ends = range_of_speed(run.task.motion, run.path.end)
     speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
     few = replace(run.task, tolerance=1e-8, t_eval=None)
@@ -123,19 +124,19 @@ def mode_error(run: Transient, t: np.ndarray) -> float:
         return np.inf
 
 
-def coverage(cases: Sequence[Case]) -> Iterator[Row]:
-    """Share of errors covered, and by how much."""
+def summarize(cases: Sequence[Case]) -> Iterator[Row]:
+    """Share of the true errors that the stated ones cover, and the over-estimate; what was refused."""
     answered = [case for case in cases if not case.refusal]
     yield "random runs", str(len(cases)), "200"
     yield "refused", str(len(cases) - len(answered)), ""
-    for k, name in enumerate(("the steps in time", "the modes left out")):
+    for k, name in enumerate(("time-integration error", "modal truncation error")):
         stated, true = (
             np.array([getattr(case, which)[k] for case in answered]) for which in ("stated", "true")
         )
         covered = stated + _ROUNDING >= true
         known = (true > 0) & np.isfinite(true) & np.isfinite(stated)
         over = np.median(stated[known] / true[known])
-        yield f"error by {name} covered", f"{covered.mean():.1%}", f"{_BOUND:.0%}"
+        yield f"{name} covered", f"{covered.mean():.1%}", f"{_BOUND:.0%}"
         yield "... median over-estimate", f"{over:.1f}", ""
         yield "... largest true error, over the largest deflection", f"{true.max():.1e}", ""
         for case in (case for case, hit in zip(answered, covered, strict=True) if not hit):
@@ -145,18 +146,18 @@ def coverage(cases: Sequence[Case]) -> Iterator[Row]:
             yield f"refused: run {case.number}", case.refusal, ""
 
 
-def run(first: int, scenes: int, workers: int, seed: int) -> list[Case]:
-    """Measure so many cases."""
+def measure_all(first: int, scenes: int, workers: int, seed: int) -> list[Case]:
+    """All runs from a first one, on several processes."""
     with ProcessPoolExecutor(workers) as pool:
-        return list(pool.map(partial(measured, seed=seed), range(first, first + scenes)))
+        return list(pool.map(partial(measure, seed=seed), range(first, first + scenes)))
 
 
-def sample() -> Iterator[Row]:
+def measure_sample() -> Iterator[Row]:
     """The first 20 runs."""
-    yield from coverage(run(0, 20, 2, SEED))
+    yield from summarize(measure_all(0, 20, 2, SEED))
 
 
-PARTS = (sample,)
+PARTS = (measure_sample,)
 
 
 def main() -> None:
@@ -166,8 +167,8 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--seed", type=int, default=SEED)
     options = parser.parse_args()
-    cases = run(options.first, options.scenes, options.workers, options.seed)
-    show("stated errors of transients", lambda: coverage(cases))
+    cases = measure_all(options.first, options.scenes, options.workers, options.seed)
+    show("stated errors of transients", lambda: summarize(cases))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""All figures that the README quotes, in one run.
+"""Measures all figures that the README quotes.
 
 Writes docs/measured.md, docs/tradeoff.md and the README's table of measurements, which repeats rows of the
 first.  Takes a quarter of an hour, on a machine that does nothing else.  The long samples (10 000 scenes and
@@ -8,7 +8,6 @@ more) have commands of their own.
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from datetime import date
 from importlib.metadata import version
@@ -18,32 +17,32 @@ from pathlib import Path
 
 from beamdyn import __version__
 from benchmarks import (
-    app,
-    beam_core,
     bounds,
     brakes,
-    coverage,
-    coverage_transients,
     extremes,
+    frequencies,
+    screens,
+    stated_frequency_errors,
+    stated_transient_errors,
     steady,
     sweep,
     tradeoff,
     transient,
 )
-from benchmarks.beam_core import Row, show
+from benchmarks.rows import Row, show
 
 PAGE = Path(__file__).parents[1] / "docs" / "measured.md"
-SECTIONS: dict[str, tuple[Callable[[], Iterator[Row]], ...]] = {
-    "Frequencies (`benchmarks.beam_core`)": beam_core.PARTS,
-    "Transients (`benchmarks.transient`)": transient.PARTS,
-    "Steady response (`benchmarks.steady`)": steady.PARTS,
-    "Sweeps (`benchmarks.sweep`)": sweep.PARTS,
-    "Guaranteed bounds, a sample (`benchmarks.bounds`)": bounds.PARTS,
-    "Stated errors of frequencies, a sample (`benchmarks.coverage`)": coverage.PARTS,
-    "Stated errors of transients, a sample (`benchmarks.coverage_transients`)": coverage_transients.PARTS,
-    "The whole range of inputs, a sample (`benchmarks.extremes`)": extremes.PARTS,
-    "Brakes (`benchmarks.brakes`)": brakes.PARTS,
-    "Screens of the interactive programs (`benchmarks.app`)": app.PARTS,
+SECTIONS = {
+    "Frequencies": frequencies,
+    "Transients": transient,
+    "Steady response": steady,
+    "Sweeps": sweep,
+    "Guaranteed bounds, a sample": bounds,
+    "Stated errors of frequencies, a sample": stated_frequency_errors,
+    "Stated errors of transients, a sample": stated_transient_errors,
+    "The whole range of inputs, a sample": extremes,
+    "Brakes": brakes,
+    "Screens of the interactive programs": screens,
 }
 README = PAGE.parents[1] / "README.md"
 MARKS = "<!-- measured -->", "<!-- end -->"
@@ -55,15 +54,15 @@ QUOTED = (
     "five lowest, 20...200 functions, gamma 12: worst error",
     "locus of 1000 speeds, 3 modes [s]",
     f"{_TABLE_3}: time [s]",
-    f"{_TABLE_3}: error by steps and modes",
+    f"{_TABLE_3}: time-integration and modal truncation error",
     "5 modes, tolerance 1e-05: time [s]",
-    "5 modes, tolerance 1e-05: error by steps and modes",
+    "5 modes, tolerance 1e-05: time-integration and modal truncation error",
     "fastest of these with an error not below ours, over ours",
     "tolerance 1e-3 instead of 1e-10, 5 modes: times faster",
     "energy drift over 1e6 periods, 10 steps each",
     "1000 speeds x 3 modes, undamped [s]",
     f"{_FIG_6}, auto modes: wall time, 2 workers [s]",
-    f"{_FIG_6}, auto modes: largest estimated error by modes",
+    f"{_FIG_6}, auto modes: largest estimated modal truncation error",
     "virtual work of 10000 random mechanisms, scaled: largest",
     "stroke of the eeBrake, 100 positions with all reactions [ms]",
     "10000 designs through vehicle, kinematics and forces [s]",
@@ -75,8 +74,8 @@ Versions: {versions}.  Other programs: [peers](peers.md), by `python -m benchmar
 """
 
 
-def head() -> str:
-    """What was run, where and when."""
+def describe_run() -> str:
+    """Heading of the page: machine, versions and day."""
     packages = ("numpy", "scipy", "scikit-fem")
     machine = (
         f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, {cpu_count()} cores"
@@ -85,22 +84,22 @@ def head() -> str:
     return _HEAD.format(day=date.today().isoformat(), machine=machine, versions=versions)
 
 
-def section(title: str, rows: list[Row]) -> str:
+def write_section(title: str, rows: list[Row]) -> str:
     """A table in Markdown."""
     lines = [f"\n## {title}\n", "| what | measured | bound or published |", "|---|---|---|"]
     return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)]) + "\n"
 
 
-def measured(title: str) -> list[Row]:
+def measure(title: str) -> list[Row]:
     """Rows of a section, which are printed too."""
-    return show(title, *SECTIONS[title])
+    return show(title, *SECTIONS[title].PARTS)
 
 
-def quote(page: str) -> None:
+def quote_in_readme(page: str) -> None:
     """Write the rows that the README quotes between its marks."""
     cells = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")]
-    found = {row[0].removeprefix("| "): row[1] for row in cells}
-    table = ["| what | measured |", "|---|---|", *(f"| {name} | {found[name]} |" for name in QUOTED)]
+    measured = {row[0].removeprefix("| "): row[1] for row in cells}
+    table = ["| what | measured |", "|---|---|", *(f"| {name} | {measured[name]} |" for name in QUOTED)]
     before, _, rest = README.read_text(encoding="utf-8").partition(MARKS[0])
     after = rest.partition(MARKS[1])[2]
     text = "\n".join([before + MARKS[0], "", *table, "", MARKS[1] + after])
@@ -108,11 +107,13 @@ def quote(page: str) -> None:
 
 
 def main() -> None:
-    text = head()
+    text = describe_run()
     for title in SECTIONS:
-        # Each in a process of its own: what one holds or has cached does not count for the next.
+        # Each in a process of its own: neither memory nor caches of one count for the next.
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-            text += section(title, pool.submit(measured, title).result())
+            text += write_section(
+                f"{title} (`{SECTIONS[title].__name__}`)", pool.submit(measure, title).result()
+            )
         PAGE.write_text(text, encoding="utf-8")
-    quote(text)
+    quote_in_readme(text)
     tradeoff.main()

@@ -1,4 +1,4 @@
-"""Speed of the interactive programs' screens, without their page.  Run: python -m benchmarks.app
+"""Speed of the interactive programs' screens, without their page.  Run: python -m benchmarks.screens
 
 Prints how long each screen takes to answer a change of its form, and to draw the answer.
 """
@@ -13,26 +13,26 @@ from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.documents import Program
 from beamdyn.common.app.session import Work
-from benchmarks.beam_core import Row, show
+from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
-RUNS, BOUND = 9, 100  # how often each is done, and what "at once" is [ms]
+RUNS, BOUND = 9, 100  # how often each is timed; the longest answer that feels immediate [ms]
 
 
-def screens(program: Program) -> Iterator[Row]:
+def time_screens(program: Program) -> Iterator[Row]:
     """Every screen of a program, on the design that it opens with."""
     for document in program.documents:
         work = Work(document)
         for screen in document.screens:
-            time = _median(lambda screen=screen, work=work: work.solve(screen))
+            time = _time(lambda screen=screen, work=work: work.solve(screen))
             yield f"{screen.name}: answer to a change [ms]", f"{1e3 * time:.1f}", f"{BOUND}"
             answer = work.answered[screen.name].answer
-            time = _median(lambda screen=screen, answer=answer: drawn(screen, answer, 1.0))
+            time = _time(lambda screen=screen, answer=answer: drawn(screen, answer, 1.0))
             yield f"{screen.name}: drawing as SVG [ms]", f"{1e3 * time:.0f}", ""
 
 
-def _median(action: Callable[[], object]) -> float:
-    """Usual time of an action, the first time left out [s]."""
+def _time(action: Callable[[], object]) -> float:
+    """Median time of an action [s]; the first run, which fills caches, does not count."""
     action()
     times = []
     for _ in range(RUNS):
@@ -42,17 +42,17 @@ def _median(action: Callable[[], object]) -> float:
     return median(times)
 
 
-def brakes() -> Iterator[Row]:
+def time_brakes() -> Iterator[Row]:
     """Screens of `brakes app`."""
-    return screens(BRAKES)
+    return time_screens(BRAKES)
 
 
-def beamdyn() -> Iterator[Row]:
+def time_beamdyn() -> Iterator[Row]:
     """Screens of `beamdyn app`."""
-    return screens(BEAMDYN)
+    return time_screens(BEAMDYN)
 
 
-PARTS = brakes, beamdyn
+PARTS = time_brakes, time_beamdyn
 
 
 def main() -> None:

@@ -1,0 +1,97 @@
+"""Accuracy and speed of natural frequencies and their limits.  Run: python -m benchmarks.frequencies
+
+Held against the power series, published tables and the published harvester.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.cases.scenes import HARVESTER, generated_cases, of_case, published_cases
+from benchmarks.cases.uniform_blade import computed_eigenvalues, exact_eigenvalues
+from benchmarks.rows import Row, best_time, show
+
+
+def compare_with_tables() -> Iterator[Row]:
+    """All published and generated rotating beams, by both discretizations."""
+    for discretization, bound in (("ritz", "1e-9"), ("fem", "1e-6")):
+        worst, covered, values = 0.0, 0, 0
+        for case in generated_cases():
+            squared = np.array([float(text) for text in case["lambda_squared"]])
+            modes = bd.natural_modes(of_case(case), case["gamma"], len(squared), discretization)
+            true = np.abs(np.abs(modes.eigenvalue) / np.sqrt(np.abs(squared)) - 1)
+            worst, values = max(worst, float(true.max())), values + len(true)
+            covered += int((true <= modes.error).sum())
+        name = f"{values} values of the power series, {discretization}"
+        yield f"{name}: worst relative error", f"{worst:.1e}", bound
+        yield (
+            f"... of which the stated error covers the true one, {discretization}",
+            str(covered),
+            str(values),
+        )
+        worst = max(float(find_deviation(case, discretization).max()) for case in published_cases())
+        name = f"published tables (9 to 13 digits), {discretization}"
+        yield f"{name}: worst relative deviation", f"{worst:.1e}", bound
+
+
+def find_deviation(case: dict, discretization: str) -> np.ndarray:
+    """Relative deviations from the digits of a published case."""
+    expected = np.array(case["frequency"])
+    modes = bd.natural_modes(of_case(case), case["gamma"], len(expected), discretization)
+    return np.abs(2 * np.pi * modes.frequency / expected - 1)
+
+
+def compare_published_scene() -> Iterator[Row]:
+    """Frequencies, buckling speed and setting-angle limits of the tyre harvester."""
+    for speed, ansys in ((0.0, 65.230), (50.0, 61.963), (100.0, 50.907)):
+        f = bd.natural_modes(HARVESTER, speed, 1).frequency[0]
+        yield f"Table 2 at {speed:g} rad/s [Hz]", f"{f:.8f}", f"ANSYS {ansys:.3f} +- 0.001"
+    yield "buckling speed [rad/s]", f"{bd.critical_speed(HARVESTER):.9f}", "159.818332659"
+    first, second = np.degrees(list(bd.setting_angle_limits(HARVESTER, 400.0)))
+    yield "first setting-angle limit [deg]", f"{first:.5f}", "88.35985"
+    yield "second, converged at 400 rad/s [deg]", f"{second:.4f}", "88.5343"
+    five = bd.setting_angle_limits(HARVESTER, np.inf, bd.Ritz(5, "eigenfunctions")).second
+    yield "second, five eigenfunctions [deg]", f"{np.degrees(five):.4f}", "89.6267"
+
+
+def check_many_functions() -> Iterator[Row]:
+    """Largest error as the basis grows: no digit may be lost."""
+    for gamma in (0, 12):
+        expected, worst = exact_eigenvalues(gamma), 0.0
+        for n in (20, 40, 80, 120, 160, 200):
+            worst = max(worst, float(np.abs(computed_eigenvalues(gamma, bd.Ritz(n)) / expected - 1).max()))
+        yield f"five lowest, 20...200 functions, gamma {gamma}: worst error", f"{worst:.1e}", "1e-12"
+
+
+def time_locus() -> Iterator[Row]:
+    """Time and error of a locus, time of the command's help."""
+    speeds = np.linspace(0, 150, 1000)
+    locus = bd.frequency_locus(HARVESTER, speeds, 3)
+    time = best_time(lambda: bd.frequency_locus(HARVESTER, speeds, 3))
+    yield "locus of 1000 speeds, 3 modes [s]", f"{time:.3f}", "0.05"
+    exact = bd.frequency_locus(HARVESTER, speeds, 3, bd.Ritz(40))
+    yield (
+        "... its largest relative error",
+        f"{np.abs(locus.frequency / exact.frequency - 1).max():.1e}",
+        "1e-10",
+    )
+    help_time = best_time(
+        lambda: subprocess.run([sys.executable, "-m", "beamdyn", "--help"], capture_output=True)
+    )
+    yield "beamdyn --help [s]", f"{help_time:.2f}", "0.5"
+
+
+PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus
+
+
+def main() -> None:
+    show("frequencies", *PARTS)
+
+
+if __name__ == "__main__":
+    main()
