@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.modal.modal_basis import Kept, range_of_speed
+from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.transient.simulate import Transient
 from benchmarks.cases.random_scenes import random_beam
 from benchmarks.rows import Row, show
@@ -104,19 +104,21 @@ def find_time_error(run: Transient, t: np.ndarray) -> float:
     phase = run.path.end * float(np.sqrt(np.abs(np.linalg.eigvals(K)).max()))
     if phase < _DOP853:
         options = {"atol": 1e-300 + 1e-13 * run.largest, "rtol": 3e-13}
-        exact = replace(run.task, method="DOP853", options=options).run()
+        exact = replace(run.request, method="DOP853", options=options).run()
     else:
-        exact = replace(run.task, tolerance=1e-11).run()
+        exact = replace(run.request, tolerance=1e-11).run()
     return float(np.abs(run.tip - exact.deflection(t)).max())
 
 
 def find_mode_error(run: Transient, t: np.ndarray) -> float:
     """Largest deviation from a run with many more modes, both integrated nearly without error [m]."""
-    ends = range_of_speed(run.task.motion, run.path.end)
+    ends = find_speed_range(run.request.motion, run.path.end)
     speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
-    few = replace(run.task, tolerance=1e-8, t_eval=None)
+    few = replace(run.request, tolerance=1e-8, t_eval=None)
     many = replace(
-        few, discretization=bd.Ritz(_FUNCTIONS), kept=Kept(max(_MANY, 2 * (run.task.kept.modes or 0)), speeds)
+        few,
+        discretization=bd.Ritz(_FUNCTIONS),
+        basis=ModalBasis(max(_MANY, 2 * (run.request.basis.modes or 0)), speeds),
     )
     try:
         return float(np.abs(few.run().deflection(t) - many.run().deflection(t)).max())

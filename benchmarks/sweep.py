@@ -15,8 +15,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import beamdyn as bd
-from beamdyn.modal.modal_basis import Kept
-from beamdyn.transient.chunks import Request, solve
+from beamdyn.modal.modal_basis import ModalBasis
+from beamdyn.transient.chunks import SweepRequest, solve_chunk
 from benchmarks.cases.scenes import ROLLING
 from benchmarks.rows import Row, show
 
@@ -58,9 +58,9 @@ def find_two_largest(sweep: bd.Sweep) -> list[tuple[float, float]]:
 
 def time_chunk() -> float:
     """Time of the last chunk, the slowest, in this process [s]."""
-    request = Request(ROLLING, (20.0, 30.0), 30.0, 1e-5, "ritz", Kept(5))
+    request = SweepRequest(ROLLING, (20.0, 30.0), 30.0, 1e-5, "ritz", ModalBasis(5))
     start = perf_counter()
-    solve(request, tuple(np.arange(111.0, 151.0)))
+    solve_chunk(request, tuple(np.arange(111.0, 151.0)))
     return perf_counter() - start
 
 

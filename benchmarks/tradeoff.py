@@ -22,7 +22,8 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.modal.error_estimate import Model, estimated
+from beamdyn.modal.error_estimate import solve_with_error
+from beamdyn.modal.model import Model
 from beamdyn.tradeoffs import (
     Diagram,
     frequency_diagram,
@@ -144,7 +145,7 @@ def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Ite
     def solve(functions: int) -> np.ndarray:
         return Model(scene, bd.Ritz(functions)).solver.eigenvalues(speeds, MODES)
 
-    exact = estimated(Model(scene, bd.Ritz(40)), speeds, MODES)
+    exact = solve_with_error(Model(scene, bd.Ritz(40)), speeds, MODES)
     floor = float(exact.error.max())
 
     def error(s: np.ndarray) -> float:
@@ -328,7 +329,7 @@ def write_page(
 
 def compare_handwritten() -> float:
     """Time of the general right-hand side over that of the one written by hand for the published scene."""
-    (equations, _), y = modal_system(5), np.linspace(1e-6, 2e-6, 10)
+    equations, y = modal_system(5), np.linspace(1e-6, 2e-6, 10)
     general, own = (
         best_time(lambda f=f: [f(12.3, y) for _ in range(200)])
         for f in (equations.rhs, handwritten(equations)[0])

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.equations.operators import tension
+from beamdyn.equations.tension import axial_tension
 from benchmarks.cases.scenes import time_unit
 
 _MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))  # Young's modulus [Pa], density [kg/m3]
@@ -34,7 +34,7 @@ def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 def largest_tension(scene: bd.Scene) -> float:
     """Largest tension over EI / L^2 at unit speed [s^2]."""
     beam, mount, xi = scene.beam, scene.mount, np.linspace(0, 1, 101)
-    n_a, n_b = tension(beam)
+    n_a, n_b = axial_tension(beam)
     force = n_b(xi) - np.cos(mount.setting_angle) * mount.radius * n_a(xi)
     return float(np.abs(force / beam.bending_stiffness(xi)).max()) * beam.length**2
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modal.error_estimate import Model
+from beamdyn.modal.model import Model
 from beamdyn.transient.gauss import propagate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
@@ -26,10 +26,10 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_series_agrees_with_steps_factorised_one_by_one(name: str) -> None:
     scene = SCENES[name]
-    system = ModalSystem(Model(scene, bd.Ritz(16)).modal(3).equations, scene.motion)
+    system = ModalSystem(Model(scene, bd.Ritz(16)).modal_equations(3), scene.motion)
     y = np.random.default_rng(1).standard_normal(2 * system.size) * 1e-6
-    modulation, n, steps = system.modulation(10.0, 14.0), system.size, 430
-    series = propagate_modulated(modulation, 10.0, 14.0, steps, y[:n], y[n:], 8, accuracy=1e-6)
+    modulated, n, steps = system.modulated(10.0, 14.0), system.size, 430
+    series = propagate_modulated(modulated, 10.0, 14.0, steps, y[:n], y[n:], 8, accuracy=1e-6)
     exact = propagate(system, 10.0, 14.0, steps, y[:n], y[n:], 8)
     for found, wanted in ((series.state, exact.state), (series.acceleration, exact.acceleration)):
         scale = np.abs(wanted).max(axis=tuple(range(wanted.ndim - 1)))
@@ -37,13 +37,13 @@ def test_series_agrees_with_steps_factorised_one_by_one(name: str) -> None:
 
 
 def test_error_is_of_third_order_in_the_modulation() -> None:
-    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal(2).equations, ROLLING.motion)
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(2), ROLLING.motion)
     y, errors = np.full(4, 1e-6), []
     for amplitude in (0.1, 0.2):
         road = bd.RoadWave(0.3, velocity_amplitude=amplitude)
         strong = replace(system, motion=replace(ROLLING.motion, road=road))
-        modulation = strong.modulation(10.0, 10.1)
-        series = propagate_modulated(modulation, 10.0, 10.1, 10, y[:2], y[2:], 8, accuracy=1.0)
+        modulated = strong.modulated(10.0, 10.1)
+        series = propagate_modulated(modulated, 10.0, 10.1, 10, y[:2], y[2:], 8, accuracy=1.0)
         exact = propagate(strong, 10.0, 10.1, 10, y[:2], y[2:], 8)
         free = exact.state[-1, 1:3]
         errors.append(np.abs(series.state[-1, 1:3] - free).max() / np.abs(free).max())
@@ -51,7 +51,7 @@ def test_error_is_of_third_order_in_the_modulation() -> None:
 
 
 def test_strong_modulation_and_changing_speed_are_declined() -> None:
-    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal(2).equations, ROLLING.motion)
-    assert system.modulation(5.0, 12.0) is None
-    modulation = system.modulation(10.0, 30.0)
-    assert propagate_modulated(modulation, 10.0, 30.0, 2000, *np.zeros((2, 2)), 8, accuracy=1e-12) is None
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(2), ROLLING.motion)
+    assert system.modulated(5.0, 12.0) is None
+    modulated = system.modulated(10.0, 30.0)
+    assert propagate_modulated(modulated, 10.0, 30.0, 2000, *np.zeros((2, 2)), 8, accuracy=1e-12) is None

@@ -19,8 +19,8 @@ from numpy.polynomial import Polynomial
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from beamdyn.equations.equations_of_motion import equations
-from beamdyn.equations.operators import assemble
+from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.fields.bending import HELD, bending_operators
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
@@ -316,11 +316,14 @@ class Powers:
 
 @dataclass(frozen=True)
 class PowerSpaces:
-    bending: Powers
-    stretch: Powers
+    length: float
 
-    def coupling(self, weight):
-        pairs = [[p * q for q in self.bending.functions(0)] for p in self.stretch.functions(0)]
+    def functions(self, held):
+        return Powers({2: BENDING, 1: STRETCH}[held], self.length)
+
+    def product(self, weight, rows, columns):
+        first, second = (self.functions(held).functions(0) for held in (rows, columns))
+        pairs = [[p * q for q in second] for p in first]
         return np.array([[over_the_beam(weight, pq) for pq in row] for row in pairs])
 
 
@@ -329,7 +332,7 @@ class PowerSeries:
     """The discretization."""
 
     def spaces(self, beam):
-        return PowerSpaces(Powers(BENDING, beam.length), Powers(STRETCH, beam.length))
+        return PowerSpaces(beam.length)
 
     def coarser(self):
         return self
@@ -391,8 +394,7 @@ class Case:
         return Scene(beam, Mount(v["r"], *self.angles[:2]), gravity=v["g"], stretch=True)
 
     def equations(self):
-        scene = self.scene()
-        return equations(scene, assemble(scene.beam, PowerSeries(), stretch=True))
+        return assemble_equations(self.scene(), PowerSeries())
 
     def sample(self):
         v = self.value
@@ -482,8 +484,9 @@ def test_equations_as_printed_in_eq_14_are_not_the_derived_ones():
     system = case.equations()
     slip, _ = case(2 * S["sphi"] * TANGENTIAL)
     printed = system.matrix(0, system.root(case.sample()))
-    bending = system.fields["bending"]
-    printed[bending, bending] -= slip * system.operators.bending.KGA
+    bending, beam = system.blocks["bending"], case.scene().beam
+    operators = bending_operators(beam, PowerSeries().spaces(beam).functions(HELD))
+    printed[bending, bending] -= slip * operators.KGA
     value, size = case.array(derive().matrix[0])
     assert abs(printed - value).max() > 1e-3 * size.max()
 

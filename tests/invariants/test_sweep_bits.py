@@ -120,17 +120,17 @@ def test_without_a_store_the_error_says_so():
 
 
 def test_what_does_not_converge_together_is_computed_alone(undisturbed, monkeypatch):
-    def histories(*_):
+    def integrate_batch(*_):
         raise ArithmeticError("not converged")
 
-    monkeypatch.setattr("beamdyn.transient.chunks.histories", histories)
+    monkeypatch.setattr("beamdyn.transient.chunks.integrate_batch", integrate_batch)
     found = bd.sweep(SCENE, SPEEDS, WINDOW)
     assert found.status == undisturbed[1]
     assert found.peaks == pytest.approx(np.frombuffer(undisturbed[0][0]), rel=2e-5)
 
 
 def test_an_error_of_a_case_is_not_one_of_the_executor(monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.chunks._together", lambda *_: 1 / 0)
+    monkeypatch.setattr("beamdyn.transient.chunks._solve_together", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError), ThreadPoolExecutor(1) as executor:
         run(executor=executor)
 

@@ -10,8 +10,8 @@ from numpy.polynomial import Polynomial
 
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import SteadyRotation
-from beamdyn.scene.profile import Table, as_profile
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import Table, as_profile
 from beamdyn.scene.scene import Scene
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}

@@ -16,8 +16,8 @@ from beamdyn.common.edge.units import quantity
 from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
-from beamdyn.scene.profile import Table
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modal.error_estimate import ModalEquations, choose
+from beamdyn.modal.choice import choose_model
 from beamdyn.scene.motion import Motion, MotionSample
 from beamdyn.steady.resonance import _brackets
 from benchmarks.cases.scenes import HARVESTER
@@ -32,8 +32,8 @@ OUTWARD = replace(ROLLING, mount=bd.Mount(0.215, math.pi))
 # Brute force --------------------------------------------------------------------------------------
 
 
-def modal(scene: bd.Scene, modes: int) -> ModalEquations:
-    return choose(scene, "ritz", np.array([60.0]), modes).modal(modes)
+def modal(scene: bd.Scene, modes: int) -> Equations:
+    return choose_model(scene, "ritz", np.array([60.0]), modes).modal_equations(modes)
 
 
 def first_order(equations: Equations, motion: Motion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,7 +55,7 @@ def test_response_is_the_tail_of_a_damped_transient(waves: float) -> None:
     found, one = bd.steady_response(scene, [60.0], modes=1, tolerance=1e-10), modal(scene, 1)
 
     def slope(t: float, y: np.ndarray) -> np.ndarray:
-        A, b = first_order(one.equations, motion, np.array([t]))
+        A, b = first_order(one, motion, np.array([t]))
         return A[0] @ y + b[0]
 
     t = np.linspace(0.6, 0.7, 200)
@@ -73,7 +73,7 @@ def monodromy_growth(scene: bd.Scene, speed: float) -> float:
     steps = 600
     h = 2 * math.pi / speed / steps
     nodes = (np.arange(steps)[:, None] + 0.5 + np.array([-1, 1]) * math.sqrt(3) / 6).ravel() * h
-    A = first_order(modal(scene, 2).equations, scene.motion.with_speed(speed), nodes)[0]
+    A = first_order(modal(scene, 2), scene.motion.with_speed(speed), nodes)[0]
     first, second = A[::2], A[1::2]
     omega = h / 2 * (first + second) + math.sqrt(3) / 12 * h**2 * (second @ first - first @ second)
     turn = np.eye(A.shape[-1])

@@ -108,7 +108,7 @@ BAD = {
 
 @pytest.mark.parametrize(("given", "message"), BAD.values(), ids=BAD)
 def test_bad_input_is_refused_before_any_work(given, message, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.sweep.solve", None)  # not to be called
+    monkeypatch.setattr("beamdyn.transient.chunk_collector.solve_chunk", None)  # not to be called
     store = tmp_path / "store"
     with pytest.raises(ValueError, match=message):
         bd.sweep(**{"scene": SCENE, "speeds": SPEEDS, "window": WINDOW, "store": store} | given)
@@ -122,7 +122,7 @@ def test_workers_and_an_executor_are_one_too_many():
 
 @pytest.mark.parametrize("content", ["directory", "file", "below a file"])
 def test_foreign_and_unwritable_stores_are_refused_before_any_work(content, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.sweep.solve", None)
+    monkeypatch.setattr("beamdyn.transient.chunk_collector.solve_chunk", None)
     (tmp_path / "notes.txt").write_text("mine")
     store = {
         "directory": tmp_path,

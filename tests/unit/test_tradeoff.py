@@ -25,7 +25,7 @@ from beamdyn.tradeoffs import (
     transient_modes_diagram,
     transients,
 )
-from beamdyn.tradeoffs.timing import Case, Family, measured
+from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 from beamdyn.tradeoffs.transients import AT_ENDS, AT_REST
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 
@@ -117,7 +117,7 @@ class Clock:
                 raise answer
             return answer
 
-        return Case(setting, 1.0, run)
+        return Setting(setting, 1.0, run)
 
 
 @pytest.fixture
@@ -129,7 +129,7 @@ def clock(monkeypatch):
 
 
 def run(clock, *cases, budget=10.0, resolved=1e-12):
-    return measured([Family("F", cases)], lambda answer: answer, resolved, budget)
+    return measure_families([Family("F", cases)], lambda answer: answer, resolved, budget)
 
 
 def test_a_cheap_case_is_repeated_and_a_dear_one_is_not(clock, monkeypatch):
@@ -143,13 +143,13 @@ def test_the_shortest_run_counts(monkeypatch):
     monkeypatch.setattr(timing, "RUNS", 3)
     instants = iter([0.0, 3.0, 3.0, 4.0, 4.0, 6.0])  # the runs take 3, 1 and 2 s
     monkeypatch.setattr(timing, "process_time", lambda: next(instants))
-    found, _ = measured([Family("F", (Case("a", 1, lambda deadline: 0.5),))], float, 0.0, 1e3)
+    found, _ = measure_families([Family("F", (Setting("a", 1, lambda deadline: 0.5),))], float, 0.0, 1e3)
     assert [m.time for m in found] == [1.0]
 
 
 def test_a_reference_leaves_half_of_the_budget(clock):
     clock.now = 3.0
-    assert [timing.what_is_left(budget, 1.0) for budget in (10.0, 3.0)] == [8.0, 1.5]
+    assert [timing.remaining_budget(budget, 1.0) for budget in (10.0, 3.0)] == [8.0, 1.5]
 
 
 def test_a_run_past_the_budget_is_given_up_and_named(clock):
@@ -174,7 +174,7 @@ def test_a_failure_is_named(clock):
 
 def test_what_a_family_leaves_goes_to_the_next(clock):
     families = [Family("F", (clock.case("a", 4.0),)), Family("G", (clock.case("b", 6.0),))]
-    found, skipped = measured(families, lambda answer: answer, 0.0, 10.0)
+    found, skipped = measure_families(families, lambda answer: answer, 0.0, 10.0)
     assert ([m.family for m in found], skipped) == (["F", "G"], [])
 
 

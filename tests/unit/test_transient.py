@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modal.error_estimate import Model
-from beamdyn.transient.batch import histories
-from beamdyn.transient.step_size import largest_deflection
+from beamdyn.modal.model import Model
+from beamdyn.transient.batch import integrate_batch
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import largest_deflection
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 
 STEADY = replace(HARVESTER, mount=bd.Mount(0.215, 0.02), motion=bd.SteadyRotation(50.0))
@@ -130,8 +130,8 @@ def test_full_finite_elements_equal_their_modes() -> None:
 
 def test_a_batch_is_its_cases_one_by_one() -> None:
     motions = [ROLLING.motion.with_speed(v) for v in (0.0, 40.0, 55.0, 120.0)]
-    modal = Model(HARVESTER, bd.Ritz(18)).modal(4)
-    batch = histories([ModalSystem(modal.equations, m) for m in motions], modal.tip, 3.0)
+    equations = Model(HARVESTER, bd.Ritz(18)).modal_equations(4)
+    batch = integrate_batch([ModalSystem(equations, m) for m in motions], 3.0)
     for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
         run = bd.simulate(replace(ROLLING, motion=motion), 3.0, modes=4, tolerance=1e-9)
         found = largest_deflection(np.ones(1), tip, 1.0, 3.0)
@@ -142,8 +142,8 @@ def test_a_batch_is_its_cases_one_by_one() -> None:
 def test_a_damped_batch_with_stretch_and_gravity() -> None:
     scene = replace(ROLLING, damping_ratio=0.03, gravity=9.81, stretch=True)
     motions = [ROLLING.motion.with_speed(v) for v in (40.0, 55.0)]
-    modal = Model(scene, bd.Ritz(16)).modal(2)
-    batch = histories([ModalSystem(modal.equations, m) for m in motions], modal.tip, 1.0)
+    equations = Model(scene, bd.Ritz(16)).modal_equations(2)
+    batch = integrate_batch([ModalSystem(equations, m) for m in motions], 1.0)
     for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
         run = bd.simulate(replace(scene, motion=motion), 1.0, modes=2, tolerance=1e-9)
         t = np.linspace(0.1, 1, 20)

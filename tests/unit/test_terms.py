@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 import pytest
 
 import beamdyn as bd
 from beamdyn.cli import DONE, main
-from beamdyn.equations.terms import _MEANING, _all, _complete, _Facts  # pyright: ignore[reportPrivateUsage]
+from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.explanations import SampledScene
+from beamdyn.equations.fields import FIELDS
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
 
 TIP = bd.TipMass(0.001, inertia=1e-6, axial_inertia=4e-7)
@@ -21,6 +24,8 @@ COUPLED = replace(BLADE_SPIN_UP, stretch=True, damping_ratio=0.01)
 def turned(setting: float = 0.0, bending: float = 0.0) -> bd.Scene:
     return replace(HARVESTER, mount=bd.Mount(0.215, setting, bending))
 
+
+EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
 SCENES = {
     "harvester": HARVESTER,
@@ -41,14 +46,16 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_reasons_agree_with_what_is_assembled(name: str) -> None:
     """A term is there if and only if all that it is said to need is there."""
-    facts = _Facts(SCENES[name])
+    sampled = SampledScene(SCENES[name])
     for entry in bd.terms(SCENES[name]):
-        assert entry.present == all(c.holds(facts) for c in _MEANING[entry.name][2]), entry
+        assert entry.present == all(c.is_met(sampled) for c in EXPLANATIONS[entry.name].conditions), entry
         assert entry.reason and entry.reason != "its coefficient is zero"
 
 
 def test_every_term_of_the_equations_has_a_meaning() -> None:
-    assert {term.name for term in _all(_complete(HARVESTER))} == set(_MEANING)
+    complete = reduce(lambda scene, field: field.complete(scene), FIELDS, HARVESTER)
+    equations = assemble_equations(complete, bd.Ritz(3))
+    assert {term.name for term in (*equations.terms, *equations.loads)} == set(EXPLANATIONS)
 
 
 @pytest.mark.parametrize(
