@@ -55,11 +55,11 @@ def run_stock(method: str, rtol: float, atol: float, exact: bd.Transient) -> tup
     rhs, jacobian = handwritten(modal_system(MODES))
     extra = {"dense_output": False} if method == "DOP853" else {"jac": jacobian, "dense_output": True}
     start = perf_counter()
-    solved = solve_ivp(rhs, (0, T_END), np.zeros(2 * MODES), method, rtol=rtol, atol=atol, **extra)
+    solution = solve_ivp(rhs, (0, T_END), np.zeros(2 * MODES), method, rtol=rtol, atol=atol, **extra)
     time = perf_counter() - start
-    thin = slice(None, None, max(1, len(solved.t) // 300_000))
-    t = np.linspace(0, T_END, 300_001) if solved.sol else solved.t[thin]
-    y = solved.sol(t) if solved.sol else solved.y[:, thin]
+    thin = slice(None, None, max(1, len(solution.t) // 300_000))
+    t = np.linspace(0, T_END, 300_001) if solution.sol else solution.t[thin]
+    y = solution.sol(t) if solution.sol else solution.y[:, thin]
     tip = y[:MODES].T @ exact.system.tip
     return time, float(np.abs(tip - exact.deflection(t)).max()), find_summit(np.abs(tip[t >= 20]))
 

@@ -56,17 +56,17 @@ def version() -> str | None:
     if shutil.which("ccx") is None:
         return None
     shown = subprocess.run(["ccx", "-v"], capture_output=True, text=True).stdout
-    found = re.search(r"Version\s+(\S+)", shown)
-    return found[1] if found else "unknown"
+    match = re.search(r"Version\s+(\S+)", shown)
+    return match[1] if match else "unknown"
 
 
 def points() -> Iterator[Point]:
     """Time of a run, start of the process included, writing of the input not."""
     exact = measure.harvester_frequencies()
     for elements, nonlinear in SETTINGS:
-        solved = {speed: solve(deck(elements, speed, nonlinear)) for speed in exact}
-        time = sum(time for time, _ in solved.values()) / len(solved)
-        error = measure.largest_error({speed: found for speed, (_, found) in solved.items()}, exact)
+        results = {speed: solve(deck(elements, speed, nonlinear)) for speed in exact}
+        time = sum(time for time, _ in results.values()) / len(results)
+        error = measure.largest_error({speed: frequency for speed, (_, frequency) in results.items()}, exact)
         yield Point(measure.HARVESTER, NAME, setting(elements, nonlinear), time, error)
 
 
@@ -85,10 +85,10 @@ def solve(text: str) -> tuple[float, float]:
 
 def first_frequency(text: str) -> float:
     """First frequency of a .dat file [Hz]: mode, eigenvalue, rad/time, cycles/time, imaginary part."""
-    found = re.search(r"E I G E N V A L U E   O U T P U T.*?^\s+1\s+\S+\s+\S+\s+(\S+)", text, re.S | re.M)
-    if found is None:
+    match = re.search(r"E I G E N V A L U E   O U T P U T.*?^\s+1\s+\S+\s+\S+\s+(\S+)", text, re.S | re.M)
+    if match is None:
         raise ValueError("the .dat file has no frequency: the static step did not converge")
-    return float(found[1])
+    return float(match[1])
 
 
 def deck(elements: int, speed: float, nonlinear: bool) -> str:

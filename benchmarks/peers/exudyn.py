@@ -63,9 +63,9 @@ def version() -> str | None:
 def points() -> Iterator[Point]:
     """Time of the solver alone: the model is made before, the deflection taken from the positions after."""
     for setting in SETTINGS:
-        found = [run(setting) for _ in range(RUNS)]
-        error = abs(peak(*found[-1][1:]) / largest_deflection() - 1)
-        yield Point(measure.ROLLING, NAME, str(setting), min(time for time, *_ in found), error)
+        runs = [run(setting) for _ in range(RUNS)]
+        error = abs(peak(*runs[-1][1:]) / largest_deflection() - 1)
+        yield Point(measure.ROLLING, NAME, str(setting), min(time for time, *_ in runs), error)
 
 
 def run(setting: Setting) -> tuple[float, np.ndarray, np.ndarray]:

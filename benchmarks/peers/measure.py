@@ -88,6 +88,6 @@ def _uniform(case: dict[str, Any]) -> bool:
     return plain and case["bending_angle_deg"] == 90 and case["mass"] == case["stiffness"] == [1.0]
 
 
-def largest_error(found: dict[float, float], exact: dict[float, float]) -> float:
+def largest_error(computed: dict[float, float], exact: dict[float, float]) -> float:
     """Largest relative deviation."""
-    return max(abs(found[speed] / exact[speed] - 1) for speed in exact)
+    return max(abs(computed[speed] / exact[speed] - 1) for speed in exact)

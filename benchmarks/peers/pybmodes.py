@@ -92,9 +92,9 @@ def points() -> Iterator[Point]:
     """Time of a solution for one mode, without reading of the main file and checks of the model."""
     exact = measure.blade_frequencies()
     for elements in ELEMENTS:
-        solved = {speed: solve(elements, speed) for speed in exact}
-        time = sum(time for time, _ in solved.values()) / len(solved)
-        error = measure.largest_error({speed: found for speed, (_, found) in solved.items()}, exact)
+        results = {speed: solve(elements, speed) for speed in exact}
+        time = sum(time for time, _ in results.values()) / len(results)
+        error = measure.largest_error({speed: frequency for speed, (_, frequency) in results.items()}, exact)
         yield Point(measure.BLADE, NAME, f"{elements} elements", time, error)
 
 

@@ -31,12 +31,12 @@ def points() -> Iterator[Point]:
     t = np.linspace(*measure.WINDOW, SAMPLES)
     for method, rtol in SETTINGS:
         extra = {} if method == "DOP853" else {"jac": jacobian}
-        time, solved = shortest(
+        time, solution = shortest(
             lambda method=method, rtol=rtol, extra=extra: solve_ivp(
                 *(rhs, (0, measure.T_END), np.zeros(2 * MODES), method, t),
                 **(extra | {"rtol": rtol, "atol": 1e-4 * rtol}),
             ),
             1,
         )
-        error = abs(peak(t, system.tip @ solved.y[:MODES]) / largest_deflection() - 1)
+        error = abs(peak(t, system.tip @ solution.y[:MODES]) / largest_deflection() - 1)
         yield Point(measure.ROLLING, NAME, f"{method}, rtol {rtol:g}, {MODES} modes", time, error)

@@ -90,10 +90,10 @@ def ratios(point: Point, points: Sequence[Point]) -> tuple[str, str]:
 def target_rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
     """How much faster we are at the setting of the target, and over all settings, for each program."""
     for peer in peers:
-        found = {p.setting: p for p in points if p.program == peer.NAME}
-        if peer.TARGET is not None and found:
+        by_setting = {p.setting: p for p in points if p.program == peer.NAME}
+        if peer.TARGET is not None and by_setting:
             setting, target = peer.TARGET
-            point, all_ratios = found[setting], [ratio(p, points) for p in found.values()]
+            point, all_ratios = by_setting[setting], [ratio(p, points) for p in by_setting.values()]
             span = f"{times(min(all_ratios))} to {times(max(all_ratios))}"
             by_default = times(ratio(point, points, default=True))
             yield peer.NAME, setting, times(ratio(point, points)), f"{target:.0f}", by_default, span

@@ -60,7 +60,7 @@ def test_response_is_the_tail_of_a_damped_transient(waves: float) -> None:
 
     t = np.linspace(0.6, 0.7, 200)
     run = solve_ivp(slope, (0, 0.7), np.zeros(2), "DOP853", t, rtol=1e-10, atol=1e-14)
-    tip = one.shape(np.ones(1))[:, 0] @ run.y[:1]
+    tip = one.tip @ run.y[:1]
     steady = found.tip(60.0 * t, waves * 60.0 * t)[0]
     np.testing.assert_allclose(steady, tip, rtol=0, atol=1e-8 * found.amplitude[0])
     assert np.abs(tip).max() <= found.amplitude[0] * (1 + 1e-8) <= found.bound[0] * (1 + 2e-8)

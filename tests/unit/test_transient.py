@@ -47,8 +47,10 @@ def test_what_does_not_move_takes_no_steps(angle: float, initial: str) -> None:
 
 def test_energy_is_constant_at_steady_speed() -> None:
     run = bd.simulate(STEADY, 5.0, modes=3)
-    piece = run.path.pieces[0]
-    energy = run.energy(piece.start + piece.h * np.arange(0, len(piece.acceleration), 7))  # ends of steps
+    segment = run.path.segments[0]
+    energy = run.energy(
+        segment.start + segment.h * np.arange(0, len(segment.acceleration), 7)
+    )  # ends of steps
     kinetic = (run.velocities**2).sum(axis=1).max() / 2
     assert np.ptp(energy) < 1e-10 * kinetic
 
@@ -220,9 +222,9 @@ def test_modes_chosen_serve_a_stock_integrator_and_times_too() -> None:
 def test_initial_coordinates_are_those_of_the_refined_model_too() -> None:
     start = np.array([1e-6, -2e-6, 0.0, 1e-4])
     run = bd.simulate(ROLLING, 0.1, modes=2, initial=start)
-    assert run.richer is not None
-    np.testing.assert_allclose(run.richer.coordinates[0], [1e-6, -2e-6, 0, 0], rtol=0, atol=1e-20)
-    np.testing.assert_allclose(run.richer.velocities[0], [0, 1e-4, 0, 0], rtol=0, atol=1e-17)
+    assert run.refined is not None
+    np.testing.assert_allclose(run.refined.coordinates[0], [1e-6, -2e-6, 0, 0], rtol=0, atol=1e-20)
+    np.testing.assert_allclose(run.refined.velocities[0], [0, 1e-4, 0, 0], rtol=0, atol=1e-17)
 
 
 def test_modes_left_out_of_the_largest_model_are_not_known() -> None:
