@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.equations.fields.field import Term
 from beamdyn.modal.model import Model
 from beamdyn.transient.gauss import propagate
+from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
+from beamdyn.transient.step_size import integrate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
 from benchmarks.cases.scenes import ROLLING
@@ -55,3 +58,36 @@ def test_strong_modulation_and_changing_speed_are_declined() -> None:
     assert system.modulated(5.0, 12.0) is None
     modulated = system.modulated(10.0, 30.0)
     assert propagate_modulated(modulated, 10.0, 30.0, 2000, *np.zeros((2, 2)), 8, accuracy=1e-12) is None
+
+
+def with_transverse_stiffness(system: ModalSystem, share: float) -> ModalSystem:
+    """The system with a further stiffness term that the root's transverse acceleration multiplies."""
+    (field,) = system.equations.blocks
+    matrix = share * np.diag(system.equations.matrices[0]["unity"])[0] * np.eye(system.size)
+    term = Term("test", field, field, 0, matrix, "root_transverse")
+    return replace(system, equations=replace(system.equations, terms=(*system.equations.terms, term)))
+
+
+def test_a_term_on_any_varying_quantity_is_treated() -> None:
+    """Two varying stiffnesses: the series agrees with DOP853, in as few steps as one of them takes."""
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(3), replace(ROLLING.motion, speed=55.0))
+    both, y0 = with_transverse_stiffness(system, 0.003), np.array([1e-6, 0, 0, 0, 0, 0])
+    assert len(both.modulated(0.0, 2.0).G) == 2
+    path, error, method = integrate(both, y0, 2.0, 1e-5)
+    exact = integrate_by_solve_ivp(both, y0, 2.0, "DOP853", 1e-11, {})
+    t = np.linspace(0, 2, 1001)
+    tip = exact.at(t)[0] @ both.tip
+    assert np.abs(path.at(t)[0] @ both.tip - tip).max() <= error <= 1e-5 * np.abs(tip).max()
+    _, _, method_of_one = integrate(system, y0, 2.0, 1e-5)
+    steps, steps_of_one = (int(words.split()[-2]) for words in (method, method_of_one))
+    assert steps <= 1.1 * steps_of_one
+    unchanged = integrate(system, y0, 2.0, 1e-5)[0].at(t)[0] @ system.tip
+    assert np.abs(unchanged - tip).max() > 500 * error  # the term matters
+
+
+def test_varying_damping_is_declined() -> None:
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(2), replace(ROLLING.motion, speed=55.0))
+    (field,) = system.equations.blocks
+    term = Term("test", field, field, 1, np.eye(2), "root_axial")
+    damped = replace(system, equations=replace(system.equations, terms=(*system.equations.terms, term)))
+    assert system.modulated(0.0, 1.0) is not None and damped.modulated(0.0, 1.0) is None
