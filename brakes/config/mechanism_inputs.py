@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -9,21 +10,19 @@ from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
 from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, named
-from brakes.planar.rows import Point as Coordinates
+from brakes.planar import JOINTS, LOADS, Part
+from brakes.planar.described import inputs_of
+from brakes.planar.points import Point as Coordinates
 
-PARTS = {
-    "pin": "pins: name, body, other (the ground if not given), at; radius, friction",
-    "bar": "bars: name, body, other, at, to; length",
-    "slot": "slots: name, body, other, at, along; on, friction",
-    "contact": "contacts: name, body, other, at, normal; on, friction",
-    "rotation_lock": "bodies that turn together: name, body, other; ratio",
-    "cable": "cables of fixed length: name, bodies, points; length",
-    "force": "forces: name, body, at, direction; magnitude (unknown if not given), follows",
-    "moment": "moments: name, body, other; magnitude",
-    "cable_pair": "cables with their housing: name, body, other, at, to; magnitude",
-    "spring": "springs: name, body, other, at, to, stiffness, free_length",
-    "torsion_spring": "torsion springs: name, body, other, stiffness, free_angle",
-}
+
+def _keys(part: type[Part]) -> str:
+    """What its tables are, the keys that must be given, and those that may."""
+    required = [field.name for field in dataclasses.fields(part) if field.default is dataclasses.MISSING]
+    rest = [key for key in inputs_of(part) if key not in required]
+    return f"{part.label}: {'; '.join(', '.join(keys) for keys in (required, rest) if keys)}"
+
+
+PARTS = {part.key(): _keys(part) for part in (*JOINTS, *LOADS)}
 _TABLES = ("points", *PARTS)
 
 
