@@ -219,7 +219,8 @@ class PartInput(CoreSection):
         return self.part(**dict(self))
 
 
-def _model_of_part(part: type[Part]) -> type[PartInput]:
+@cache
+def model_of_part(part: type[Part]) -> type[PartInput]:
     """The model of the tables of a joint or load."""
     model = create_model(
         f"{part.__name__}Input", __base__=PartInput, __doc__=f"[[{part.key()}]].", **_fields_of(part)
@@ -343,7 +344,7 @@ class MechanismInput(CoreSection):
             raise ValueError(f"run.travel: the driver {show(run.driver)} moves by {travel}")
 
 
-_PARTS: dict[str, Any] = {part.key(): (list[_model_of_part(part)], []) for part in (*JOINTS, *LOADS)}
+_PARTS: dict[str, Any] = {part.key(): (list[model_of_part(part)], []) for part in (*JOINTS, *LOADS)}
 _WithParts = create_model("_WithParts", __base__=MechanismInput, __module__=__name__, **_PARTS)
 
 

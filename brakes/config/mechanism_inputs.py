@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
-from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, named
+from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, model_of_part, named
 from brakes.planar import JOINTS, LOADS, Part
-from brakes.planar.described import inputs_of
 from brakes.planar.points import Point as Coordinates
 
 
 def _keys(part: type[Part]) -> str:
     """What its tables are, the keys that must be given, and those that may."""
-    required = [field.name for field in dataclasses.fields(part) if field.default is dataclasses.MISSING]
-    rest = [key for key in inputs_of(part) if key not in required]
+    fields = model_of_part(part).model_fields
+    required = [key for key, field in fields.items() if field.is_required()]
+    rest = [key for key in fields if key not in required]
     return f"{part.label}: {'; '.join(', '.join(keys) for keys in (required, rest) if keys)}"
 
 

@@ -74,7 +74,7 @@ def _description(annotation: Any) -> Described | None:
 
 Body = Annotated[str, Described("name", "body")]
 Other = Annotated[str, Described("name", "other body; the ground if not given", default=GROUND)]
-Place = Annotated[Point, Described("point", "point in the drawing", unit="m")]
+DrawnPoint = Annotated[Point, Described("point", "point in the drawing", unit="m")]
 Direction = Annotated[Point, Described("direction", "direction, as a vector or an angle")]
 Length = Annotated[float, Described("number", "length, if not the drawing's", unit="m", bound="positive")]
 Coefficient = Annotated[

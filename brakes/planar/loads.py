@@ -16,15 +16,15 @@ from brakes.planar.described import (
     Body,
     Described,
     Direction,
+    DrawnPoint,
     NewtonMetres,
     Newtons,
     Other,
-    Place,
 )
 from brakes.planar.joints import SLACK
 from brakes.planar.part import AppliedLoad, Load, Shape
 from brakes.planar.points import GROUND, Point, check_distinct, path_length, unit_vector
-from brakes.planar.rows import Line, Path, Row, Turn
+from brakes.planar.rows import Line, MechanismRow, Path, Turn
 
 _NO_DIRECTION = "it has no direction; move one of its ends"
 
@@ -50,7 +50,7 @@ class Force(AppliedLoad):
     label = "forces"
 
     body: Body
-    at: Place
+    at: DrawnPoint
     direction: Direction
     magnitude: Newtons | None = None
     follows: Annotated[bool, Described("flag", "whether it turns with the body")] = False
@@ -63,7 +63,7 @@ class Force(AppliedLoad):
     def _direction(self) -> Point:
         return unit_vector("direction", self.direction)
 
-    def row(self) -> Row:
+    def row(self) -> MechanismRow:
         """Travel of the point along the force [m]."""
         frame = self.body if self.follows else GROUND
         return Line(self.body, self.at, GROUND, self.at, frame, self._direction())
@@ -98,7 +98,7 @@ class Moment(AppliedLoad):
     magnitude: NewtonMetres | None = None
     other: Other = GROUND
 
-    def row(self) -> Row:
+    def row(self) -> MechanismRow:
         """Rotation of the body against the other [rad]."""
         return Turn(self.body, self.other)
 
@@ -122,15 +122,15 @@ class CablePair(AppliedLoad):
 
     body: Body
     other: Other
-    at: Place
-    to: Place
+    at: DrawnPoint
+    to: DrawnPoint
     magnitude: Newtons | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
-    def row(self) -> Row:
+    def row(self) -> MechanismRow:
         """Shortening of the distance between the points [m]."""
         ends = self.at, self.to
         return Path((self.body, self.other), ends, path_length(ends))
@@ -160,8 +160,8 @@ class Spring(Load):
 
     body: Body
     other: Other
-    at: Place
-    to: Place
+    at: DrawnPoint
+    to: DrawnPoint
     stiffness: Annotated[
         float, Described("number", "stiffness", unit="N/m", symbol="k", bound="not negative")
     ]
@@ -171,7 +171,7 @@ class Spring(Load):
         super().__post_init__()
         check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
-    def row(self) -> Row:
+    def row(self) -> MechanismRow:
         """Shortening below the free length [m]."""
         return Path((self.body, self.other), (self.at, self.to), self.free_length)
 
@@ -209,7 +209,7 @@ class TorsionSpring(Load):
     free_angle: Annotated[float, Described("number", "angle without moment, from the drawing", unit="rad")]
     other: Other = GROUND
 
-    def row(self) -> Row:
+    def row(self) -> MechanismRow:
         """Rotation past the free angle [rad]."""
         return Turn(self.body, self.other, offset=self.free_angle)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from brakes.planar.described import Described, inputs_of
 from brakes.planar.points import GROUND, End, Point
-from brakes.planar.rows import FrictionLaw, Row
+from brakes.planar.rows import FrictionLaw, MechanismRow
 
 
 class Shape(NamedTuple):
@@ -57,10 +57,11 @@ class Part:
     name: Annotated[str, Described("name", "name")]
 
     def __post_init__(self) -> None:
+        title = self.title
         for key, described in inputs_of(type(self)).items():
             value = getattr(self, key)
             if value is not None:
-                described.check(f"{self.title}: {key}", value)
+                described.check(f"{title}: {key}", value)
 
     @classmethod
     def kind(cls) -> str:
@@ -77,7 +78,7 @@ class Part:
         """Kind and name, for messages."""
         return f"{self.kind()} {self.name!r}"
 
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[MechanismRow, ...]:
         """What it forbids (a joint), or the coordinate on which it does its work (a load)."""
         raise NotImplementedError
 
@@ -155,11 +156,11 @@ class Load(Part):
     5. Add the class to `LOADS` and to `__all__` in `brakes/planar/__init__.py`, and write a test.
     """
 
-    def row(self) -> Row:
+    def row(self) -> MechanismRow:
         """The coordinate on which it does its work."""
         raise NotImplementedError
 
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[MechanismRow, ...]:
         """The only row."""
         return (self.row(),)
 

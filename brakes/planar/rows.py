@@ -38,7 +38,7 @@ class Arrays(Protocol):
         ...
 
 
-class Row(Protocol):
+class MechanismRow(Protocol):
     """What the mechanism asks of a row.
 
     A new kind of row has the members below, and a class of arrays as those in `row_arrays`.
@@ -200,7 +200,7 @@ class FrictionLaw(NamedTuple):
     label : where it acts, in words, if the joint has several.
     """
 
-    row: Row
+    row: MechanismRow
     coefficient: float
     pressing: tuple[int, ...] = ()
     label: str = ""

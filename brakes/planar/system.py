@@ -17,7 +17,7 @@ import numpy as np
 
 from brakes.planar.points import GROUND, Point
 from brakes.planar.row_arrays import Pose, Totals
-from brakes.planar.rows import Arm, Arrays, FrictionLaw, Row
+from brakes.planar.rows import Arm, Arrays, FrictionLaw, MechanismRow
 
 _ONE_POINT = 1e-6  # radius below which the points of a body count as one
 
@@ -48,7 +48,7 @@ class System:
     joints : dict
         Rows of each joint (slice).
     loads, friction : dict
-        Row of each load, and of each friction.
+        MechanismRow of each load, and of each friction.
     pressing : list of ndarray of int
         Rows of the joint that press where there is friction, in the order of `friction`.
     coefficient : ndarray
@@ -128,8 +128,8 @@ class System:
 
 def build(
     bodies: Sequence[str],
-    joints: Mapping[str, Sequence[Row]],
-    loads: Mapping[str, Row],
+    joints: Mapping[str, Sequence[MechanismRow]],
+    loads: Mapping[str, MechanismRow],
     friction: Mapping[str, tuple[str, FrictionLaw]],
 ) -> System:
     """Arrays of named rows.
@@ -178,7 +178,7 @@ def _pressing(joint: slice, law: FrictionLaw) -> np.ndarray:
     return rows[list(law.pressing)] if law.pressing else rows
 
 
-def _arrays(table: Sequence[Row], index: Mapping[str, int], arm: Arm) -> list[Arrays]:
+def _arrays(table: Sequence[MechanismRow], index: Mapping[str, int], arm: Arm) -> list[Arrays]:
     """The rows of each kind as arrays."""
     entries: dict[Callable[..., Arrays], list[tuple[Any, ...]]] = defaultdict(list)
     for r, row in enumerate(table):
@@ -187,7 +187,7 @@ def _arrays(table: Sequence[Row], index: Mapping[str, int], arm: Arm) -> list[Ar
 
 
 def _scales(
-    table: Sequence[Row], index: Mapping[str, int]
+    table: Sequence[MechanismRow], index: Mapping[str, int]
 ) -> tuple[complex, float, np.ndarray, np.ndarray, float]:
     """Origin, length L, and the centre, radius and rounding of the points of each body."""
     points = [(index[body], complex(*at)) for row in table for body, at in row.ends]
