@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,13 +20,24 @@ from brakes.planar import (
     solve_with_friction,
     stroke,
 )
+from brakes.planar.described import Described, check_inputs
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
-Split = Literal["equal force", "equal work"]
-SPLITS = ("equal force", "equal work")
 _FINGER = 40.0  # N, a firm squeeze
 _NOISE = 1e-9  # part of the largest force that is rounding
 _CLOSED = 1e-12  # of the clearance: Newton's last step
+
+Split = Annotated[
+    Literal["equal force", "equal work"],
+    Described("choice", "how the rim loads the two pads", choices=("equal force", "equal work")),
+]
+LeverRatio = Annotated[
+    float, Described("number", "travel of the finger over that of the cable", bound="positive")
+]
+Clearance = Annotated[
+    float, Described("number", "mean gap between pad and rim, open", unit="m", bound="positive")
+]
+PivotRadius = Annotated[float, Described("number", "radius of the pivots", unit="m", bound="not negative")]
 
 
 class _Forces(NamedTuple):
@@ -73,17 +84,13 @@ class Caliper:
     cable: str = CABLE
     pads: tuple[str, str] = (RIGHT_PAD, LEFT_PAD)
     split: Split = "equal force"
-    lever_ratio: float = 4.0
-    clearance: float = 1.25e-3
-    pivot_radius: float = 4e-3
+    lever_ratio: LeverRatio = 4.0
+    clearance: Clearance = 1.25e-3
+    pivot_radius: PivotRadius = 4e-3
     name: str = "caliper"
 
     def __post_init__(self) -> None:
-        if self.split not in SPLITS:
-            raise ValueError(f"split = {self.split!r}: give {' or '.join(map(repr, SPLITS))}")
-        positive("lever_ratio", self.lever_ratio)
-        positive("clearance", self.clearance, "m")
-        not_negative("pivot_radius", self.pivot_radius, "m")
+        check_inputs(self)
         for name in (self.cable, *self.pads):
             self.mechanism.load(name).with_magnitude(None)
         if len({self.cable, *self.pads}) < 3:

@@ -11,7 +11,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from brakes.calipers.caliper import CABLE, LEFT_PAD, RIGHT_PAD, SPLITS, Caliper, Split
+from brakes.calipers.caliper import (
+    CABLE,
+    LEFT_PAD,
+    RIGHT_PAD,
+    Caliper,
+    Clearance,
+    LeverRatio,
+    PivotRadius,
+    Split,
+)
 from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
 from brakes.planar.described import Described
 from brakes.planar.points import Point
@@ -22,10 +31,6 @@ RIGHT, LEFT = "right arm", "left arm"
 
 def _point(meaning: str) -> Described:
     return Described("point", meaning, unit="m")
-
-
-LeverRatio = Annotated[float, Described("number", "travel of the finger over that of the cable")]
-SplitRule = Annotated[Split, Described("choice", "how the rim loads the two pads", choices=SPLITS)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,8 +50,8 @@ class Design:
     label: ClassVar[str]
 
     lever_ratio: LeverRatio = 4.0
-    clearance: Annotated[float, Described("number", "mean gap between pad and rim, open", unit="m")] = 1.25e-3
-    pivot_radius: Annotated[float, Described("number", "radius of the pivots", unit="m")] = 4e-3
+    clearance: Clearance = 1.25e-3
+    pivot_radius: PivotRadius = 4e-3
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -101,7 +106,7 @@ class EeBrake(Design):
     housing: Annotated[Point, _point("face C of the cable's housing")] = (-3.765798714439799 * MM, 33.9 * MM)
     link_anchor: Annotated[Point, _point("pin G of the link on the panel")] = (-3.6 * MM, 14.9 * MM)
     cable_anchor: Annotated[Point, _point("end of the inner wire on the panel")] = (17.5 * MM, -19 * MM)
-    split: SplitRule = "equal force"
+    split: Split = "equal force"
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -175,7 +180,7 @@ class DualPivot(Design):
     pad: Annotated[Point, _point("right pad")] = (12.5 * MM, -46 * MM)
     clamp: Annotated[Point, _point("cable clamp, on the arm of the right pad")] = (-38 * MM, 2 * MM)
     housing: Annotated[Point, _point("stop of the housing, on the arm of the left pad")] = (-38 * MM, 34 * MM)
-    split: SplitRule = "equal force"
+    split: Split = "equal force"
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""

@@ -61,7 +61,7 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
     name = data.get("caliper")
     if isinstance(name, str):
         return validated(_model_of(name) if name in NAMED else CaliperInput, data, source)
-    return validated(_WithParts, _with_points(data), source)
+    return validated(CompleteMechanismInput, _with_points(data), source)
 
 
 def named(name: str) -> CaliperInput:
@@ -244,16 +244,10 @@ def _field_of(described: Described, default: object) -> tuple[Any, Any]:
     return annotation, default
 
 
-_BOUNDS: dict[str | None, dict[str, float]] = {
-    None: {},
-    "positive": {"above": 0},
-    "not negative": {"least": 0},
-}
-
-
 def _number(d: Described) -> Any:
-    bounds = _BOUNDS[d.bound]
-    return Annotated[float, Quantity(d.unit, symbol=d.symbol, meaning=d.meaning, remedy=d.remedy, **bounds)]
+    words: dict[str, Any] = {"symbol": d.symbol, "meaning": d.meaning, "remedy": d.remedy}
+    bounds = {"positive": {"above": 0.0}, "not negative": {"least": 0.0}}.get(d.bound or "", {})
+    return Annotated[float, Quantity(d.unit, **words, **bounds)]
 
 
 def _point(d: Described) -> Any:
@@ -280,25 +274,19 @@ _KINDS: dict[str, Callable[[Described], Any]] = {
 
 
 class RolesInput(Section):
-    """[caliper] of a mechanism: which of its loads are the cable and the pads."""
+    """[caliper] of a mechanism: its cable and pads, and what `Caliper` describes (added by `_Roles`)."""
 
     cable: Annotated[str, Field(description="load that closes the brake")]
     pads: Annotated[
         list[str], Field(description="forces on the right and left pad", min_length=2, max_length=2)
     ]
     centring: Annotated[list[str], Field(description="joints that hold only until the pads touch")] = []  # noqa: RUF012
-    split: Annotated[
-        Literal["equal force", "equal work"], Field(description="how the rim loads coupled pads")
-    ] = "equal force"
-    lever_ratio: Annotated[float, Quantity(meaning="travel of finger over cable", above=0)] = 4.0
-    clearance: Annotated[float, Quantity("m", meaning="mean gap between pad and rim", above=0)] = 1.25e-3
-    pivot_radius: Annotated[float, Quantity("m", meaning="radius of the pivots", least=0)] = 4e-3
 
 
 class MechanismInput(CoreSection):
     """Any mechanism: its bodies, joints and loads, and where it is a caliper its cable and pads.
 
-    A list of tables for each kind of joint and load is added by `_WithParts`.
+    A list of tables for each kind of joint and load is added by `CompleteMechanismInput`.
     """
 
     title: Annotated[str, Field(description="title")] = "mechanism"
@@ -344,8 +332,13 @@ class MechanismInput(CoreSection):
             raise ValueError(f"run.travel: the driver {show(run.driver)} moves by {travel}")
 
 
-_PARTS: dict[str, Any] = {part.key(): (list[model_of_part(part)], []) for part in (*JOINTS, *LOADS)}
-_WithParts = create_model("_WithParts", __base__=MechanismInput, __module__=__name__, **_PARTS)
+_Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_fields_of(Caliper))
+_TABLES: dict[str, Any] = {"caliper": (_Roles | None, None)} | {
+    part.key(): (list[model_of_part(part)], []) for part in (*JOINTS, *LOADS)
+}
+CompleteMechanismInput = create_model(
+    "CompleteMechanismInput", __base__=MechanismInput, __module__=__name__, **_TABLES
+)
 
 
 def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:

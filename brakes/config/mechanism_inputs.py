@@ -8,7 +8,7 @@ from typing import Any
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
-from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, model_of_part, named
+from brakes.config.mechanism import CaliperInput, CompleteMechanismInput, PointQuantity, model_of_part, named
 from brakes.planar import JOINTS, LOADS, Part
 from brakes.planar.points import Point as Coordinates
 
@@ -32,7 +32,9 @@ def caliper_inputs(name: str) -> list[Input]:
 
 def mechanism_inputs(points: Iterable[str]) -> list[Input]:
     """Inputs of a mechanism: one for each of its points, one for each list of parts."""
-    rest = {entry.path: entry for entry in describe(MechanismInput) if _table(entry.path) not in _TABLES}
+    rest = {
+        entry.path: entry for entry in describe(CompleteMechanismInput) if _table(entry.path) not in _TABLES
+    }
     place = PointQuantity("m", meaning="point in the drawing")
     return [
         rest.pop("title"),
@@ -48,7 +50,7 @@ def _table(path: str) -> str:
 
 
 def _input(path: str, kind: Any, asked: Quantity, required: bool = False) -> Input:
-    return Input(path, MechanismInput, kind, asked, (), required, None if required else [])
+    return Input(path, CompleteMechanismInput, kind, asked, (), required, None if required else [])
 
 
 def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:

@@ -56,11 +56,11 @@ def draw_mechanism(
             if labels:
                 _write(ax, body, parts.label_place(position, body) * _MM, "0.25")
     for cable in parts.cables(position, equilibrium):
-        _draw_cable(ax, cable, alpha, labels)
+        _draw_member(ax, cable, alpha, labels, linestyle="--", linewidth=1.4, zorder=3)
     for _, _, points in parts.shapes(position, "spring"):
         ax.plot(*(points * _MM).T, ":", color="0.25", linewidth=1.4, alpha=alpha, zorder=3)
     for member in parts.members(position, equilibrium):
-        _draw_member(ax, member, alpha, labels)
+        _draw_member(ax, member, alpha, labels, linewidth=4, solid_capstyle="round", zorder=4)
     for _, shape, points in parts.shapes(position, "pin"):
         _draw_pin(ax, points[0] * _MM, GROUND in dict(shape.ends), alpha)
     _draw_faces(ax, position, alpha)
@@ -86,15 +86,8 @@ def _colour(member: parts.Member) -> str:
     return "0.35" if not np.isfinite(member.force) else TENSION if member.force >= 0 else COMPRESSION
 
 
-def _draw_cable(ax: Axes, cable: parts.Member, alpha: float, label: bool) -> None:
-    ax.plot(*(cable.ends * _MM).T, "--", color=_colour(cable), linewidth=1.4, alpha=alpha, zorder=3)
-    if label:
-        _write_along(ax, cable)
-
-
-def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool) -> None:
-    width = {"linewidth": 4, "solid_capstyle": "round"}
-    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, zorder=4, **width)
+def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool, **line: Any) -> None:
+    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, **line)
     if label:
         _write_along(ax, member)
 

@@ -53,6 +53,8 @@ class Described:
         elif self.kind in ("point", "points"):
             for point in value if self.kind == "points" else (value,):
                 check_point(key, point)
+        elif self.kind == "choice" and value not in self.choices:
+            raise ValueError(f"{key} = {value!r}: give {' or '.join(map(repr, self.choices))}")
 
 
 @cache
@@ -61,6 +63,14 @@ def inputs_of(model: type) -> dict[str, Described]:
     hints = get_type_hints(model, include_extras=True)
     described = {key: _description(hint) for key, hint in hints.items()}
     return {key: found for key, found in described.items() if found is not None}
+
+
+def check_inputs(core: object, prefix: str = "") -> None:
+    """A ValueError if a described field of a dataclass is not as described; None is left to the class."""
+    for key, described in inputs_of(type(core)).items():
+        value = getattr(core, key)
+        if value is not None:
+            described.check(prefix + key, value)
 
 
 def _description(annotation: Any) -> Described | None:
@@ -77,25 +87,16 @@ Other = Annotated[str, Described("name", "other body; the ground if not given", 
 DrawnPoint = Annotated[Point, Described("point", "point in the drawing", unit="m")]
 Direction = Annotated[Point, Described("direction", "direction, as a vector or an angle")]
 Length = Annotated[float, Described("number", "length, if not the drawing's", unit="m", bound="positive")]
+_FRICTION = "friction opposes the motion by itself; give its size"
 Coefficient = Annotated[
-    float,
-    Described(
-        "number",
-        "coefficient of friction",
-        symbol="mu",
-        bound="not negative",
-        remedy="friction opposes the motion by itself; give its size",
-    ),
+    float, Described("number", "coefficient of friction", symbol="mu", bound="not negative", remedy=_FRICTION)
 ]
-Newtons = Annotated[
-    float,
-    Described(
-        "number", "magnitude; unknown if not given", unit="N", remedy="or None for an unknown amplitude"
-    ),
-]
-NewtonMetres = Annotated[
-    float,
-    Described(
-        "number", "magnitude; unknown if not given", unit="N m", remedy="or None for an unknown amplitude"
-    ),
-]
+
+
+def _magnitude(unit: str) -> Described:
+    meaning, remedy = "magnitude; unknown if not given", "or None for an unknown amplitude"
+    return Described("number", meaning, unit=unit, remedy=remedy)
+
+
+Newtons = Annotated[float, _magnitude("N")]
+NewtonMetres = Annotated[float, _magnitude("N m")]

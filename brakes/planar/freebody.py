@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from brakes.planar.mechanism import Position
-from brakes.planar.rows import MechanismRow
+from brakes.planar.rows import Row
 from brakes.planar.statics import Equilibrium
 
 
@@ -52,7 +52,7 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     size = np.atleast_2d(equilibrium.multiplier)[index]
     system = mechanism.system
 
-    def actions(name: str, row: MechanismRow, size: float) -> list[Action]:
+    def actions(name: str, row: Row, size: float) -> list[Action]:
         return [Action(name, *effect) for effect in row.effects(size, place, body)]
 
     found = []

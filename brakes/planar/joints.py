@@ -13,7 +13,7 @@ from typing import Annotated
 from brakes.planar.described import Body, Coefficient, Described, Direction, DrawnPoint, Length, Other
 from brakes.planar.part import Joint, OneWay, Shape
 from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
-from brakes.planar.rows import FrictionLaw, Line, MechanismRow, Path, Turn
+from brakes.planar.rows import FrictionLaw, Line, Path, Row, Turn
 
 SLACK = OneWay("cable", "push", "it is slack; remove it, or reverse the loads")
 
@@ -63,7 +63,7 @@ class Pin(Joint):
     def _ends(self) -> tuple[End, End]:
         return (self.body, self.at), (self.other, self.at if self.at_other is None else self.at_other)
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """Two rows, along x and y."""
         end, other = self._ends
         return Line(*end, *other, GROUND, (1.0, 0.0)), Line(*end, *other, GROUND, (0.0, 1.0))
@@ -109,7 +109,7 @@ class Bar(Joint):
         super().__post_init__()
         check_distinct(self.title, (self.at, self.to), "move one of its ends, or join the bodies by a pin")
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """One row, positive in tension."""
         length = math.dist(self.at, self.to) if self.length is None else self.length
         return (Path((self.body, self.other), (self.at, self.to), length),)
@@ -147,7 +147,7 @@ class Slot(Joint):
     on: DrawnPoint | None = None
     friction: Coefficient = 0.0
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """One row: the force on the body, positive to the left of `along`."""
         x, y = unit_vector("along", self.along)
         return (_line(self, (-y, x)),)
@@ -189,7 +189,7 @@ class Contact(Joint):
     on: DrawnPoint | None = None
     friction: Coefficient = 0.0
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """One row, positive when it pushes."""
         return (_line(self, unit_vector("normal", self.normal)),)
 
@@ -224,7 +224,7 @@ class RotationLock(Joint):
     other: Other
     ratio: Annotated[float, Described("number", "ratio of the angles")] = 1.0
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """One row: the couple on the body [N m]."""
         return (Turn(self.body, self.other, self.ratio),)
 
@@ -261,7 +261,7 @@ class Cable(Joint):
             )
         check_distinct(self.title, self.points, "move one of its points")
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """One row, positive in tension."""
         length = path_length(self.points) if self.length is None else self.length
         return (Path(tuple(self.bodies), tuple(self.points), length),)

@@ -12,19 +12,11 @@ from typing import Annotated
 
 import numpy as np
 
-from brakes.planar.described import (
-    Body,
-    Described,
-    Direction,
-    DrawnPoint,
-    NewtonMetres,
-    Newtons,
-    Other,
-)
+from brakes.planar.described import Body, Described, Direction, DrawnPoint, NewtonMetres, Newtons, Other
 from brakes.planar.joints import SLACK
 from brakes.planar.part import AppliedLoad, Load, Shape
 from brakes.planar.points import GROUND, Point, check_distinct, path_length, unit_vector
-from brakes.planar.rows import Line, MechanismRow, Path, Turn
+from brakes.planar.rows import Line, Path, Row, Turn
 
 _NO_DIRECTION = "it has no direction; move one of its ends"
 
@@ -63,7 +55,7 @@ class Force(AppliedLoad):
     def _direction(self) -> Point:
         return unit_vector("direction", self.direction)
 
-    def row(self) -> MechanismRow:
+    def row(self) -> Row:
         """Travel of the point along the force [m]."""
         frame = self.body if self.follows else GROUND
         return Line(self.body, self.at, GROUND, self.at, frame, self._direction())
@@ -98,7 +90,7 @@ class Moment(AppliedLoad):
     magnitude: NewtonMetres | None = None
     other: Other = GROUND
 
-    def row(self) -> MechanismRow:
+    def row(self) -> Row:
         """Rotation of the body against the other [rad]."""
         return Turn(self.body, self.other)
 
@@ -130,7 +122,7 @@ class CablePair(AppliedLoad):
         super().__post_init__()
         check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
-    def row(self) -> MechanismRow:
+    def row(self) -> Row:
         """Shortening of the distance between the points [m]."""
         ends = self.at, self.to
         return Path((self.body, self.other), ends, path_length(ends))
@@ -171,7 +163,7 @@ class Spring(Load):
         super().__post_init__()
         check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
-    def row(self) -> MechanismRow:
+    def row(self) -> Row:
         """Shortening below the free length [m]."""
         return Path((self.body, self.other), (self.at, self.to), self.free_length)
 
@@ -209,7 +201,7 @@ class TorsionSpring(Load):
     free_angle: Annotated[float, Described("number", "angle without moment, from the drawing", unit="rad")]
     other: Other = GROUND
 
-    def row(self) -> MechanismRow:
+    def row(self) -> Row:
         """Rotation past the free angle [rad]."""
         return Turn(self.body, self.other, offset=self.free_angle)
 

@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
-from brakes.planar.described import Described, inputs_of
+from brakes.planar.described import Described, check_inputs
 from brakes.planar.points import GROUND, End, Point
-from brakes.planar.rows import FrictionLaw, MechanismRow
+from brakes.planar.rows import FrictionLaw, Row
 
 
 class Shape(NamedTuple):
@@ -57,11 +57,7 @@ class Part:
     name: Annotated[str, Described("name", "name")]
 
     def __post_init__(self) -> None:
-        title = self.title
-        for key, described in inputs_of(type(self)).items():
-            value = getattr(self, key)
-            if value is not None:
-                described.check(f"{title}: {key}", value)
+        check_inputs(self, f"{self.title}: ")
 
     @classmethod
     def kind(cls) -> str:
@@ -78,7 +74,7 @@ class Part:
         """Kind and name, for messages."""
         return f"{self.kind()} {self.name!r}"
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """What it forbids (a joint), or the coordinate on which it does its work (a load)."""
         raise NotImplementedError
 
@@ -156,11 +152,11 @@ class Load(Part):
     5. Add the class to `LOADS` and to `__all__` in `brakes/planar/__init__.py`, and write a test.
     """
 
-    def row(self) -> MechanismRow:
+    def row(self) -> Row:
         """The coordinate on which it does its work."""
         raise NotImplementedError
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         """The only row."""
         return (self.row(),)
 

@@ -102,3 +102,6 @@ class Turns(NamedTuple):
         couple[row, a] += 1.0
         couple[row, b] -= ratio
         couple[row, -1] += ratio - 1.0
+
+
+Arrays = Lines | Segments | Turns

@@ -1,7 +1,14 @@
 """The rows of which every joint and every load is made: `Line`, `Path` and `Turn`.
 
 A row is a scalar function of the position.  Its gradient is at the same time a set of forces on the bodies:
-those of a unit multiplier (a joint) or of a unit magnitude (a load).
+those of a unit multiplier (a joint) or of a unit magnitude (a load).  Each kind of row has
+
+- `is_couple`: whether it is a couple [N m] on an angle [rad], rather than a force [N] on a length [m];
+- `bodies`, on which it acts, and `ends`, its points, which set the scales of the mechanism;
+- `arrays`, the class that evaluates all rows of its kind at once, and `entries`, what one row contributes to
+  the columns of its arrays after its index;
+- `constant`: the part of its value that does not depend on the position, lengths over that of the mechanism;
+- `effects`: what it does to a body at a given size, for free-body diagrams.
 """
 
 from __future__ import annotations
@@ -12,7 +19,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from brakes.planar.points import GROUND, End, Point
-from brakes.planar.row_arrays import Lines, Pose, Segments, Totals, Turns
+from brakes.planar.row_arrays import Lines, Segments, Turns
 
 Arm = Callable[[str, Point], complex]  # from the centre of a body to a point of it, over L
 Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
@@ -27,53 +34,6 @@ class Place(Protocol):
 
     def angle(self, body: str) -> np.ndarray:
         """Angle by which a body has turned from the drawing [rad], shape ()."""
-        ...
-
-
-class Arrays(Protocol):
-    """All rows of one kind, as `Lines`."""
-
-    def add(self, pose: Pose, totals: Totals) -> None:
-        """Add their values, forces and couples."""
-        ...
-
-
-class MechanismRow(Protocol):
-    """What the mechanism asks of a row.
-
-    A new kind of row has the members below, and a class of arrays as those in `row_arrays`.
-    """
-
-    @property
-    def arrays(self) -> Callable[..., Arrays]:
-        """The class that evaluates all rows of this kind; its columns are the row's index and `entries`."""
-        ...
-
-    @property
-    def is_couple(self) -> bool:
-        """Whether it is a couple [N m] on an angle [rad], rather than a force [N] on a length [m]."""
-        ...
-
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        """The bodies on which it acts."""
-        ...
-
-    @property
-    def ends(self) -> tuple[End, ...]:
-        """Its points, for the scales of the mechanism."""
-        ...
-
-    def constant(self, length: float) -> float:
-        """The part of its value that is fixed [rad, or a length over `length` [m]]."""
-        ...
-
-    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """What it contributes to the columns of its arrays, one tuple or more."""
-        ...
-
-    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
-        """What the row of a given size does to a body, for its free-body diagram."""
         ...
 
 
@@ -191,6 +151,9 @@ class Turn(NamedTuple):
             yield np.full(2, np.nan), np.zeros(2), size * share[body]
 
 
+Row = Line | Path | Turn
+
+
 class FrictionLaw(NamedTuple):
     """Friction of a joint: |friction| = coefficient * |force of the joint|, against the motion.
 
@@ -200,7 +163,7 @@ class FrictionLaw(NamedTuple):
     label : where it acts, in words, if the joint has several.
     """
 
-    row: MechanismRow
+    row: Row
     coefficient: float
     pressing: tuple[int, ...] = ()
     label: str = ""

@@ -8,7 +8,7 @@ of all bodies are of one size, whatever the unit, place and size of the drawing.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any, NamedTuple
@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from brakes.planar.points import GROUND, Point
-from brakes.planar.row_arrays import Pose, Totals
-from brakes.planar.rows import Arm, Arrays, FrictionLaw, MechanismRow
+from brakes.planar.row_arrays import Arrays, Pose, Totals
+from brakes.planar.rows import Arm, FrictionLaw, Row
 
 _ONE_POINT = 1e-6  # radius below which the points of a body count as one
 
@@ -48,7 +48,7 @@ class System:
     joints : dict
         Rows of each joint (slice).
     loads, friction : dict
-        MechanismRow of each load, and of each friction.
+        Row of each load, and of each friction.
     pressing : list of ndarray of int
         Rows of the joint that press where there is friction, in the order of `friction`.
     coefficient : ndarray
@@ -128,8 +128,8 @@ class System:
 
 def build(
     bodies: Sequence[str],
-    joints: Mapping[str, Sequence[MechanismRow]],
-    loads: Mapping[str, MechanismRow],
+    joints: Mapping[str, Sequence[Row]],
+    loads: Mapping[str, Row],
     friction: Mapping[str, tuple[str, FrictionLaw]],
 ) -> System:
     """Arrays of named rows.
@@ -178,16 +178,16 @@ def _pressing(joint: slice, law: FrictionLaw) -> np.ndarray:
     return rows[list(law.pressing)] if law.pressing else rows
 
 
-def _arrays(table: Sequence[MechanismRow], index: Mapping[str, int], arm: Arm) -> list[Arrays]:
+def _arrays(table: Sequence[Row], index: Mapping[str, int], arm: Arm) -> list[Arrays]:
     """The rows of each kind as arrays."""
-    entries: dict[Callable[..., Arrays], list[tuple[Any, ...]]] = defaultdict(list)
+    entries: dict[type[Arrays], list[tuple[Any, ...]]] = defaultdict(list)
     for r, row in enumerate(table):
         entries[row.arrays] += [(r, *entry) for entry in row.entries(index, arm)]
     return [kind(*map(np.array, zip(*rows, strict=True))) for kind, rows in entries.items()]
 
 
 def _scales(
-    table: Sequence[MechanismRow], index: Mapping[str, int]
+    table: Sequence[Row], index: Mapping[str, int]
 ) -> tuple[complex, float, np.ndarray, np.ndarray, float]:
     """Origin, length L, and the centre, radius and rounding of the points of each body."""
     points = [(index[body], complex(*at)) for row in table for body, at in row.ends]

@@ -1,4 +1,4 @@
-"""A joint written by the guidelines of `Joint`, which no module of the package knows, and the lists of kinds."""
+"""A joint that no module of the package knows, written by the guidelines of `Joint`; the lists of kinds."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from brakes.planar import (
     solve_with_friction,
 )
 from brakes.planar.described import Body, Coefficient, DrawnPoint, Other, inputs_of
-from brakes.planar.rows import FrictionLaw, Line, MechanismRow
+from brakes.planar.rows import FrictionLaw, Line, Row
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Guide(Joint):
     def _line(self, at, normal) -> Line:
         return Line(self.body, at, self.other, self.at, self.other, normal)
 
-    def rows(self) -> tuple[MechanismRow, ...]:
+    def rows(self) -> tuple[Row, ...]:
         return self._line(self.at, (0.0, 1.0)), self._line(self.to, (0.0, 1.0))
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
