@@ -6,9 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-RANK_TOLERANCE = (
-    1e-7  # relative size below which a singular value counts as 0; toggle positions are solved to 1e-8
-)
+RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0; toggle positions are solved to 1e-8
 
 
 class Decomposition(NamedTuple):
