@@ -92,7 +92,7 @@ class Caliper:
     def __post_init__(self) -> None:
         check_inputs(self)
         for name in (self.cable, *self.pads):
-            self.mechanism.load(name).with_magnitude(None)
+            self.mechanism.load(name).with_magnitude(None)  # raises if it is a spring
         if len({self.cable, *self.pads}) < 3:
             raise ValueError(f"cable {self.cable!r} and pads {self.pads}: name three different loads")
 
