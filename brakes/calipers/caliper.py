@@ -219,7 +219,7 @@ class Caliper:
     # What changes it --------------------------------------------------------------------------------
 
     def friction(self, coefficient: float, travel: float | None = None) -> PivotFriction:
-        """Efficiency with friction in all pivots, at one travel of the cable [m]; that of contact if not given.
+        """Efficiency with friction in all pivots at a travel of the cable [m], that of contact if not given.
 
         The pads keep the forces that they have without friction; the tension is what friction changes.
         """

@@ -132,7 +132,7 @@ def _draw_faces(ax: Axes, position: Position, alpha: float) -> None:
 
 
 def force_scale(*equilibria: Equilibrium) -> float:
-    """Arrow length per newton [m/N] that makes the longest arrow 0.28 of the size of the mechanism."""
+    """Arrow length per newton [m/N] that makes the longest arrow a fixed part of the mechanism."""
     largest, size = 0.0, 0.0
     for equilibrium in equilibria:
         low, high = parts.extent(equilibrium.position)

@@ -125,7 +125,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     forces = decompose(balance.matrix, mechanism.system.rounding)
     multiplier = balance.given.copy()
     multiplier[:, balance.unknown] = forces.solve(-forces_on_bodies(balance, balance.given))
-    return collect(mechanism, position, balance, forces, multiplier)
+    return collect_result(mechanism, position, balance, forces, multiplier)
 
 
 def balance_at(mechanism: Mechanism, position: Position) -> Balance:
@@ -149,7 +149,7 @@ def forces_on_bodies(balance: Balance, multiplier: np.ndarray) -> np.ndarray:
     return times(balance.rows.gradient.swapaxes(1, 2), multiplier)
 
 
-def collect(
+def collect_result(
     mechanism: Mechanism,
     position: Position,
     balance: Balance,
