@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,6 +23,7 @@ from brakes.config.mechanism_inputs import named_text
 from brakes.drawings.caliper import caliper_figure
 from brakes.drawings.mechanism import free_body_diagrams
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
+from brakes.planar.described import inputs_of
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 
@@ -73,10 +73,9 @@ def write_names(screen: Console) -> None:
     for name, model in NAMED.items():
         values = model()
         rows = []
-        for field in dataclasses.fields(model):
-            unit, value = field.metadata.get("unit"), getattr(values, field.name)
-            shown = _length(value) if unit == "m" else f"{value}"
-            rows.append((field.name, shown, field.metadata["meaning"]))
+        for key, described in inputs_of(model).items():
+            value = getattr(values, key)
+            rows.append((key, _length(value) if described.unit == "m" else f"{value}", described.meaning))
         screen.print(table(f"{name}: {model.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2)))
 
 

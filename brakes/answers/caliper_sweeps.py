@@ -13,7 +13,7 @@ from brakes.answers.caliper import Answer, answer_to
 from brakes.answers.mechanism import units_of
 from brakes.calipers import Caliper
 from brakes.config.mechanism import mechanism_from_dict
-from brakes.planar import Mechanism, RotationLock
+from brakes.planar import Mechanism
 
 _MM = 1e-3
 _SCALES = {"mm": _MM, "deg": np.pi / 180}
@@ -64,7 +64,7 @@ def _joints(mechanism: Mechanism, of: Any) -> list[Output]:
             f"largest_{_name(joint.name)}",
             f"largest force of {joint.name}",
             lambda answer, name=joint.name: np.max(np.abs(of(answer)[name])),
-            "N m" if isinstance(joint, RotationLock) else "N",
+            joint.unit,
         )
         for joint in mechanism.joints
     ]

@@ -18,15 +18,12 @@ from brakes.drawings.mechanism import animate, draw_open_and_closed, free_body_d
 from brakes.drawings.mechanism_parts import members
 from brakes.drawings.mechanism_stroke import plot_curves
 from brakes.planar import (
-    Bar,
-    Cable,
     Equilibrium,
+    Joint,
+    Load,
     Mechanism,
-    Moment,
     Position,
-    RotationLock,
     Stroke,
-    TorsionSpring,
     assemble,
     solve,
     stroke,
@@ -182,10 +179,9 @@ def animate_stroke(motion: Stroke, path: Path, force: bool) -> None:
     )
 
 
-def units_of(load: object) -> tuple[float, str, str]:
+def units_of(load: Load) -> tuple[float, str, str]:
     """Factor and unit of a load's travel for people, and the unit of its size."""
-    turns = isinstance(load, Moment | TorsionSpring)
-    return (180 / np.pi, "deg", "N m") if turns else (1e3, "mm", "N")
+    return (180 / np.pi, "deg", load.unit) if load.is_couple else (1e3, "mm", load.unit)
 
 
 def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
@@ -195,12 +191,12 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
         rows.append((load.name, "load", "", "", shown(equilibrium.amplitudes[load.name]), ""))
     rows.append(())
     for joint in mechanism.joints:
-        ends = (joint.bodies[0], joint.bodies[-1]) if isinstance(joint, Cable) else (joint.body, joint.other)
         force = np.ravel(equilibrium.reactions.get(joint.name, (np.nan, np.nan)))
         size = equilibrium.magnitudes[joint.name]
-        xy = ("", "") if isinstance(joint, RotationLock) else (shown(force[0]), shown(force[1]))
-        unit = "N m" if isinstance(joint, RotationLock) else _sense(joint, float(np.ravel(size)[0]))
-        rows.append((joint.name, f"on {ends[0]} from {ends[1]}", *xy, shown(size), unit))
+        xy = ("", "") if joint.is_couple else (shown(force[0]), shown(force[1]))
+        unit = joint.unit if joint.is_couple else _sense(joint, float(np.ravel(size)[0]))
+        ends = f"on {joint.acts_on[0]} from {joint.acts_on[-1]}"
+        rows.append((joint.name, ends, *xy, shown(size), unit))
     for member in members(equilibrium.position, equilibrium):
         if member.name in mechanism.bodies and np.isfinite(member.force):
             kind = "tension" if member.force > 0 else "compression"
@@ -208,10 +204,8 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
     return table(title, ("force", "of", "x [N]", "y [N]", "size [N]", ""), rows, (0, 1, 5))
 
 
-def _sense(joint: object, size: float) -> str:
-    if not isinstance(joint, Bar) or not np.isfinite(size):
-        return ""
-    return "tension" if size > 0 else "compression"
+def _sense(joint: Joint, size: float) -> str:
+    return "" if not np.isfinite(size) else joint.signs[0] if size > 0 else joint.signs[1]
 
 
 def shown(value: Any, digits: int = 5) -> str:

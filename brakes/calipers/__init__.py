@@ -1,4 +1,4 @@
-"""Bicycle calipers: what they make of the force of a finger, over the stroke, with friction and wear."""
+"""Bicycle calipers: force and travel of the pads over the stroke, with friction and wear."""
 
 from brakes.calipers.caliper import Caliper
 from brakes.calipers.designs import (
@@ -12,7 +12,7 @@ from brakes.calipers.designs import (
     VBrake,
 )
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
-from brakes.calipers.stopping import Stop, stop
+from brakes.calipers.stopping import StoppingDistance, stop
 
 __all__ = [
     "NAMED",
@@ -26,7 +26,7 @@ __all__ = [
     "PadWear",
     "PivotFriction",
     "SinglePivot",
-    "Stop",
+    "StoppingDistance",
     "VBrake",
     "stop",
 ]

@@ -1,4 +1,4 @@
-"""The inputs of calipers and mechanisms as forms and sweeps need them, and named designs as text."""
+"""Descriptions of the inputs of calipers and mechanisms for forms and sweeps; named designs as TOML."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from typing import Any
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
-from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, named
-from brakes.planar.rows import Point as Coordinates
+from brakes.config.mechanism import CaliperInput, CompleteMechanismInput, PointQuantity, model_of_part, named
+from brakes.planar import JOINTS, LOADS, Part
+from brakes.planar.described import inputs_of
+from brakes.planar.points import Point as Coordinates
 
-PARTS = {
-    "pin": "pins: name, body, other (the ground if not given), at; radius, friction",
-    "bar": "bars: name, body, other, at, to; length",
-    "slot": "slots: name, body, other, at, along; on, friction",
-    "contact": "contacts: name, body, other, at, normal; on, friction",
-    "rotation_lock": "bodies that turn together: name, body, other; ratio",
-    "cable": "cables of fixed length: name, bodies, points; length",
-    "force": "forces: name, body, at, direction; magnitude (unknown if not given), follows",
-    "moment": "moments: name, body, other; magnitude",
-    "cable_pair": "cables with their housing: name, body, other, at, to; magnitude",
-    "spring": "springs: name, body, other, at, to, stiffness, free_length",
-    "torsion_spring": "torsion springs: name, body, other, stiffness, free_angle",
-}
+
+def _keys(part: type[Part]) -> str:
+    """The kind of part, and its required and optional keys, as help text."""
+    fields, keys = model_of_part(part).model_fields, {True: [], False: []}
+    for key, described in inputs_of(part).items():
+        otherwise = described.meaning.partition("; ")[2]  # such as "the ground if not given"
+        keys[fields[key].is_required()].append(f"{key} ({otherwise})" if otherwise else key)
+    return f"{part.label}: {'; '.join(', '.join(some) for some in (keys[True], keys[False]) if some)}"
+
+
+PARTS = {part.key(): _keys(part) for part in (*JOINTS, *LOADS)}
 _TABLES = ("points", *PARTS)
 
 
@@ -34,7 +34,9 @@ def caliper_inputs(name: str) -> list[Input]:
 
 def mechanism_inputs(points: Iterable[str]) -> list[Input]:
     """Inputs of a mechanism: one for each of its points, one for each list of parts."""
-    rest = {entry.path: entry for entry in describe(MechanismInput) if _table(entry.path) not in _TABLES}
+    rest = {
+        entry.path: entry for entry in describe(CompleteMechanismInput) if _table(entry.path) not in _TABLES
+    }
     place = PointQuantity("m", meaning="point in the drawing")
     return [
         rest.pop("title"),
@@ -49,12 +51,12 @@ def _table(path: str) -> str:
     return path.partition(".")[0]
 
 
-def _input(path: str, kind: Any, asked: Quantity, required: bool = False) -> Input:
-    return Input(path, MechanismInput, kind, asked, (), required, None if required else [])
+def _input(path: str, kind: Any, description: Quantity, required: bool = False) -> Input:
+    return Input(path, CompleteMechanismInput, kind, description, (), required, None if required else [])
 
 
 def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
-    """Inputs of what tables describe."""
+    """Inputs of the caliper or mechanism that the tables of a file describe."""
     name, points = tables.get("caliper"), tables.get("points")
     if isinstance(name, str):
         return caliper_inputs(name)
@@ -62,7 +64,7 @@ def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
 
 
 def named_text(name: str) -> str:
-    """The file of a named caliper with all its dimensions."""
+    """TOML text of a named caliper with all its dimensions."""
     given = named(name)
     inputs = [entry for entry in caliper_inputs(name) if entry.path.startswith("dimensions.")]
     lines = [f"{entry.name} = {_shown(entry)}" for entry in inputs]

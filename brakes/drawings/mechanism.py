@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.common.pictures import COLOURS, output_path
 from brakes.drawings import mechanism_parts as parts
-from brakes.planar import Action, Cable, Contact, Equilibrium, Position, Slot, free_body
+from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 TENSION, COMPRESSION = COLOURS[0], COLOURS[1]
 LOAD, REACTION, BODY = "#000000", COLOURS[2], "#8a8f98"
 _MM = 1e3
-_LONGEST = 0.28  # arrow over the size of the mechanism
-_SHORTEST = 1e-6  # arrow that is drawn [mm]
-_ASIDE = 0.17  # distance from the middle over the size of the mechanism
+_LONGEST = 0.28  # longest arrow, over the size of the mechanism
+_SHORTEST = 1e-6  # shorter arrows are not drawn [mm]
+_ASIDE = 0.17  # distance from the middle, over the size, past which arrows may point inwards
 _FAINT = 0.35
 
 
@@ -44,7 +44,7 @@ def draw_mechanism(
     equilibrium : Equilibrium, optional
         Its forces: members in tension are blue, in compression vermilion.
     faint : bool
-        Draw it as a shadow.
+        Draw it pale and without labels, as a shadow.
     labels : bool
         Write the names of the bodies.
     """
@@ -56,13 +56,13 @@ def draw_mechanism(
             if labels:
                 _write(ax, body, parts.label_place(position, body) * _MM, "0.25")
     for cable in parts.cables(position, equilibrium):
-        _draw_cable(ax, cable, alpha, labels)
-    for _, points in parts.springs(position):
+        _draw_member(ax, cable, alpha, labels, linestyle="--", linewidth=1.4, zorder=3)
+    for _, _, points in parts.shapes(position, "spring"):
         ax.plot(*(points * _MM).T, ":", color="0.25", linewidth=1.4, alpha=alpha, zorder=3)
     for member in parts.members(position, equilibrium):
-        _draw_member(ax, member, alpha, labels)
-    for at, grounded in parts.pins(position):
-        _draw_pin(ax, at * _MM, grounded, alpha)
+        _draw_member(ax, member, alpha, labels, linewidth=4, solid_capstyle="round", zorder=4)
+    for _, shape, points in parts.shapes(position, "pin"):
+        _draw_pin(ax, points[0] * _MM, GROUND in dict(shape.ends), alpha)
     _draw_faces(ax, position, alpha)
     ax.set_aspect("equal")
     ax.set(xlabel="x [mm]", ylabel="y [mm]")
@@ -86,21 +86,14 @@ def _colour(member: parts.Member) -> str:
     return "0.35" if not np.isfinite(member.force) else TENSION if member.force >= 0 else COMPRESSION
 
 
-def _draw_cable(ax: Axes, cable: parts.Member, alpha: float, label: bool) -> None:
-    ax.plot(*(cable.ends * _MM).T, "--", color=_colour(cable), linewidth=1.4, alpha=alpha, zorder=3)
-    if label:
-        _write_along(ax, cable)
-
-
-def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool) -> None:
-    width = {"linewidth": 4, "solid_capstyle": "round"}
-    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, zorder=4, **width)
+def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool, **line: Any) -> None:
+    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, **line)
     if label:
         _write_along(ax, member)
 
 
 def _write_along(ax: Axes, member: parts.Member) -> None:
-    """Name and force beside the last stretch of a member, in its direction."""
+    """Write name and force beside the last segment of a member, parallel to it."""
     size = f" {abs(member.force):.4g} N" if np.isfinite(member.force) else ""
     first, last = member.ends[-2:] * _MM
     turn = float(np.degrees(np.arctan2(last[1] - first[1], last[0] - first[0])))
@@ -125,23 +118,21 @@ def _draw_pin(ax: Axes, at: np.ndarray, grounded: bool, alpha: float) -> None:
 
 
 def _draw_faces(ax: Axes, position: Position, alpha: float) -> None:
-    """Short lines along slots and contact faces."""
+    """Draw short lines along slots and contact faces."""
     low, high = parts.extent(position)
     half = 0.06 * float(np.linalg.norm(high - low)) * _MM
-    for joint in position.mechanism.joints:
-        if isinstance(joint, Slot | Contact):
-            x, y = joint.along if isinstance(joint, Slot) else (-joint.normal[1], joint.normal[0])
-            angle = float(position.angle(joint.other)) + np.arctan2(y, x)
-            along = half * np.array((np.cos(angle), np.sin(angle)))
-            at = position.point(joint.body, joint.at) * _MM
-            ax.plot(*np.stack((at - along, at + along)).T, color="0.1", linewidth=1.6, alpha=alpha, zorder=5)
+    for _, shape, points in parts.shapes(position, "face"):
+        x, y = shape.along
+        angle = float(position.angle(shape.frame)) + np.arctan2(y, x)
+        along, at = half * np.array((np.cos(angle), np.sin(angle))), points[0] * _MM
+        ax.plot(*np.stack((at - along, at + along)).T, color="0.1", linewidth=1.6, alpha=alpha, zorder=5)
 
 
 # Forces -------------------------------------------------------------------------------------------
 
 
 def force_scale(*equilibria: Equilibrium) -> float:
-    """Length of 1 N [m/N] at which the largest outer force is a fair part of the mechanism."""
+    """Arrow length per newton [m/N] that makes the longest arrow a fixed part of the mechanism."""
     largest, size = 0.0, 0.0
     for equilibrium in equilibria:
         low, high = parts.extent(equilibrium.position)
@@ -180,17 +171,17 @@ def draw_forces(equilibrium: Equilibrium, ax: Axes, scale: float | None = None, 
     for arrow in parts.outer_forces(equilibrium):
         aside = arrow.at[0] - (low[0] + high[0]) / 2  # from outside, where it would cross the middle
         inwards = arrow.reaction and abs(aside) > _ASIDE * math.dist(low, high) and arrow.force[0] * aside < 0
-        _arrow(ax, arrow.at, arrow.force, scale, REACTION if arrow.reaction else LOAD, "", inwards)
-    shown = {"tension": TENSION, "compression": COMPRESSION, "load": LOAD, "reaction": REACTION}
+        _draw_arrow(ax, arrow.at, arrow.force, scale, REACTION if arrow.reaction else LOAD, "", inwards)
+    colours = {"tension": TENSION, "compression": COMPRESSION, "load": LOAD, "reaction": REACTION}
     if key:
-        _key(ax, shown, scale)
+        _draw_key(ax, colours, scale)
     return ax
 
 
-def _arrow(
+def _draw_arrow(
     ax: Axes, at: np.ndarray, force: np.ndarray, scale: float, colour: str, name: str, inwards: bool = False
 ) -> None:
-    """An arrow from the point, or to it if the force points inwards; none for a force of nearly 0 or nan."""
+    """Draw an arrow from the point, or to it if `inwards`; none for a force of nearly 0 or nan."""
     size, reach = float(np.linalg.norm(force)), force * scale * _MM
     if not np.linalg.norm(reach) > _SHORTEST:
         return
@@ -210,11 +201,11 @@ def _arrow(
     )
 
 
-def _key(ax: Axes, shown: dict[str, str], scale: float) -> None:
-    """Colours, and the scale of the arrows."""
+def _draw_key(ax: Axes, colours: dict[str, str], scale: float) -> None:
+    """Draw the key: colours, and the scale of the arrows."""
     from matplotlib.lines import Line2D
 
-    handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in shown.items()]
+    handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in colours.items()]
     title = f"1 mm is {1 / (scale * _MM):.3g} N" if scale else None
     ax.legend(
         handles=handles, loc="best", fontsize="small", framealpha=0.8, title=title, title_fontsize="small"
@@ -222,7 +213,7 @@ def _key(ax: Axes, shown: dict[str, str], scale: float) -> None:
 
 
 def draw_open_and_closed(open_: Position, closed: Equilibrium, ax: Axes, key: bool = True) -> Axes:
-    """The open mechanism as a shadow under the closed one with its forces."""
+    """Draw the open mechanism as a shadow under the closed one with its forces."""
     draw_mechanism(open_, ax, faint=True)
     draw_mechanism(closed.position, ax, closed)
     draw_forces(closed, ax, key=key)
@@ -235,7 +226,7 @@ def draw_open_and_closed(open_: Position, closed: Equilibrium, ax: Axes, key: bo
 
 
 def free_body_diagrams(equilibrium: Equilibrium) -> Figure:
-    """A figure with one diagram a body: all that acts on it, forces at one scale.
+    """Draw the free-body diagram of every body in one figure, all forces at one scale.
 
     Parameters
     ----------
@@ -260,20 +251,20 @@ def free_body_diagrams(equilibrium: Equilibrium) -> Figure:
 
 
 def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) -> Axes:
-    """A body alone and all that acts on it: loads black, joints green; `scale` the length of 1 N [m/N]."""
+    """Draw the free-body diagram of a body: loads black, joints green; `scale` the length of 1 N [m/N]."""
     corners = parts.outline(equilibrium.position, body)
     _draw_body(ax, corners * _MM, 1.0)
     loads = {load.name for load in equilibrium.position.mechanism.loads}
-    pulling = {joint.name for joint in equilibrium.position.mechanism.joints if isinstance(joint, Cable)}
+    pulling = {name for name, _, _ in parts.shapes(equilibrium.position, "cable")} - loads
     couples = []
     for action in free_body(equilibrium, body):
         if not np.isfinite(action.at).all():
-            couples.append(_couple(action))
+            couples.append(_describe_couple(action))
             continue
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
         inwards = towards and action.name not in pulling  # a push comes from outside, a cable pulls away
         colour = LOAD if action.name in loads else REACTION
-        _arrow(ax, action.at, action.force, scale, colour, action.name, inwards)
+        _draw_arrow(ax, action.at, action.force, scale, colour, action.name, inwards)
         ax.plot(*(action.at * _MM), "o", color="white", markeredgecolor="0.1", markersize=5, zorder=6)
     ax.set_title("\n".join((body, *filter(None, couples))), fontsize="medium")
     _frame(ax)
@@ -281,7 +272,7 @@ def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) 
 
 
 def _frame(ax: Axes) -> None:
-    """A square around all that is drawn, with room for words beside it."""
+    """Set limits to a square around all that is drawn, with room for labels."""
     box = ax.dataLim
     half = max(1.2 * box.width, 0.7 * box.height)
     x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
@@ -289,7 +280,7 @@ def _frame(ax: Axes) -> None:
     ax.set_aspect("equal")
 
 
-def _couple(action: Action) -> str:
+def _describe_couple(action: Action) -> str:
     return f"{action.name}: couple {action.couple:.4g} N m" if abs(action.couple) > 1e-12 else ""
 
 
@@ -311,7 +302,7 @@ def animate(
     force: bool = False,
     rate: float = 20.0,
 ) -> None:
-    """Write an animation of a mechanism, there and back.
+    """Write an animation of a mechanism that moves to the last position and back.
 
     Parameters
     ----------

@@ -24,6 +24,7 @@ from brakes.planar import (
     GROUND,
     CablePair,
     Force,
+    Joint,
     Mechanism,
     Moment,
     Pin,
@@ -32,7 +33,6 @@ from brakes.planar import (
     Slot,
     stroke,
 )
-from brakes.planar.joints import Joint
 
 _RANK = 1e-9  # singular values below this part of the largest count as zero
 _ORIGIN = (0.0, 0.0)

@@ -9,17 +9,17 @@ import numpy as np
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position
-from brakes.planar.statics import Balance, Equilibrium, balance_of, forces_on_bodies, result_of, solve
+from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, forces_on_bodies, solve
 from brakes.planar.system import System
 
-_RISE = (0.25, 0.5, 0.75, 1.0)  # friction is raised to its full size in steps
-_SETTLED = 1e-9  # part of the forces that Newton's last step may have; its inverse is beyond any real force
+_RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
+_SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as self-locking
 _TINY = np.finfo(float).tiny
-_STILL = 1e-9  # sliding velocity, over the largest, that counts as none
+_STILL = 1e-9  # velocity, per unit motion, that counts as zero
 
 
 @dataclass(frozen=True)
-class Friction:
+class FrictionalEquilibrium:
     """Equilibrium with friction in either direction of motion, and without.
 
     Parameters
@@ -36,7 +36,9 @@ class Friction:
     without: Equilibrium
 
 
-def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | None = None) -> Friction:
+def solve_with_friction(
+    mechanism: Mechanism, driver: str, position: Position | None = None
+) -> FrictionalEquilibrium:
     """Reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
 
     A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
@@ -54,7 +56,7 @@ def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | 
 
     Returns
     -------
-    Friction
+    FrictionalEquilibrium
 
     Raises
     ------
@@ -69,10 +71,10 @@ def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | 
             f"friction needs mobility 1 and a determined equilibrium; here the mobility is "
             f"{np.max(without.mobility)}, and {without.message}"
         )
-    balance = balance_of(mechanism, position)
+    balance = balance_at(mechanism, position)
     sliding = _sliding(mechanism.system, balance, driver)
     squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
-    return Friction(squeeze, release, without)
+    return FrictionalEquilibrium(squeeze, release, without)
 
 
 def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
@@ -81,27 +83,27 @@ def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
     rate = times(gradient, motion)
     driven = rate[:, [system.loads[driver]]]
-    own = rate[:, list(system.rubbing.values())]
+    slip = rate[:, list(system.friction.values())]
     if (np.abs(driven) < _STILL).any():
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
-    return np.where(np.abs(own) > _STILL, np.sign(own * driven), 0.0)
+    return np.where(np.abs(slip) > _STILL, np.sign(slip * driven), 0.0)
 
 
 def _branch(
     mechanism: Mechanism, position: Position, balance: Balance, without: Equilibrium, sliding: np.ndarray
 ) -> Equilibrium:
-    """Equilibrium with friction against given sliding signs."""
+    """Equilibrium with friction that opposes sliding of the given signs."""
     system = mechanism.system
     start = np.atleast_2d(without.multiplier / system.unit)
     multiplier, locked = _newton(system, balance, start, sliding)
     loads = [row for row in balance.unknown if row >= system.constraints]
     locked |= (multiplier[:, loads] * start[:, loads] < 0).any(axis=1)
-    multiplier[locked] = start[locked]  # any finite numbers: they are not shown
+    multiplier[locked] = start[locked]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = result_of(mechanism, position, balance, forces, multiplier, locked)
+    result = collect_result(mechanism, position, balance, forces, multiplier, locked)
     if not locked.any():
         return result
-    names = " and ".join(map(repr, system.rubbing))
+    names = " and ".join(map(repr, system.friction))
     message = (
         f"self-locking at {locked.sum()} of {len(locked)} positions: with the friction of {names} no load of "
         "the given direction moves the mechanism this way; reduce friction or the radius of the pivots"
@@ -139,10 +141,9 @@ def _friction(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Set the friction rows; residual of equilibrium and its derivative by the unknowns."""
     slope = balance.matrix.copy()
-    for k, (name, row) in enumerate(system.rubbing.items()):
-        own = system.joints[name]
-        size = np.linalg.norm(multiplier[:, own], axis=1, keepdims=True)
+    for k, (row, normal) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
+        size = np.linalg.norm(multiplier[:, normal], axis=1, keepdims=True)
         multiplier[:, row] = law[:, k] * size[:, 0]
-        direction = law[:, [k]] * multiplier[:, own] / np.maximum(size, _TINY)
-        slope[:, :, own] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
+        direction = law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY)
+        slope[:, :, normal] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
     return forces_on_bodies(balance, multiplier), slope
