@@ -27,7 +27,7 @@ def positions(figure: Any, followed: Kinematics) -> None:
         f"piston at its bottom, drum turned {np.degrees(followed.drum.turn[-1]):.3g} deg",
     )
     for ax, progress, title in zip(panels, (0.0, 1.0, 2.0), titles, strict=True):
-        duo_servo(ax, followed.geometry, followed.geometry.motion(followed.clearance), progress)
+        duo_servo(ax, followed.geometry, followed.geometry.move_shoes(followed.clearance), progress)
         ax.set_title(title, fontsize=10)
 
 
@@ -185,7 +185,7 @@ def _outline(
 ) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
     """Points of the shoe, where the piston pushes, and where the adjuster does."""
     if followed is not None:
-        geometry, motion = followed.geometry, followed.geometry.motion(followed.clearance)
+        geometry, motion = followed.geometry, followed.geometry.move_shoes(followed.clearance)
         place = (geometry, motion, 2.0, side)
         tip, pin = moved(np.array([geometry.tip, geometry.adjuster], dtype=float), *place)
         rim = moved(0.97 * lining(geometry, motion), *place)

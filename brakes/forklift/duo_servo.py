@@ -85,7 +85,7 @@ class DuoServo:
             bound = "it must lie inside the drum (drum_radius)"
             refuse(far >= self.drum_radius, f"distance of {name} from the centre", far, "m", bound)
 
-    def motion(self, clearance: Numbers) -> ShoeMotion:
+    def move_shoes(self, clearance: Numbers) -> ShoeMotion:
         """Where the shoes go.
 
         Parameters
@@ -121,7 +121,7 @@ class DuoServo:
         refuse(np.isnan(psi), "clearance", c, "m", bound, advice)
         return self._moved(c, turn, psi, tip)
 
-    def levers(self, clearance: Numbers | None = None) -> Levers:
+    def find_levers(self, clearance: Numbers | None = None) -> Levers:
         """Lever arms at the end of the shoes' motion.
 
         Parameters
@@ -137,11 +137,11 @@ class DuoServo:
         Raises
         ------
         ValueError
-            If the clearance is missing, or as for `motion`.
+            If the clearance is missing, or as for `move_shoes`.
         """
         if clearance is None:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
-        return self.motion(clearance).levers
+        return self.move_shoes(clearance).levers
 
     def piston(self, x: Numbers, y: Numbers) -> Numbers:
         """Place of a piston whose face passes through a point of the right side [m]."""

@@ -26,7 +26,6 @@ import numpy as np
 from beamdyn.common.results import Result
 from brakes.arrays import Numbers, positive, refuse, together
 from brakes.forklift.levers import Levers
-from brakes.forklift.newton import ten_equations
 
 _STEPS = 200
 _ARMS_DIFFER = 1e-9
@@ -34,10 +33,10 @@ _FRICTION_DIFFERS = 0.01
 
 
 class Geometry(Protocol):
-    """What has lever arms at a clearance: a `DuoServo`, or `Levers` (without a clearance)."""
+    """What has lever arms at a clearance: a `DuoServo`, or `Levers`, which take no clearance."""
 
-    def levers(self, clearance: Any = None) -> Levers:
-        """Arms and directions at the end of the shoes' motion."""
+    def find_levers(self, clearance: Any = None) -> Levers:
+        """Find arms and directions at the end of the shoes' motion."""
         ...
 
 
@@ -66,7 +65,8 @@ class InternalForces(Result):
     leading_share, trailing_share : ndarray
         Parts of the torque, B / (B + D) and D / (B + D).
     residual : ndarray
-        Largest left-hand side of the paper's ten equations, in the larger of T / r and P_T, and r.
+        Largest of the `equilibrium_equations`, with the larger of T / r and P_T as the unit of force and r
+        as that of length.
     status : str or ndarray of str
         ``"equilibrium"``, ``"locked"`` or ``"no solution"``; the forces are nan for the last two.
     warnings : tuple of str
@@ -153,7 +153,7 @@ def internal_forces(
     """
     if torque is None and friction is None:
         raise ValueError("give torque, or friction, or both to compare them")
-    levers = geometry.levers(clearance)
+    levers = geometry.find_levers(clearance)
     P_T = positive("piston_force", piston_force, "N")
     T = None if torque is None else positive("torque", torque, "N m")
     mu = None if friction is None else positive("friction", friction)
@@ -252,7 +252,8 @@ def _result(
     unknowns = np.concatenate([A_vector, B_vector, C_vector, D_vector], axis=-1)
     x = np.concatenate([np.moveaxis(unknowns, -1, 0), [Q, P_L]])
     unit = np.fmax(T / levers.drum_radius, P_T)
-    residual = np.max(np.abs(ten_equations(levers, T, P_T, x, unit)), axis=0)
+    scaled = equilibrium_equations(levers.in_radii, T / unit / levers.drum_radius, P_T / unit, x / unit)
+    residual = np.max(np.abs(scaled), axis=0)
     friction, limit = B / A, levers.locking_friction
     return InternalForces(
         levers=levers,
@@ -279,6 +280,45 @@ def _result(
         residual=residual[()],
         status=status[()],
         warnings=tuple(_warnings(levers, friction, mu)),
+    )
+
+
+def equilibrium_equations(
+    levers: Levers, torque: Numbers, piston_force: Numbers, unknowns: np.ndarray
+) -> np.ndarray:
+    """Evaluate the left-hand sides of the ten equations of equilibrium, (27)-(36) of the paper.
+
+    Parameters
+    ----------
+    levers : Levers
+        Arms and directions; with `Levers.in_radii` the unit of length is the drum's radius.
+    torque, piston_force : float or ndarray
+        T and P_T, in units consistent with the lengths and the unknowns.
+    unknowns : ndarray, shape (10, ...)
+        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L.
+
+    Returns
+    -------
+    ndarray, shape (10, ...)
+        In the paper's order: forces and moment of the leading, then of the trailing shoe; A normal to B,
+        C to D; equal friction A D = B C; torque of the drum. Zero at a solution.
+    """
+    r, alpha1, alpha2, gamma = levers.drum_radius, levers.alpha1, levers.alpha2, levers.gamma
+    Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L = unknowns
+    A, B, C, D = np.hypot(Ax, Ay), np.hypot(Bx, By), np.hypot(Cx, Cy), np.hypot(Dx, Dy)
+    return np.stack(
+        np.broadcast_arrays(
+            Ax + Bx + P_L * np.cos(alpha1) + Q * np.cos(gamma),
+            Ay + By - P_L * np.sin(alpha1) + Q * np.sin(gamma),
+            B * r + Q * levers.b1 - P_L * levers.a1,
+            Cx + Dx - piston_force * np.cos(alpha2) - Q * np.cos(gamma),
+            Cy + Dy - piston_force * np.sin(alpha2) - Q * np.sin(gamma),
+            D * r + piston_force * levers.a2 - Q * levers.b2,
+            Ax * Bx + Ay * By,
+            Cx * Dx + Cy * Dy,
+            A * D - B * C,
+            (B + D) * r - torque,
+        )
     )
 
 

@@ -118,7 +118,7 @@ def _stage_dict(stage: Stage) -> dict[str, Any]:
     return plain(stage) | {"travel": travel}
 
 
-def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
+def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
     """Follow the brake's parts through both stages.
 
     Parameters
@@ -141,14 +141,14 @@ def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinemat
         If the clearance is not positive, or larger than the drum allows.
     """
     c, n = positive("clearance", clearance, "m"), count("positions", positions, 2)
-    interference = geometry.motion(c).interference
-    right, left = (_stage_1(geometry, c, side, n) for side in ("right", "left"))
+    interference = geometry.move_shoes(c).interference
+    right, left = (_follow_seating(geometry, c, side, n) for side in ("right", "left"))
     tips = tuple(_tip(geometry, stage, side) for stage, side in ((right, "right"), (left, "left")))
-    drum = _stage_2(geometry, tips, float(right.travel["right"][-1]), n)
+    drum = _follow_turning(geometry, tips, float(right.travel["right"][-1]), n)
     return Kinematics(geometry, c, right, left, drum, _events(right, left, drum), interference)
 
 
-def stage_1(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
+def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
     """Mechanism of stage 1 of one side, ``"right"`` or ``"left"``, with loads that measure and drive it."""
     drawn = geometry.tip, geometry.adjuster, _contact(geometry, clearance)
     tip, adjuster, contact = (_on(side, p) for p in drawn)
@@ -160,7 +160,7 @@ def stage_1(geometry: DuoServo, clearance: float, side: str = "right") -> Mechan
     )
 
 
-def stage_2(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
+def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
     """Mechanism of stage 2, drawn with the linings seated."""
     sides = {"right": right_tip, "left": left_tip}
     parts = [f"{side} {part}" for side in sides for part in ("shoe", "dummy", "piston")]
@@ -204,15 +204,15 @@ def _contact(geometry: DuoServo, c: float) -> Point:
     return radius * np.cos(angle), radius * np.sin(angle)
 
 
-def _stage_1(geometry: DuoServo, c: float, side: str, n: int) -> Stage:
-    mechanism = stage_1(geometry, c, side)
+def _follow_seating(geometry: DuoServo, c: float, side: str, n: int) -> Stage:
+    mechanism = build_seating_mechanism(geometry, c, side)
     path = stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
     turn = path.position.angle(f"{side} shoe") * (-1 if side == "right" else 1)
     return Stage(mechanism, path.position, {side: path.travel[side]}, turn, *constraint_rank(path.position))
 
 
-def _stage_2(geometry: DuoServo, tips: tuple[Point, ...], seated: float, n: int) -> Stage:
-    mechanism = stage_2(geometry, *tips)
+def _follow_turning(geometry: DuoServo, tips: tuple[Point, ...], seated: float, n: int) -> Stage:
+    mechanism = build_turning_mechanism(geometry, *tips)
     path = stroke(mechanism, "right", np.linspace(0.0, -seated - geometry.piston_bottom, n))
     travel = {side: path.travel[side] for side in ("right", "left")}
     return Stage(mechanism, path.position, travel, path.travel["drum"], *constraint_rank(path.position))

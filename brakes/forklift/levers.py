@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from brakes.arrays import Numbers, numbers, positive, refuse, together
 
 @dataclass(frozen=True)
 class Levers:
-    """Arms about the drum's centre and directions, as in the paper's Fig. 6; each may be an array.
+    """Arms about the drum's centre and directions, as in the paper's Fig. 6; each value may be an array.
 
     The drum turns counter-clockwise and the right shoe leads. On it act P_L (cos alpha1, -sin alpha1)
     and Q (cos gamma, sin gamma), on the left one P_T (-cos alpha2, -sin alpha2) and
@@ -54,6 +54,12 @@ class Levers:
             refuse(np.abs(value) > np.pi / 2, name, value, "rad", bound, "angles are in rad")
 
     @property
+    def in_radii(self) -> Levers:
+        """The same with all lengths over the drum's radius."""
+        arms = {name: getattr(self, name) / self.drum_radius for name in ("a1", "a2", "b1", "b2")}
+        return replace(self, drum_radius=1.0, **arms)
+
+    @property
     def phi1(self) -> Numbers:
         """Angle between P_L and Q [rad]."""
         return self.alpha1 + self.gamma
@@ -70,8 +76,8 @@ class Levers:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(sigma < 1, sigma / np.sqrt((1 - sigma) * (1 + sigma)), np.inf)[()]
 
-    def levers(self, clearance: None = None) -> Levers:
-        """Themselves: they belong to one position of the brake.
+    def find_levers(self, clearance: None = None) -> Levers:
+        """These levers: they belong to one position of the brake.
 
         Raises
         ------
