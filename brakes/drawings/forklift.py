@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Polygon
 from beamdyn.common.curves import curves
 from beamdyn.common.pictures import COLOURS
 from brakes.arrays import Numbers
-from brakes.drawings.arrows import force, frame, scale_bar, sized
+from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop
 
@@ -47,7 +47,7 @@ def truck(ax: Axes, stop: Stop) -> Axes:
     )  # row vectors; downhill to +x
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.conditions.friction) * float(stop.front_load)
-    scale = 1.1 * L / weight
+    arrows = ForceArrows(ax, 1.1 * L / weight)
     _chassis(ax, stop, turn)
     cg = np.array([float(t.cg[0]), float(t.cg[1]) + r1])
     places = {
@@ -59,10 +59,11 @@ def truck(ax: Axes, stop: Stop) -> Axes:
     aside = {"N_A": "right", "N_B": "left", "M g": "left" if float(t.cg[0]) < L / 2 else "right"}
     for name, (at, vector, colour) in places.items():
         pushes, ha = name.startswith("N"), aside.get(name, "")
-        force(ax, at @ turn, vector @ turn, scale, sized(name, vector), colour, ends_here=pushes, ha=ha)
+        label = force_label(name, vector)
+        arrows.draw(at @ turn, vector @ turn, label, colour, ends_here=pushes, ha=ha)
     ax.plot(*(cg @ turn), "o", color=_WEIGHT, markersize=7, zorder=7)
-    frame(ax, _title(stop))
-    scale_bar(ax, scale, weight, (0.78, 0.88))
+    finish_drawing(ax, _title(stop))
+    arrows.add_scale_bar(weight, (0.78, 0.88))
     return ax
 
 

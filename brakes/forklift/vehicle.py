@@ -40,7 +40,7 @@ STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
 class Truck:
     """A truck and its load; x from the front axle towards the rear, y up from the front wheels' centre.
 
-    Every value may be an array, one entry a design.
+    Every value may be an array, one entry per design.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class Truck:
 
 @dataclass(frozen=True)
 class StopConditions:
-    """Road, speed and timing of a stop; every value may be an array, one entry a case.
+    """Road, speed and timing of a stop; every value may be an array, one entry per case.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ class StopConditions:
 
 @dataclass(frozen=True)
 class Stop(Result):
-    """A stop, or why there is none; arrays have one entry a case.
+    """A stop, or why there is none; arrays have one entry per case.
 
     Attributes
     ----------
