@@ -13,9 +13,8 @@ from beamdyn.common.edge.input_sweep import Output, Sweep, columns, sweep_rows
 from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
-    from brakes.config.forklift import ForkliftAnswer
     from brakes.drum import BrakeResult
-    from brakes.forklift import Kinematics, ShoeMotion, Stop
+    from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop
 
 _MM, _KN, _MPA, _DEG = 1e-3, 1e3, 1e6, pi / 180
 _SHOWN = 24  # rows of a sweep
@@ -165,12 +164,10 @@ def _within(part: str, o: Output) -> Output:
     return Output(o.name, o.words, lambda answer: o.of(getattr(answer, part)), o.unit, o.scale)
 
 
-def vehicle_table(stops: Sequence[Stop]) -> Group:
-    """The table of a stop, or of the same by several models, side by side."""
-    heads = [s.model.replace("_", " ") for s in stops]
-    rows = [["", *(str(s.status) for s in stops), ""]]
-    rows += [[o.words, *(number(o.shown(s)) for s in stops), o.unit] for o in VEHICLE]
-    return table("Vehicle", ("", *heads, "unit"), rows, (0, len(heads) + 1))
+def vehicle_table(stop: Stop) -> Group:
+    """The table of a stop."""
+    rows = [["", str(stop.status), ""], *_rows(VEHICLE, stop)]
+    return table("Vehicle", ("", "value", "unit"), rows, (0, 2))
 
 
 def kinematics_tables(motion: ShoeMotion, followed: Kinematics) -> Group:
@@ -192,14 +189,12 @@ def kinematics_tables(motion: ShoeMotion, followed: Kinematics) -> Group:
     return Group(_column("Kinematics of one brake", MOTION, motion), events)
 
 
-def forces_table(answers: Sequence[ForkliftAnswer], heads: Sequence[str]) -> Group:
-    """The table of the forces in one brake, by several models side by side."""
-    found = [a.forces for a in answers if a.forces is not None]
-    rows = [[o.words, *(number(o.shown(f)) for f in found), o.unit] for o in FORCES]
-    rows += [[]]
-    rows += [[o.words, *(number(o.shown(f.levers)) for f in found), o.unit] for o in ARMS]
-    title = f"Forces in one brake; the torque is from {answers[0].torque_from}"
-    return table(title, ("", *(heads if len(found) > 1 else ["value"]), "unit"), rows, (0, len(found) + 1))
+def forces_table(forces: InternalForces, torque_from: str) -> Group:
+    """The table of the forces in one brake, and of their lever arms."""
+    rows = [*_rows(FORCES, forces), [], *_rows(ARMS, forces.levers)]
+    return table(
+        f"Forces in one brake; the torque is from {torque_from}", ("", "value", "unit"), rows, (0, 2)
+    )
 
 
 # Sweeps -------------------------------------------------------------------------------------------------
@@ -241,5 +236,8 @@ def number(value: Any, digits: int = 5) -> str:
 
 
 def _column(title: str, outputs: Sequence[Output], result: Any) -> Group:
-    rows = ([o.words, number(o.shown(result)), o.unit] for o in outputs)
-    return table(title, ("", "value", "unit"), rows, (0, 2))
+    return table(title, ("", "value", "unit"), _rows(outputs, result), (0, 2))
+
+
+def _rows(outputs: Iterable[Output], result: Any) -> list[list[str]]:
+    return [[o.words, number(o.shown(result)), o.unit] for o in outputs]

@@ -32,77 +32,77 @@ from brakes.config.forklift import (
 from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import truck
+from brakes.reproduce.forklift import compare
+from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 
 @dataclass(frozen=True)
 class Both:
-    """A stage's answer by the model of the design, and by both models under their names."""
+    """A stage's answer, and the same with the paper's stop where that has a part in it."""
 
-    chosen: ForkliftAnswer
-    models: dict[str, ForkliftAnswer]
+    corrected: ForkliftAnswer
+    as_printed: ForkliftAnswer | None
 
 
 def solve(stage: StageName, tables: Mapping[str, Any]) -> Both:
     """The answer of one stage; it follows from the tables given alone."""
     design = forklift_from_dict(tables)
     stages = ("kinematics", stage) if stage == "forces" and design.brake is not None else (stage,)
-    models = {name: design.solve(stages, name).followed() for name in _models(stage, design)}
-    own = design.stop.model if design.stop is not None else "corrected"
-    return Both(models.get(own, next(iter(models.values()))), models)
-
-
-def _models(stage: StageName, design: ForkliftInput) -> tuple[Any, ...]:
-    """Both models where they differ: where the vehicle has its say."""
-    of_stop = design.forces is not None and design.forces.torque is None and "vehicle" in design.stages
-    return ("corrected", "as_printed") if stage == "vehicle" or of_stop else ("corrected",)
+    return Both(design.solve(stages).followed(), answer_as_printed(design, stages))
 
 
 def notes(found: Both) -> Sequence[str]:
-    """Warnings and refusals of the design's own model."""
-    return (*found.chosen.refusals, *found.chosen.warnings)
+    """Warnings and refusals."""
+    return (*found.corrected.refusals, *found.corrected.warnings)
 
 
 def rows(stage: StageName, found: Both) -> Iterable[Sequence[object]]:
     """Rows of the CSV file."""
-    names = found.models if len(found.models) > 1 else {"value": found.chosen}
-    return outputs_csv(forklift_outputs((stage,)), **names)
+    return outputs_csv(forklift_outputs((stage,)), value=found.corrected)
+
+
+def draw_as_printed(stage: StageName, found: Both) -> Figure:
+    """Results of the stage beside those that follow from the paper's stop."""
+    return compare(forklift_outputs((stage,)), found.corrected, found.as_printed or found.corrected)
 
 
 # What each shows ----------------------------------------------------------------------------------------
 
 
 def vehicle_report(found: Both) -> Sequence[RenderableType]:
-    """The stop by both models."""
-    return [vehicle_table([answer.stop for answer in found.models.values() if answer.stop is not None])]
+    """The stop."""
+    assert found.corrected.stop is not None
+    return [vehicle_table(found.corrected.stop)]
 
 
 def kinematics_report(found: Both) -> Sequence[RenderableType]:
     """The shoes' motion and its events."""
-    motion, followed = found.chosen.motion, found.chosen.kinematics
+    motion, followed = found.corrected.motion, found.corrected.kinematics
     assert motion is not None and followed is not None
     return [kinematics_tables(motion, followed)]
 
 
 def forces_report(found: Both) -> Sequence[RenderableType]:
-    """The forces, by both models where the torque is that of the stop."""
-    return [forces_table([*found.models.values()], [name.replace("_", " ") for name in found.models])]
+    """The forces in one brake."""
+    assert found.corrected.forces is not None
+    return [forces_table(found.corrected.forces, found.corrected.torque_from)]
 
 
 def draw_vehicle(found: Both, _: float = 0.0) -> Figure:
     """The truck on its slope."""
     figure = Figure(figsize=(9.0, 4.6), layout="constrained")
-    assert found.chosen.stop is not None
-    truck(figure.subplots(), found.chosen.stop)
+    assert found.corrected.stop is not None
+    truck(figure.subplots(), found.corrected.stop)
     return figure
 
 
 def draw_kinematics(found: Both, progress: float = 0.0) -> Figure:
     """The brake at a place of its two stages, from 0 to 2."""
-    motion = found.chosen.motion
+    motion = found.corrected.motion
     assert motion is not None
     figure = Figure(figsize=(7.0, 6.2), layout="constrained")
     ax = duo_servo(figure.subplots(), motion.geometry, motion, progress)
-    ax.set_title(_place(found.chosen, progress), fontsize=11)
+    ax.set_title(_place(found.corrected, progress), fontsize=11)
     return figure
 
 
@@ -116,11 +116,11 @@ def _place(answer: ForkliftAnswer, progress: float) -> str:
 
 def draw_forces(found: Both, _: float = 0.0) -> Figure:
     """Both shoes as free bodies; of a brake without equilibrium the reason."""
-    forces = found.chosen.forces
+    forces = found.corrected.forces
     assert forces is not None
     figure = Figure(figsize=(10.0, 5.4), layout="constrained")
     if forces.status == "equilibrium":
-        free_bodies(figure, forces, found.chosen.kinematics)
+        free_bodies(figure, forces, found.corrected.kinematics)
     else:
         figure.text(0.5, 0.5, forces.message, ha="center", va="center", wrap=True)
     return figure
@@ -128,14 +128,14 @@ def draw_forces(found: Both, _: float = 0.0) -> Figure:
 
 def vehicle_handles(found: Both, _: float) -> Sequence[Handle]:
     """Points of the truck."""
-    assert found.chosen.stop is not None
-    return of_truck(found.chosen.stop)
+    assert found.corrected.stop is not None
+    return of_truck(found.corrected.stop)
 
 
 def kinematics_handles(found: Both, progress: float) -> Sequence[Handle]:
     """Points of the brake."""
-    assert found.chosen.motion is not None
-    return of_duo_servo(found.chosen.motion, progress)
+    assert found.corrected.motion is not None
+    return of_duo_servo(found.corrected.motion, progress)
 
 
 # Sweeps -------------------------------------------------------------------------------------------------
@@ -164,6 +164,7 @@ VEHICLE = Screen(
     draw_vehicle,
     notes,
     partial(rows, "vehicle"),
+    more=(("As the paper prints", partial(draw_as_printed, "vehicle")),),
     handles=vehicle_handles,
     sweeps=_sweeps("vehicle", "stop.speed=10:30:21 km/h", "distance"),
 )
@@ -191,6 +192,7 @@ FORCES = Screen(
     draw_forces,
     notes,
     partial(rows, "forces"),
+    more=(("As the paper prints", partial(draw_as_printed, "forces")),),
     sweeps=_sweeps("forces", "forces.piston_force=9:13:17 kN", "A,B,Q,P_L"),
 )
 FORKLIFT = Document(

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
 StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
-ModelChoice = Literal["corrected", "as_printed", "both"]
 
 _SWEPT = {
     "vehicle": "distance,torque_per_brake",
@@ -36,7 +35,6 @@ def forklift(
     /,
     *,
     stage: StageChoice = "all",
-    model: ModelChoice | None = None,
     sweep: Sweeps = (),
     result: Results = None,
     outputs: Outputs = NO_FILES,
@@ -49,8 +47,6 @@ def forklift(
         The truck, the stop, and one of its brakes.
     stage
         What to show; what comes before it is computed where it is needed.
-    model
-        Of the vehicle, in place of that in the file; both: side by side.
     sweep
         An input and its values: KEY=start:stop:count unit, e.g. "stop.speed=10:30:9 km/h"; twice for
         two inputs.
@@ -66,84 +62,49 @@ def forklift(
 
     outputs.check()
     design = load_forklift(file)
-    asked = Question.on_file("brakes forklift", file, stage=stage, model=model, sweep=sweep, result=result)
+    asked = Question.on_file("brakes forklift", file, stage=stage, sweep=sweep, result=result)
     stages = design.stages if stage == "all" else (stage,)
     if sweep:
-        swept, cases = _swept(design, stages, model, sweep, result)
+        swept, cases = _swept(design, stages, sweep, result)
         show_sweep(swept, outputs, asked, warnings := (*cases.warnings, *cases.refusals))
         warn(warnings)
         return
     if result is not None:
         raise ValueError("--result goes with --sweep: without one, all results are shown")
-    found = _answers(design, stages, model)
-    warnings = [*dict.fromkeys(w for answer in found.values() for w in answer.warnings)]
-    refusals = [*dict.fromkeys(sentence for answer in found.values() for sentence in answer.refusals)]
+    found = design.solve(stages).followed()
     show(tables := _tables(found))
-    _write(found, stages, outputs, Report(asked, tables, [*warnings, *refusals]))
-    warn(warnings)
-    if refusals:
-        raise NoAnswer("; ".join(refusals))
-
-
-def _answers(
-    design: ForkliftInput, stages: tuple[StageName, ...], model: ModelChoice | None
-) -> dict[str, ForkliftAnswer]:
-    """The answer of each model, by its name."""
-    if model != "both":
-        return {"value": design.solve(stages, model).followed()}
-    return {
-        "corrected": design.solve(stages, "corrected").followed(),
-        "as_printed": design.solve(stages, "as_printed").followed(),
-    }
+    _write(found, stages, outputs, Report(asked, tables, [*found.warnings, *found.refusals]))
+    warn(found.warnings)
+    if found.refusals:
+        raise NoAnswer("; ".join(found.refusals))
 
 
 def _swept(
-    design: ForkliftInput,
-    stages: tuple[StageName, ...],
-    model: ModelChoice | None,
-    texts: Sweeps,
-    names: Results,
+    design: ForkliftInput, stages: tuple[StageName, ...], texts: Sweeps, names: Results
 ) -> tuple[Sweep, ForkliftAnswer]:
     from beamdyn.common.edge.input_sweep import chosen
     from brakes.answers.tables import forklift_outputs
 
-    if model == "both":
-        raise ValueError("--model both does not go with --sweep: sweep each model by itself")
     wanted = chosen(forklift_outputs(stages), names or ",".join(_SWEPT[s] for s in stages))
-    return run_sweep(design, texts, wanted, lambda d: d.solve(stages, model))
+    return run_sweep(design, texts, wanted, lambda d: d.solve(stages))
 
 
-def _tables(found: dict[str, ForkliftAnswer]) -> list[RenderableType]:
+def _tables(found: ForkliftAnswer) -> list[RenderableType]:
     from brakes.answers.tables import forces_table, kinematics_tables, vehicle_table
 
-    answers, tables = [*found.values()], []
-    first = answers[0]
-    stops = [answer.stop for answer in answers if answer.stop is not None]
-    if stops:
-        tables.append(vehicle_table(stops))
-    if first.motion is not None and first.kinematics is not None:
-        tables.append(kinematics_tables(first.motion, first.kinematics))
-    if first.forces is not None:
-        differ = first.torque_from == "the stop"
-        heads = [name.replace("_", " ") for name in found]
-        tables.append(forces_table(answers if differ else answers[:1], heads))
+    tables = []
+    if found.stop is not None:
+        tables.append(vehicle_table(found.stop))
+    if found.motion is not None and found.kinematics is not None:
+        tables.append(kinematics_tables(found.motion, found.kinematics))
+    if found.forces is not None:
+        tables.append(forces_table(found.forces, found.torque_from))
     return tables
 
 
-def _write(
-    found: dict[str, ForkliftAnswer], stages: tuple[StageName, ...], files: Outputs, report: Report
-) -> None:
+def _write(found: ForkliftAnswer, stages: tuple[StageName, ...], files: Outputs, report: Report) -> None:
     from brakes.answers.tables import forklift_outputs, outputs_csv
-    from brakes.config.forklift import Models
     from brakes.drawings.forklift import answer_figure
 
-    answers = [*found.values()]
-    first = answers[0]
-    rows = outputs_csv(forklift_outputs(stages), **found)
-    write(
-        first if len(answers) == 1 else Models(*answers),
-        files,
-        rows,
-        lambda: answer_figure(first.stop, first.kinematics, first.forces),
-        report,
-    )
+    rows = outputs_csv(forklift_outputs(stages), value=found)
+    write(found, files, rows, lambda: answer_figure(found.stop, found.kinematics, found.forces), report)

@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
@@ -23,8 +23,9 @@ from brakes.forklift import (
     Levers,
     ShoeMotion,
     Stop,
+    StopConditions,
     Truck,
-    follow,
+    follow_shoes,
     internal_forces,
     stop,
 )
@@ -41,7 +42,6 @@ __all__ = [
 
 StageName = Literal["vehicle", "kinematics", "forces"]
 STAGES: tuple[StageName, ...] = ("vehicle", "kinematics", "forces")
-Model = Literal["corrected", "as_printed"]
 
 
 def load_forklift(path: str | PathLike[str]) -> ForkliftInput:
@@ -121,7 +121,7 @@ class TruckInput(CoreSection):
             )
 
 
-class StopInput(Section):
+class StopInput(CoreSection):
     """[stop]: the truck reverses down a slope and brakes with locked front wheels."""
 
     slope: Annotated[
@@ -134,50 +134,16 @@ class StopInput(Section):
     rise_time: Annotated[
         float, Quantity("s", symbol="t2", meaning="time in which the brake force rises", least=0)
     ]
-    model: Annotated[
-        Model, Field(description="corrected mechanics, or the paper's as_printed, which errs")
-    ] = "corrected"
-    distance: Annotated[
-        Literal["exact", "printed"] | None,
-        Field(description="formula of the distance; if not given, that of the model"),
-    ] = None
-    slope_factor: (
-        Annotated[
-            float,
-            Quantity(
-                symbol="k",
-                meaning="factor on the slope's pull; if not given, 1, and as printed 0.97 for a reason "
-                "that is not known",
-                above=0,
-            ),
-        ]
-        | None
-    ) = None
     gravity: Annotated[float, Quantity("m/s2", symbol="g", meaning="gravity", above=0)] = STANDARD_GRAVITY
 
-    def solve(self, truck: Truck, model: Model | None = None) -> Stop:
-        """The stop of a truck, by this model or another one."""
-        chosen = model or self.model
-        default = ("exact", 1.0) if chosen == "corrected" else ("printed", PRINTED_FACTOR)
-        with of_file({"factor": "slope_factor"}):
-            return stop(
-                truck,
-                slope=self.slope,
-                speed=self.speed,
-                friction=self.friction,
-                reaction_time=self.reaction_time,
-                rise_time=self.rise_time,
-                model=chosen,
-                distance=self.distance or default[0],
-                factor=default[1] if self.slope_factor is None else self.slope_factor,
-                g=self.gravity,
-            )
+    @cached_property
+    def core(self) -> StopConditions:
+        """The conditions of the stop."""
+        with of_file({}):
+            return StopConditions(**dict(self))
 
 
-PRINTED_FACTOR = 0.97  # on the slope's pull, in the paper's tables
-
-
-class BrakeInput(CoreSection):
+class DuoServoInput(CoreSection):
     """[brake]: geometry of a duo-servo brake, the right side of it at rest; the left side mirrors it."""
 
     drum_radius: Annotated[float, Quantity("m", symbol="r", meaning="inner radius of the drum", above=0)]
@@ -208,10 +174,17 @@ class BrakeInput(CoreSection):
         ),
     ]
     piston_bottom: Annotated[
-        float, Quantity("m", meaning="how far a piston can be pushed in from its place at rest", above=0)
+        float, Quantity("m", meaning="travel of a piston from rest to its bottom, inward", above=0)
     ]
     piston_stroke: (
-        Annotated[float, Quantity("m", meaning="how far a piston can come out; else not checked", above=0)]
+        Annotated[
+            float,
+            Quantity(
+                "m",
+                meaning="largest travel of a piston from rest, outward; if not given, not checked",
+                above=0,
+            ),
+        ]
         | None
     ) = None
     clearance: Annotated[
@@ -234,13 +207,13 @@ class BrakeInput(CoreSection):
 
     @property
     def motion(self) -> ShoeMotion:
-        """Where the shoes go."""
+        """Motion of the shoes."""
         with of_file(_PINS):
-            return self.core.motion(self.clearance)
+            return self.core.move_shoes(self.clearance)
 
 
 class LeversInput(CoreSection):
-    """[levers]: arms about the drum's centre and directions, for the forces without a geometry."""
+    """[levers]: lever arms and directions of the forces, where no geometry of the brake is known."""
 
     drum_radius: Annotated[float, Quantity("m", symbol="r", meaning="inner radius of the drum", above=0)]
     a1: Annotated[float, Quantity("m", symbol="a1", meaning="arm of P_L, on the leading shoe", above=0)]
@@ -268,7 +241,7 @@ class LeversInput(CoreSection):
 
 
 class ForcesInput(Section):
-    """[forces]: what the forces in a brake follow from."""
+    """[forces]: the inputs of the forces in one brake."""
 
     piston_force: Annotated[
         float, Quantity("N", symbol="P_T", meaning="force of the piston on the trailing shoe", above=0)
@@ -330,7 +303,7 @@ class ForkliftAnswer(Result):
         """The same with the shoes' motion position by position, if there is any; of one case."""
         if self.motion is None:
             return self
-        found = follow(self.motion.geometry, float(self.motion.clearance), positions)
+        found = follow_shoes(self.motion.geometry, float(self.motion.clearance), positions)
         return replace(self, kinematics=found)
 
     def to_dict(self) -> dict[str, Any]:
@@ -354,24 +327,12 @@ class ForkliftAnswer(Result):
         return tuple(found)
 
 
-@dataclass(frozen=True)
-class Models(Result):
-    """The answers of both models, side by side."""
-
-    corrected: ForkliftAnswer
-    as_printed: ForkliftAnswer
-
-    def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
-        return {"corrected": self.corrected.to_dict(), "as_printed": self.as_printed.to_dict()}
-
-
 class ForkliftInput(Section):
     """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted."""
 
     truck: TruckInput | None = None
     stop: StopInput | None = None
-    brake: BrakeInput | None = None
+    brake: DuoServoInput | None = None
     levers: LeversInput | None = None
     forces: ForcesInput | None = None
 
@@ -401,17 +362,13 @@ class ForkliftInput(Section):
         }
         return tuple(name for name in STAGES if there[name])
 
-    def solve(
-        self, stages: tuple[StageName, ...] | None = None, model: Model | None = None
-    ) -> ForkliftAnswer:
+    def solve(self, stages: tuple[StageName, ...] | None = None) -> ForkliftAnswer:
         """What the stages find; those before them are computed where they are needed.
 
         Parameters
         ----------
         stages : tuple of str, optional
             Of "vehicle", "kinematics", "forces"; those whose tables are there if not given.
-        model : {"corrected", "as_printed"}, optional
-            In place of that of the file.
 
         Raises
         ------
@@ -421,10 +378,10 @@ class ForkliftInput(Section):
         wanted = self.stages if stages is None else stages
         self._require(wanted)
         with in_range():
-            return self._solve(wanted, model)
+            return self._solve(wanted)
 
-    def _solve(self, wanted: tuple[StageName, ...], model: Model | None) -> ForkliftAnswer:
-        stopped = self._stopped(model) if "vehicle" in wanted or self._torque_of_stop else None
+    def _solve(self, wanted: tuple[StageName, ...]) -> ForkliftAnswer:
+        stopped = self._stopped() if "vehicle" in wanted or self._torque_of_stop else None
         motion = None if self.brake is None or wanted == ("vehicle",) else self.brake.motion
         forces = self._forces(stopped, motion) if "forces" in wanted else None
         shown = stopped if "vehicle" in wanted else None
@@ -447,9 +404,10 @@ class ForkliftInput(Section):
             return "the file"
         return "the stop" if self._torque_of_stop else "the lining's friction"
 
-    def _stopped(self, model: Model | None) -> Stop:
+    def _stopped(self) -> Stop:
         assert self.truck is not None and self.stop is not None
-        return self.stop.solve(self.truck.core, model)
+        with of_file({}):
+            return stop(self.truck.core, self.stop.core)
 
     def _forces(self, stopped: Stop | None, motion: ShoeMotion | None) -> InternalForces:
         assert self.forces is not None

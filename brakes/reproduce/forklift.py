@@ -1,26 +1,24 @@
-"""The forklift of Yoo et al. (1997): Tables 2-7, corrected mechanics, and what the paper's errors cost."""
+"""Report on the forklift of Yoo et al. (1997): Tables 2-7, the right numbers, and what the errors cost."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 from rich.console import Group
 
+from beamdyn.common.edge.input_sweep import Output
+from brakes.answers.tables import number
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.drawings.forklift import distances, forces_over, truck
-from brakes.forklift import (
-    BENDIX_12_5,
-    InternalForces,
-    as_printed,
-    follow,
-    internal_forces,
-    newton_raphson,
-)
+from brakes.forklift import BENDIX_12_5, InternalForces, Stop, follow_shoes, internal_forces, stop
 from brakes.published import load
+from brakes.reproduce import forklift_as_printed as as_printed
 from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
+from brakes.reproduce.newton import newton_raphson
 
 # Table: inputs of its rows and of its columns as (key, heading, scale), and its quantities.
 _VEHICLE: dict[str, tuple[tuple[str, str], tuple[str, str], tuple[str, ...]]] = {
@@ -45,16 +43,17 @@ _WORDS = {
     "torque": "torque of one brake T",
 }
 _FORCES = ("A", "B", "Q", "P_L")
+_WAYS = ("as printed", "corrected")
 
 
 def title() -> str:
-    """Paper and authors."""
+    """Title and authors of the paper."""
     paper = load("yoo_1997")
     return f"{paper['title']}\n{', '.join(paper['authors'])}, {paper['journal']}, {paper['year']}"
 
 
 def introduction() -> str:
-    """What was computed."""
+    """What is computed, in one paragraph."""
     return (
         "A loaded truck reverses down a slope and stops with locked front wheels; one of its two front "
         'brakes is a duo-servo brake of 12.5 in. "ours" follows the paper (Tables 2-4 with an arm y_cg - r1 '
@@ -66,17 +65,17 @@ def introduction() -> str:
 
 
 def rows() -> dict[str, list[Row]]:
-    """Tables 2-7, cell by cell."""
+    """Compare Tables 2-7 cell by cell."""
     ours, right, paper = as_printed.tables(), as_printed.corrected_tables(), load("yoo_1997")
-    found = {name: _vehicle_rows(paper, name, ours, right) for name in _VEHICLE}
-    return found | {name: _force_rows(paper, name, ours) for name in _BRAKE}
+    compared = {name: _vehicle_rows(paper, name, ours, right) for name in _VEHICLE}
+    return compared | {name: _force_rows(paper, name, ours) for name in _BRAKE}
 
 
 def _vehicle_rows(paper: dict[str, Any], name: str, ours: dict, right: dict) -> list[Row]:
     (down, _), (across, _), quantities = _VEHICLE[name]
     data = paper[name]
     padded = data.get("padded", {"value": [], "digits": None})
-    found = []
+    compared = []
     for i, row in enumerate(data[down]["value"]):
         for j, column in enumerate(data[across]["value"]):
             cells = []
@@ -93,12 +92,12 @@ def _vehicle_rows(paper: dict[str, Any], name: str, ours: dict, right: dict) -> 
                         float(right[key][i, j]),
                     )
                 )
-            found.append(Row((f"{row:g}", f"{column:g}"), tuple(cells)))
-    return found
+            compared.append(Row((f"{row:g}", f"{column:g}"), tuple(cells)))
+    return compared
 
 
 def _reason(paper: dict[str, Any], name: str, quantity: str, printed: str) -> str:
-    """Why a cell is known to differ: it is the misfit that the published data name."""
+    """Why a cell is known to differ, if it is the misfit that the published data name."""
     known = paper["misfit"][0]
     there = known["where"].startswith(f"Table {name[-1]}, {quantity}") and known["printed"] == printed
     return "the one misfit (1)" if there else ""
@@ -106,25 +105,25 @@ def _reason(paper: dict[str, Any], name: str, quantity: str, printed: str) -> st
 
 def _force_rows(paper: dict[str, Any], name: str, ours: dict) -> list[Row]:
     data, (varied, _) = paper[name], _BRAKE[name]
-    found = []
+    compared = []
     for i, value in enumerate(data[varied]["value"]):
         cells = []
         for force in _FORCES:
             steps = data[force]["step"]
             size = steps[i] if isinstance(steps, list) else steps
             cells.append(Cell(data[force]["printed"][i], float(ours[name, force][i]), size))
-        found.append(Row((f"{value:g}",), tuple(cells)))
-    return found
+        compared.append(Row((f"{value:g}",), tuple(cells)))
+    return compared
 
 
 def tables() -> Iterator[Group]:
-    """Tables 2-7 and the errata."""
-    paper, found = load("yoo_1997"), rows()
+    """Make Tables 2-7 and the table of errata."""
+    paper, compared = load("yoo_1997"), rows()
     for name, ((_, down), (_, across), quantities) in _VEHICLE.items():
         heads = [_HEADS[q] for q in quantities]
-        yield rows_table(_title(paper, name, quantities), (down, across), heads, found[name])
+        yield rows_table(_title(paper, name, quantities), (down, across), heads, compared[name])
     for name, (_, head) in _BRAKE.items():
-        yield rows_table(_title(paper, name, ("forces [N]",)), (head,), _FORCES, found[name])
+        yield rows_table(_title(paper, name, ("forces [N]",)), (head,), _FORCES, compared[name])
     yield errata_table("What is wrong in the paper, and what follows at its base case", as_printed.errata())
 
 
@@ -134,8 +133,8 @@ def _title(paper: dict[str, Any], name: str, what: tuple[str, ...]) -> str:
 
 
 def summary() -> Iterator[str]:
-    """What the tables say to a brake engineer."""
-    printed, right = as_printed.base_stop(corrected=False), as_printed.base_stop()
+    """What follows for a brake engineer, a paragraph each."""
+    printed, right = _base_stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)
     yield (
@@ -147,7 +146,7 @@ def summary() -> Iterator[str]:
 
 
 def notes() -> Iterator[str]:
-    """What the tables do not say."""
+    """Remarks below the tables."""
     every = [cell for name in _VEHICLE for row in rows()[name] for cell in row.cells]
     misfit, agree = load("yoo_1997")["misfit"][0], sum(cell.agrees for cell in every)
     yield (
@@ -160,21 +159,22 @@ def notes() -> Iterator[str]:
     yield _on_newton(forces)
 
 
-def _on_friction(found: InternalForces) -> str:
-    needed = as_printed.base_stop().torque_per_brake
-    right = internal_forces(found.levers, torque=needed, piston_force=_base("piston_force"))
+def _on_friction(forces: InternalForces) -> str:
+    needed = stop(*as_printed.base_case()).torque_per_brake
+    right = internal_forces(forces.levers, torque=needed, piston_force=_base("piston_force"))
     return (
         "The friction of the lining is a result of the paper's equations, which it does not show: "
-        f"{float(found.lining_friction):.3g} at 11000 N m ({float(right.lining_friction):.3g} at the "
+        f"{float(forces.lining_friction):.3g} at 11000 N m ({float(right.lining_friction):.3g} at the "
         "corrected torque). With less, this piston force does not lock the wheels; the brake locks by "
-        f"itself at {float(found.locking_friction):.3g}. The leading shoe does "
-        f"{100 * float(found.leading_share):.0f} % of the work, C* = {float(found.c_star):.3g}, and the "
-        f"cylinder's bolts carry {float(np.hypot(*found.bolt_force)) / 1e3:.0f} kN."
+        f"itself at {float(forces.locking_friction):.3g}. The leading shoe does "
+        f"{100 * float(forces.leading_share):.0f} % of the work, C* = {float(forces.c_star):.3g}, and the "
+        f"cylinder's bolts carry {float(np.hypot(*forces.bolt_force)) / 1e3:.0f} kN."
     )
 
 
 def _on_motion() -> str:
-    followed, motion = follow(BENDIX_12_5, _base("clearance")), BENDIX_12_5.motion(_base("clearance"))
+    clearance = _base("clearance")
+    followed, motion = follow_shoes(BENDIX_12_5, clearance), BENDIX_12_5.move_shoes(clearance)
     stages = followed.right, followed.left, followed.drum
     full = all(int(stage.rank.min()) == stage.constraints for stage in stages)
     turn, psi = np.degrees(float(motion.seating_turn)), np.degrees(float(motion.drum_turn))
@@ -188,11 +188,11 @@ def _on_motion() -> str:
     )
 
 
-def _on_newton(found: InternalForces) -> str:
+def _on_newton(forces: InternalForces) -> str:
     case = {"torque": _base("torque"), "piston_force": _base("piston_force")}
-    scaled = newton_raphson(found.levers, **case)
-    plain = newton_raphson(found.levers, **case, scaled=False)
-    same = abs(scaled.unknowns[8] / float(found.Q) - 1) < 1e-9
+    scaled = newton_raphson(forces.levers, **case)
+    plain = newton_raphson(forces.levers, **case, scaled=False)
+    same = abs(scaled.unknowns[8] / float(forces.Q) - 1) < 1e-9
     return (
         f"The paper's Newton-Raphson on ten equations ends at {'the same' if same else 'other'} forces in "
         f"{scaled.iterations} steps from a good start; from most starts it does not. In SI units the "
@@ -201,8 +201,14 @@ def _on_newton(found: InternalForces) -> str:
     )
 
 
+def _base_stops(**varied: Any) -> tuple[Stop, Stop]:
+    """Solve the stop at the base case, as printed and corrected, with some inputs varied."""
+    case = as_printed.base_case(**varied)
+    return as_printed.stop_as_printed(*case), stop(*case)
+
+
 def base_forces() -> InternalForces:
-    """Forces at the base case of Tables 5-7."""
+    """Solve the forces at the base case of Tables 5-7."""
     return internal_forces(
         BENDIX_12_5, **{name: _base(name) for name in ("torque", "piston_force", "clearance")}
     )
@@ -216,7 +222,7 @@ def _base(name: str) -> Any:
 
 
 def pictures() -> dict[str, Figure]:
-    """Pictures by the names of their files."""
+    """Draw the pictures, by the names of their files."""
     return {
         "forklift_truck": _truck(),
         "forklift_distance": _distance(),
@@ -228,10 +234,9 @@ def pictures() -> dict[str, Figure]:
 
 def _truck() -> Figure:
     figure = Figure(figsize=(12.0, 5.0), layout="constrained")
-    for ax, corrected in zip(figure.subplots(1, 2), (False, True), strict=True):
-        found = as_printed.base_stop(corrected)
-        truck(ax, found)
-        ax.set_title(f"{'corrected' if corrected else 'as printed'}\n{ax.get_title()}", fontsize=10)
+    for ax, name, shown in zip(figure.subplots(1, 2), _WAYS, _base_stops(), strict=True):
+        truck(ax, shown)
+        ax.set_title(f"{name}\n{ax.get_title()}", fontsize=10)
     return figure
 
 
@@ -239,11 +244,11 @@ def _distance() -> Figure:
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")
     speeds, slopes = np.linspace(5, 25, 81) / 3.6, np.radians([0.0, 5.0, 10.0, 15.0, 17.3, 20.0, 26.0])
     panels, top = figure.subplots(1, 2, sharey=True), 0.0
-    for ax, corrected in zip(panels, (False, True), strict=True):
-        found = as_printed.base_stop(corrected, slope=slopes[:, None], speed=3.6 * speeds)
-        distances(ax, speeds, slopes, found.distance)
-        top = max(top, float(found.distance[np.isfinite(found.distance)].max()))
-        ax.set_title("corrected" if corrected else "as printed", fontsize=11)
+    stops = _base_stops(slope=slopes[:, None], speed=3.6 * speeds)
+    for ax, name, distance in zip(panels, _WAYS, (s.distance for s in stops), strict=True):
+        distances(ax, speeds, slopes, distance)
+        top = max(top, float(distance[np.isfinite(distance)].max()))
+        ax.set_title(name, fontsize=11)
     panels[1].set_ylabel("")
     panels[0].set_ylim(0, 1.05 * top)
     return figure
@@ -251,18 +256,18 @@ def _distance() -> Figure:
 
 def _stages() -> Figure:
     figure = Figure(figsize=(11.0, 4.4), layout="constrained")
-    positions(figure, follow(BENDIX_12_5, _base("clearance")))
+    positions(figure, follow_shoes(BENDIX_12_5, _base("clearance")))
     return figure
 
 
 def _shoes() -> Figure:
     figure = Figure(figsize=(10.0, 5.4), layout="constrained")
-    free_bodies(figure, base_forces(), follow(BENDIX_12_5, _base("clearance")))
+    free_bodies(figure, base_forces(), follow_shoes(BENDIX_12_5, _base("clearance")))
     return figure
 
 
 def _over() -> Figure:
-    """Forces over torque, piston force and clearance, with the printed values as circles."""
+    """Draw the forces over torque, piston force and clearance, with the printed values as circles."""
     figure = Figure(figsize=(12.0, 4.6), layout="constrained")
     paper = load("yoo_1997")
     case = {name: _base(name) for name in ("torque", "piston_force", "clearance")}
@@ -275,4 +280,27 @@ def _over() -> Figure:
         ax.set_title(f"Table {name[-1]} (circles: printed)", fontsize=11)
     for ax in figure.axes[1:]:
         ax.set_ylabel("")
+    return figure
+
+
+def compare(outputs: Sequence[Output], corrected: object, printed: object) -> Figure:
+    """Draw a table of results by the right mechanics beside those by the paper's.
+
+    Parameters
+    ----------
+    outputs : sequence of Output
+        Results to show.
+    corrected, printed : object
+        The two answers that have them, of one case.
+    """
+    figure = Figure(figsize=(9.0, 0.3 * (len(outputs) + 1)), layout="constrained")
+    ax = figure.subplots()
+    ax.set_axis_off()
+    rows = [[o.words, number(o.shown(corrected)), number(o.shown(printed)), o.unit] for o in outputs]
+    made = ax.table(
+        rows, colLabels=["", "corrected", "as printed", "unit"], colWidths=[0.55, 0.17, 0.17, 0.11],
+        cellLoc="right", bbox=Bbox.unit(), edges="horizontal",
+    )  # fmt: skip
+    made.auto_set_font_size(False)
+    made.set_fontsize(9)
     return figure

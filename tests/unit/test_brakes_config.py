@@ -19,6 +19,7 @@ from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
 from brakes.config.sweeps import Output, chosen, parse_axis, replaced, sweep
 from brakes.config.wording import in_degrees
+from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRUM = tomllib.loads((EXAMPLES / "drum.toml").read_text())
@@ -165,23 +166,16 @@ def test_the_example_is_the_truck_of_the_paper() -> None:
     assert found.forces.torque == found.stop.torque_per_brake and found.torque_from == "the stop"
 
 
-def test_as_printed_gives_the_papers_base_case() -> None:
-    found = forklift_from_dict(changed(FORKLIFT, stop__model="as_printed")).solve().stop
-    assert found is not None
-    assert abs(found.distance - 9.557) < 5e-4 and abs(found.torque_per_brake - 11000.5) < 0.05
+def test_the_files_stop_as_printed_is_the_papers_base_case() -> None:
+    found = answer_as_printed(forklift_from_dict(FORKLIFT), ("vehicle", "forces"))
+    assert found is not None and found.stop is not None and found.forces is not None
+    assert abs(found.stop.distance - 9.557) < 5e-4 and abs(found.stop.torque_per_brake - 11000.5) < 0.05
+    assert found.forces.torque == found.stop.torque_per_brake and found.torque_from == "the stop"
 
 
-def test_slope_factor_and_distance_follow_the_model_unless_given() -> None:
-    def stop(**keys: Any) -> forklift.Stop:
-        found = forklift_from_dict(changed(FORKLIFT, **keys)).solve(("vehicle",)).stop
-        assert found is not None
-        return found
-
-    printed = {"stop__model": "as_printed"}
-    assert (stop().distance_formula, stop(**printed).distance_formula) == ("exact", "printed")
-    assert stop(**printed, stop__distance="exact").distance_formula == "exact"
-    gain = stop(**printed).acceleration - stop(**printed, stop__slope_factor=1).acceleration
-    assert gain == pytest.approx(-0.03 * 9.806 * np.sin(0.3019), rel=1e-12)
+def test_the_papers_stop_has_no_part_where_the_torque_is_given() -> None:
+    design = forklift_from_dict(changed(FORKLIFT, forces__torque="11 kN m"))
+    assert answer_as_printed(design, ("kinematics", "forces")) is None
 
 
 def test_a_torque_in_the_file_goes_before_that_of_the_stop() -> None:
@@ -222,7 +216,8 @@ def test_each_stage_alone() -> None:
         ({"stop__slope": "90 deg"}, ["stop.slope", "below"]),
         ({"stop__speed": "0 km/h"}, ["stop.speed", "greater than 0"]),
         ({"stop__speed": "20"}, ["stop.speed", "give a unit"]),
-        ({"stop__model": "right"}, ["stop.model", "'corrected'", "'as_printed'"]),
+        ({"stop__model": "as_printed"}, ["stop.model", "unknown key"]),
+        ({"stop__slope_factor": 0.97}, ["stop.slope_factor", "unknown key"]),
         ({"brake__tip_x": "200 mm"}, ["brake", "distance of tip", "inside the drum"]),
         ({"brake__adjuster_y": "122 mm"}, ["brake.adjuster_y", "below 0"]),
         ({"brake__tip": ["1 m"]}, ["brake.tip", "unknown key", "did you mean tip_"]),
