@@ -12,12 +12,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from beamdyn.common.edge import input_sweep
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
 from brakes import drum, forklift
+from brakes.answers.forklift import FORKLIFT as FORKLIFT_TYPE
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
-from brakes.config.sweeps import Output, chosen, parse_axis, replaced, sweep
+from brakes.config.sweeps import numeric_inputs, with_arrays
 from brakes.config.wording import in_degrees
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -278,6 +281,11 @@ def test_angles_in_messages() -> None:
 
 # Sweeps -------------------------------------------------------------------------------------------------
 
+
+def parse_axis(design: Any, text: str) -> input_sweep.Axis:
+    return input_sweep.parse_axis(numeric_inputs(design), text)
+
+
 TORQUE = Output("torque", "torque", lambda r: r.torque, "N m")
 DISTANCE = Output("distance", "distance", lambda a: a.stop.distance, "m")
 
@@ -334,7 +342,7 @@ def test_an_ambiguous_key_names_its_candidates() -> None:
 def test_a_sweep_is_its_cases_one_by_one() -> None:
     design = drum_from_dict(DRUM)
     axes = [parse_axis(design, text) for text in ("lining_end=60:110:3 deg", "friction=0.2:0.5:2")]
-    found = sweep(axes, [TORQUE], replaced(design, axes).solve()).found[0]
+    found = TORQUE.shown(with_arrays(design, axes).solve())
     assert found.shape == (2, 3)
     for j, mu in enumerate((0.2, 0.5)):
         for i, end in enumerate((60, 85, 110)):
@@ -345,8 +353,8 @@ def test_a_sweep_is_its_cases_one_by_one() -> None:
 def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
-    answer = replaced(design, axes).solve()
-    found = sweep(axes, [DISTANCE], answer)
+    answer = FORKLIFT_TYPE.solve(with_arrays(design, axes))
+    found = input_sweep.sweep(axes, [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)
     assert found.to_dict()["inputs"] == ["truck.load_mass"]

@@ -1,4 +1,4 @@
-"""Points of the drawings that can be moved, and the inputs that their places are."""
+"""Points of a forklift's drawings that can be moved, and the inputs that follow from their places."""
 
 from __future__ import annotations
 
@@ -10,10 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.app.documents import Handle
-from beamdyn.common.edge.inputs import describe
-from brakes.config.mechanism import CaliperInput
 from brakes.drawings.duo_servo import moved
-from brakes.drum import BrakeResult
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
 _NEAR = 1e-7  # how near a point that is sought comes to where it is wanted [m], [rad]
@@ -25,7 +22,7 @@ Values = Callable[[float, float], dict[str, float]]
 # A truck ------------------------------------------------------------------------------------------------
 
 
-def of_truck(stop: Stop) -> list[Handle]:
+def truck_handles(stop: Stop) -> list[Handle]:
     """Centres of gravity, rear axle, front wheel and the slope itself; x down the slope, y off the ground."""
     t, beta = stop.truck, float(stop.slope)
     L, r = float(t.wheelbase), float(t.front_wheel_radius)
@@ -64,7 +61,7 @@ def _empty_cg(stop: Stop, x: float, y: float) -> dict[str, float]:
 # A duo-servo brake --------------------------------------------------------------------------------------
 
 
-def of_duo_servo(motion: ShoeMotion, progress: float) -> list[Handle]:
+def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
     """Pins, contact and piston face of the right shoe where it is on its way, and the drum."""
     g = motion.geometry
     tip, adjuster = (_drawn(motion, progress, getattr(g, name)) for name in ("tip", "adjuster"))
@@ -136,58 +133,6 @@ def _sought(start: np.ndarray, miss: Callable[[np.ndarray], np.ndarray]) -> np.n
         if np.all(np.abs(gap) < _NEAR):
             break
     return start
-
-
-# A drum brake -------------------------------------------------------------------------------------------
-
-
-def of_drum(found: BrakeResult) -> list[Handle]:
-    """Lining, pin, force and drum of the first shoe; of a locked brake, which is not drawn, none."""
-    if found.locked:
-        return []
-    shoe = found.shoes[0].shoe
-    r, (start, end) = float(shoe.drum_radius), (float(angle) for angle in shoe.lining)
-    return [
-        Handle("drum radius", (0.0, r), lambda x, y: {"shoe.drum_radius": y}),
-        Handle("start of the lining", _on_rim(r, start), partial(_lining, "lining_start")),
-        Handle("end of the lining", _on_rim(r, end), partial(_lining, "lining_end")),
-        Handle(
-            "pin of the shoe",
-            _pair(shoe.pivot),
-            lambda x, y: {"shoe.pivot_offset": x, "shoe.pivot_depth": -y},
-        ),
-        Handle(
-            "height of the force",
-            (0.55 * r, float(shoe.force_arm)),
-            lambda x, y: {"shoe.force_arm": y},
-        ),
-    ]
-
-
-def _on_rim(r: float, angle: float) -> tuple[float, float]:
-    return float(r * np.sin(angle)), float(-r * np.cos(angle))
-
-
-def _lining(name: str, x: float, y: float) -> dict[str, float]:
-    return {f"shoe.{name}": float(np.arctan2(x, -y))}
-
-
-# A caliper ----------------------------------------------------------------------------------------------
-
-
-def of_caliper(given: CaliperInput) -> list[Handle]:
-    """Points of its dimensions, where it is open."""
-    dimensions = given.dimensions  # pyright: ignore[reportAttributeAccessIssue]  (added by _model_of)
-    meanings = {entry.name: entry.quantity.meaning for entry in describe(type(dimensions))}
-    return [
-        Handle(meanings[name], _pair(point), partial(_point, name), scale=1e3)
-        for name, point in dimensions
-        if isinstance(point, tuple)
-    ]
-
-
-def _point(name: str, x: float, y: float) -> dict[str, tuple[float, float]]:
-    return {f"dimensions.{name}": (x, y)}
 
 
 def _pair(point: object) -> tuple[float, float]:
