@@ -78,7 +78,7 @@ class BrakeType(ABC, Generic[Design]):
        exit code 1. Only where nothing can be shown, `NoAnswer` is raised.
     6. An `Output` takes its number, in SI, from the `Answer`; if the design has arrays, an array.
     7. ``brakes/app/bases/name.toml`` is the example with which the screen opens.
-    8. A line in `brakes.answers.BRAKES` adds the command and the screen.
+    8. A line in `brakes.answers.STANDARD` adds the command and the screen.
 
     Attributes
     ----------
