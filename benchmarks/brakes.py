@@ -76,16 +76,15 @@ def trucks() -> forklift.Procedure:
         front_wheel_radius=between(0.35, 0.45),
         wheelbase=1.89,
     )
-    return forklift.brake_procedure(
-        truck,
+    conditions = forklift.StopConditions(
         slope=between(0, 0.3),
         speed=between(2, 7),
         friction=between(0.5, 0.8),
         reaction_time=0.5,
         rise_time=0.3,
-        piston_force=between(1e4, 1.3e4),
-        clearance=between(0.005, 0.021),
     )
+    piston_force, motion = between(1e4, 1.3e4), forklift.BENDIX_12_5.move_shoes(between(0.005, 0.021))
+    return forklift.brake_procedure(truck, conditions, motion, piston_force=piston_force)
 
 
 PARTS = planar, duo_servo

@@ -31,9 +31,10 @@ speeds, slopes = np.linspace(5, 25, 81) / 3.6, np.radians([0, 10, 17.3, 20, 26])
 
 def stops():
     """All slopes and speeds in one call, shape (5, 81)."""
-    return forklift.stop(
-        truck, slope=slopes[:, None], speed=speeds, friction=0.7, reaction_time=0.5, rise_time=0.3
+    conditions = forklift.StopConditions(
+        slope=slopes[:, None], speed=speeds, friction=0.7, reaction_time=0.5, rise_time=0.3
     )
+    return forklift.stop(truck, conditions)
 
 
 def draw():

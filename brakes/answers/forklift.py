@@ -19,10 +19,12 @@ from beamdyn.common.results import plain
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_from
+from brakes.arrays import Numbers
 from brakes.config.forklift import ForkliftInput, StageName
+from brakes.config.wording import in_range, of_file
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import answer_figure, truck
-from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow
+from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
 _MM, _KN, _DEG = 1e-3, 1e3, pi / 180
 
@@ -98,7 +100,8 @@ _FORCES = (
 )
 
 
-def _outputs(stages: Sequence[StageName]) -> tuple[Output, ...]:
+def stage_outputs(stages: Sequence[StageName]) -> tuple[Output, ...]:
+    """Numbers of the answers to stages."""
     groups = {
         "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
@@ -113,22 +116,25 @@ def _size(vector: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class ForkliftAnswer(Answer):
-    """What the stages that were asked for give.
+    """Results of some stages of a forklift's brakes.
 
     Attributes
     ----------
+    design : ForkliftInput
+        The file.
     stages : tuple of str
-        Which they are.
+        The stages that are shown.
     stop : Stop, optional
-        The vehicle.
+        The vehicle; only if it is shown.
     motion : ShoeMotion, optional
-        The kinematics.
+        The kinematics, also if only the forces are shown that follow from it.
     forces : InternalForces, optional
         The forces in one brake.
     torque_from : str
         Where the torque comes from: "the file", "the stop" or "the lining's friction".
     """
 
+    design: ForkliftInput
     stages: tuple[StageName, ...]
     stop: Stop | None
     motion: ShoeMotion | None
@@ -138,7 +144,9 @@ class ForkliftAnswer(Answer):
     @cached_property
     def kinematics(self) -> Kinematics | None:
         """The shoes' motion position by position, if there is any; of one case."""
-        return None if self.motion is None else follow(self.motion.geometry, float(self.motion.clearance))
+        return (
+            None if self.motion is None else follow_shoes(self.motion.geometry, float(self.motion.clearance))
+        )
 
     @property
     def warnings(self) -> Sequence[str]:
@@ -165,7 +173,7 @@ class ForkliftAnswer(Answer):
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""
-        return outputs_csv(_outputs(self.stages), value=self)
+        return outputs_csv(stage_outputs(self.stages), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
         """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
@@ -254,6 +262,63 @@ def _draw_forces(forces: InternalForces, followed: Kinematics | None) -> Figure:
 # From file to answer ------------------------------------------------------------------------------------
 
 
+_NEEDS = {
+    "vehicle": "[truck] and [stop]",
+    "kinematics": "[brake]",
+    "forces": "[forces], and [brake] or [levers]",
+}
+
+
+def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> ForkliftAnswer:
+    """Solve some stages of a forklift's brakes; those before them are computed where they are needed.
+
+    Parameters
+    ----------
+    design : ForkliftInput
+        The file.
+    stages : sequence of str
+        Of "vehicle", "kinematics", "forces"; those whose tables are in the file if none are named.
+
+    Raises
+    ------
+    ValueError
+        If a table is missing that a stage needs, or as for the functions of `brakes.forklift`.
+    """
+    shown = tuple(stages) or design.stages
+    for name in shown:
+        if name not in design.stages:
+            raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
+    given = design.forces and design.forces.torque
+    from_stop = "forces" in shown and given is None and "vehicle" in design.stages
+    with in_range():
+        stop = _stop(design) if from_stop or "vehicle" in shown else None
+        motion = design.brake.motion if design.brake and shown != ("vehicle",) else None
+        torque = stop.torque_per_brake if from_stop and stop is not None else given
+        forces = _forces(design, motion, torque) if "forces" in shown else None
+    source = "the stop" if from_stop else "the lining's friction" if given is None else "the file"
+    return ForkliftAnswer(
+        design, shown, stop if "vehicle" in shown else None, motion, forces, source if forces else ""
+    )
+
+
+def _stop(design: ForkliftInput) -> Stop:
+    assert design.truck is not None and design.stop is not None
+    with of_file({}):
+        return stop(design.truck.core, design.stop.core)
+
+
+def _forces(design: ForkliftInput, motion: ShoeMotion | None, torque: Numbers | None) -> InternalForces:
+    levers = motion.levers if motion is not None else design.levers and design.levers.core
+    assert design.forces is not None and levers is not None
+    with of_file({"friction = ": "lining_friction = "}):
+        return internal_forces(
+            levers,
+            piston_force=design.forces.piston_force,
+            torque=torque,
+            friction=design.forces.lining_friction,
+        )
+
+
 class ForkliftType(ArrayBrakeType[ForkliftInput]):
     """A forklift's brakes: all stages whose tables are in the file.
 
@@ -272,24 +337,16 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     stages: tuple[StageName, ...] = ()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:
-        """Answer of the stages; those before them are computed where they are needed.
-
-        Raises
-        ------
-        ValueError
-            If a table is missing that a stage needs, or as for the functions of `brakes.forklift`.
-        """
-        stages = self.stages or design.stages
-        solved = design.solve(stages)
-        return ForkliftAnswer(stages, solved.stop, solved.motion, solved.forces, solved.torque_from)
+        """Results of the stages; see `solve_stages`."""
+        return solve_stages(design, self.stages)
 
     def outputs(self, design: ForkliftInput) -> Sequence[Output]:
         """Numbers of the stages."""
-        return _outputs(self.stages or design.stages)
+        return stage_outputs(self.stages or design.stages)
 
     def default_results(self, design: ForkliftInput) -> str:
         """The most important results of each stage."""
-        return ",".join(STAGES[name].results for name in self.stages or design.stages)
+        return ",".join(TYPES[name].results for name in self.stages or design.stages)
 
 
 class VehicleType(ForkliftType):
@@ -332,7 +389,7 @@ class ForcesType(ForkliftType):
 
 
 FORKLIFT = ForkliftType()
-STAGES: dict[StageName, ForkliftType] = {
+TYPES: dict[StageName, ForkliftType] = {
     "vehicle": VehicleType(),
     "kinematics": KinematicsType(),
     "forces": ForcesType(),

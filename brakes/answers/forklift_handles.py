@@ -24,7 +24,7 @@ Values = Callable[[float, float], dict[str, float]]
 
 def truck_handles(stop: Stop) -> list[Handle]:
     """Centres of gravity, rear axle, front wheel and the slope itself; x down the slope, y off the ground."""
-    t, beta = stop.truck, float(stop.slope)
+    t, beta = stop.truck, float(stop.conditions.slope)
     L, r = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # of row vectors
 
@@ -119,7 +119,7 @@ def _contact_at(motion: ShoeMotion, progress: float, x: float, y: float) -> dict
 
 
 def _other(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> ShoeMotion:
-    return dataclasses.replace(geometry, **changed).motion(motion.clearance)  # pyright: ignore[reportArgumentType]
+    return dataclasses.replace(geometry, **changed).move_shoes(motion.clearance)  # pyright: ignore[reportArgumentType]
 
 
 def _sought(start: np.ndarray, miss: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from matplotlib.figure import Figure
+
 from beamdyn.common.app.documents import Document, Screen, Sweeps
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.input_sweep import Sweep
@@ -54,8 +56,8 @@ def _nest(entries: Mapping[str, str]) -> dict[str, Any]:
     return tables
 
 
-def make_screen(brake: BrakeType[Any]) -> Screen:
-    """Make the screen of a type of brake."""
+def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]]) -> Screen:
+    """Make the screen of a type of brake; `more` are titles and drawings of answers that fold out on it."""
     return Screen(
         brake.title,
         brake.purpose,
@@ -68,7 +70,7 @@ def make_screen(brake: BrakeType[Any]) -> Screen:
         lambda answer: answer.rows(),
         slider=brake.slider,
         sweeps=make_sweeps(brake),
-        more=brake.more,
+        more=(*brake.more, *more),
         handles=lambda answer, place: answer.handles(place),
     )
 

@@ -42,7 +42,7 @@ def forklift(
     outputs
         Files to write.
     """
-    from brakes.answers.forklift import FORKLIFT, STAGES
+    from brakes.answers.forklift import FORKLIFT, TYPES
 
-    brake = FORKLIFT if stage == "all" else STAGES[stage]
+    brake = FORKLIFT if stage == "all" else TYPES[stage]
     run_command(brake, "forklift", str(file), sweep, result, outputs, stage=stage)

@@ -176,7 +176,7 @@ class LoadInput(Section):
         return {name: value for name, value in self if value is not None}
 
 
-class BrakeInput(Section):
+class DrumBrakeInput(Section):
     """[brake]: how the shoes stand to the drum."""
 
     assembly: Annotated[
@@ -198,7 +198,7 @@ class BrakeInput(Section):
 class DrumInput(CoreSection):
     """A drum brake: the tables [brake], [shoe], [load] and, where it differs, [second_shoe]."""
 
-    brake: BrakeInput
+    brake: DrumBrakeInput
     shoe: ShoeInput
     second_shoe: SecondShoeInput | None = None
     load: LoadInput

@@ -3,36 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from os import PathLike
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from beamdyn.common.results import Result
-from brakes.config.wording import in_range, of_file
-from brakes.forklift import (
-    DuoServo,
-    InternalForces,
-    Kinematics,
-    Levers,
-    ShoeMotion,
-    Stop,
-    Truck,
-    follow,
-    internal_forces,
-    stop,
-)
+from brakes.config.wording import of_file
+from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
 from brakes.forklift.vehicle import STANDARD_GRAVITY
 
 __all__ = [
     "STAGES",
-    "ForkliftAnswer",
     "ForkliftInput",
     "forklift_from_dict",
     "load_forklift",
@@ -41,7 +26,6 @@ __all__ = [
 
 StageName = Literal["vehicle", "kinematics", "forces"]
 STAGES: tuple[StageName, ...] = ("vehicle", "kinematics", "forces")
-Model = Literal["corrected", "as_printed"]
 
 
 def load_forklift(path: str | PathLike[str]) -> ForkliftInput:
@@ -55,7 +39,7 @@ def load_forklift(path: str | PathLike[str]) -> ForkliftInput:
     Returns
     -------
     ForkliftInput
-        Its ``solve()`` is the answer.
+        What the file describes; `brakes.answers.forklift.solve_stages` solves it.
 
     Raises
     ------
@@ -121,7 +105,7 @@ class TruckInput(CoreSection):
             )
 
 
-class StopInput(Section):
+class StopInput(CoreSection):
     """[stop]: the truck reverses down a slope and brakes with locked front wheels."""
 
     slope: Annotated[
@@ -134,50 +118,16 @@ class StopInput(Section):
     rise_time: Annotated[
         float, Quantity("s", symbol="t2", meaning="time in which the brake force rises", least=0)
     ]
-    model: Annotated[
-        Model, Field(description="corrected mechanics, or the paper's as_printed, which errs")
-    ] = "corrected"
-    distance: Annotated[
-        Literal["exact", "printed"] | None,
-        Field(description="formula of the distance; if not given, that of the model"),
-    ] = None
-    slope_factor: (
-        Annotated[
-            float,
-            Quantity(
-                symbol="k",
-                meaning="factor on the slope's pull; if not given, 1, and as printed 0.97 for a reason "
-                "that is not known",
-                above=0,
-            ),
-        ]
-        | None
-    ) = None
     gravity: Annotated[float, Quantity("m/s2", symbol="g", meaning="gravity", above=0)] = STANDARD_GRAVITY
 
-    def solve(self, truck: Truck, model: Model | None = None) -> Stop:
-        """The stop of a truck, by this model or another one."""
-        chosen = model or self.model
-        default = ("exact", 1.0) if chosen == "corrected" else ("printed", PRINTED_FACTOR)
-        with of_file({"factor": "slope_factor"}):
-            return stop(
-                truck,
-                slope=self.slope,
-                speed=self.speed,
-                friction=self.friction,
-                reaction_time=self.reaction_time,
-                rise_time=self.rise_time,
-                model=chosen,
-                distance=self.distance or default[0],
-                factor=default[1] if self.slope_factor is None else self.slope_factor,
-                g=self.gravity,
-            )
+    @cached_property
+    def core(self) -> StopConditions:
+        """The conditions of the stop."""
+        with of_file({}):
+            return StopConditions(**dict(self))
 
 
-PRINTED_FACTOR = 0.97  # on the slope's pull, in the paper's tables
-
-
-class BrakeInput(CoreSection):
+class DuoServoInput(CoreSection):
     """[brake]: geometry of a duo-servo brake, the right side of it at rest; the left side mirrors it."""
 
     drum_radius: Annotated[float, Quantity("m", symbol="r", meaning="inner radius of the drum", above=0)]
@@ -236,7 +186,7 @@ class BrakeInput(CoreSection):
     def motion(self) -> ShoeMotion:
         """Where the shoes go."""
         with of_file(_PINS):
-            return self.core.motion(self.clearance)
+            return self.core.move_shoes(self.clearance)
 
 
 class LeversInput(CoreSection):
@@ -295,83 +245,12 @@ class ForcesInput(Section):
     ) = None
 
 
-_NEEDS = {
-    "vehicle": "[truck] and [stop]",
-    "kinematics": "[brake]",
-    "forces": "[forces], and [brake] or [levers]",
-}
-
-
-@dataclass(frozen=True)
-class ForkliftAnswer(Result):
-    """What the stages that were asked for found.
-
-    Attributes
-    ----------
-    stop : Stop, optional
-        The vehicle.
-    motion : ShoeMotion, optional
-        The kinematics.
-    forces : InternalForces, optional
-        The forces in one brake.
-    torque_from : str
-        Where the torque comes from: "the file", "the stop" or "the lining's friction".
-    kinematics : Kinematics, optional
-        The shoes' motion position by position, if `followed`.
-    """
-
-    stop: Stop | None
-    motion: ShoeMotion | None
-    forces: InternalForces | None
-    torque_from: str = ""
-    kinematics: Kinematics | None = None
-
-    def followed(self, positions: int = 21) -> ForkliftAnswer:
-        """The same with the shoes' motion position by position, if there is any; of one case."""
-        if self.motion is None:
-            return self
-        found = follow(self.motion.geometry, float(self.motion.clearance), positions)
-        return replace(self, kinematics=found)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
-        return super().to_dict() | {"kinematics": self.kinematics and self.kinematics.to_dict()}
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What to look at."""
-        interference = () if self.motion is None else self.motion.interference
-        return (*interference, *(() if self.forces is None else self.forces.warnings))
-
-    @property
-    def refusals(self) -> tuple[str, ...]:
-        """Why there is no stop, or no equilibrium: one sentence each, none if all is well."""
-        found = []
-        if self.stop is not None and not np.all(self.stop.stops):
-            found.append(self.stop.message)
-        if self.forces is not None and np.any(self.forces.status != "equilibrium"):
-            found.append(self.forces.message)
-        return tuple(found)
-
-
-@dataclass(frozen=True)
-class Models(Result):
-    """The answers of both models, side by side."""
-
-    corrected: ForkliftAnswer
-    as_printed: ForkliftAnswer
-
-    def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
-        return {"corrected": self.corrected.to_dict(), "as_printed": self.as_printed.to_dict()}
-
-
 class ForkliftInput(Section):
     """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted."""
 
     truck: TruckInput | None = None
     stop: StopInput | None = None
-    brake: BrakeInput | None = None
+    brake: DuoServoInput | None = None
     levers: LeversInput | None = None
     forces: ForcesInput | None = None
 
@@ -400,68 +279,3 @@ class ForkliftInput(Section):
             "forces": self.forces is not None and (self.brake is not None or self.levers is not None),
         }
         return tuple(name for name in STAGES if there[name])
-
-    def solve(
-        self, stages: tuple[StageName, ...] | None = None, model: Model | None = None
-    ) -> ForkliftAnswer:
-        """What the stages find; those before them are computed where they are needed.
-
-        Parameters
-        ----------
-        stages : tuple of str, optional
-            Of "vehicle", "kinematics", "forces"; those whose tables are there if not given.
-        model : {"corrected", "as_printed"}, optional
-            In place of that of the file.
-
-        Raises
-        ------
-        ValueError
-            If a table is missing that a stage needs, or as for the functions of `brakes.forklift`.
-        """
-        wanted = self.stages if stages is None else stages
-        self._require(wanted)
-        with in_range():
-            return self._solve(wanted, model)
-
-    def _solve(self, wanted: tuple[StageName, ...], model: Model | None) -> ForkliftAnswer:
-        stopped = self._stopped(model) if "vehicle" in wanted or self._torque_of_stop else None
-        motion = None if self.brake is None or wanted == ("vehicle",) else self.brake.motion
-        forces = self._forces(stopped, motion) if "forces" in wanted else None
-        shown = stopped if "vehicle" in wanted else None
-        return ForkliftAnswer(
-            shown, motion if "kinematics" in wanted else None, forces, self._source if forces else ""
-        )
-
-    def _require(self, stages: tuple[StageName, ...]) -> None:
-        for name in stages:
-            if name not in self.stages:
-                raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
-
-    @property
-    def _torque_of_stop(self) -> bool:
-        return "vehicle" in self.stages and self.forces is not None and self.forces.torque is None
-
-    @property
-    def _source(self) -> str:
-        if self.forces is not None and self.forces.torque is not None:
-            return "the file"
-        return "the stop" if self._torque_of_stop else "the lining's friction"
-
-    def _stopped(self, model: Model | None) -> Stop:
-        assert self.truck is not None and self.stop is not None
-        return self.stop.solve(self.truck.core, model)
-
-    def _forces(self, stopped: Stop | None, motion: ShoeMotion | None) -> InternalForces:
-        assert self.forces is not None
-        levers = motion.levers if motion is not None else self.levers and self.levers.core
-        torque = self.forces.torque
-        if torque is None and stopped is not None:
-            torque = stopped.torque_per_brake
-        assert levers is not None
-        with of_file({"friction = ": "lining_friction = "}):
-            return internal_forces(
-                levers,
-                piston_force=self.forces.piston_force,
-                torque=torque,
-                friction=self.forces.lining_friction,
-            )

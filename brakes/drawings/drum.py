@@ -10,7 +10,7 @@ from matplotlib.patches import Arc, Circle
 from beamdyn.common.curves import grid
 from beamdyn.common.pictures import COLOURS
 from brakes.arrays import Numbers
-from brakes.drawings.arrows import force, frame, scale_bar, sized
+from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 
 _P, _N, _T, _R = COLOURS[6], COLOURS[0], COLOURS[1], COLOURS[2]
@@ -46,19 +46,21 @@ def free_body(ax: Axes, found: BrakeResult) -> Axes:
     r = float(found.shoes[0].shoe.drum_radius)
     largest = max(float(np.hypot(*v)) for s in found.shoes for v in (s.normal, s.tangential, s.pin_reaction))
     largest = max(largest, float(found.force))
-    scale = 0.75 * r / largest
+    arrows = ForceArrows(ax, 0.75 * r / largest)
     ax.add_patch(Circle((0, 0), r, fill=False, color="0.55", linewidth=1.4))
     ax.plot(0, 0, "+", color="0.4", markersize=9)
     for i, shoe in enumerate(found.shoes):
-        _shoe(ax, shoe, _placed(found, i), scale, f"{i + 1}")
+        _draw_shoe(arrows, shoe, _placement(found, i), f"{i + 1}")
     _rotation(ax, r, found.reverse)
     ax.update_datalim([(-1.05 * r, -1.05 * r), (1.05 * r, 1.05 * r)])
-    frame(ax, f"Forces on the shoes at {float(found.force):.4g} N; torque {float(found.torque):.5g} N m")
-    scale_bar(ax, scale, largest)
+    finish_drawing(
+        ax, f"Forces on the shoes at {float(found.force):.4g} N; torque {float(found.torque):.5g} N m"
+    )
+    arrows.add_scale_bar(largest)
     return ax
 
 
-def _placed(found: BrakeResult, i: int) -> np.ndarray:
+def _placement(found: BrakeResult, i: int) -> np.ndarray:
     """Matrix from a shoe's own axes to the picture: the first on the right, the second on the left."""
     if i == 0:
         return np.eye(2)
@@ -66,8 +68,8 @@ def _placed(found: BrakeResult, i: int) -> np.ndarray:
     return np.diag((-1.0, -1.0)) if same else np.diag((-1.0, 1.0))
 
 
-def _shoe(ax: Axes, s: ShoeResult, placed: np.ndarray, scale: float, name: str) -> None:
-    shoe = s.shoe
+def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str) -> None:
+    ax, shoe = arrows.ax, s.shoe
     a1, a2 = shoe.lining
     alpha = np.linspace(a1, a2, 80)
     rim = float(shoe.drum_radius) * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1) @ placed
@@ -80,11 +82,11 @@ def _shoe(ax: Axes, s: ShoeResult, placed: np.ndarray, scale: float, name: str) 
     centre = -float(s.effective_arm) * s.normal / np.hypot(*s.normal) @ placed
     ax.plot(*np.vstack([(0, 0), centre]).T, color=_N, linewidth=0.9, linestyle=":", zorder=2)
     P = np.array([float(s.force), 0.0]) @ placed
-    force(ax, lever, P, scale, f"$P_{name}$", _P, ends_here=True)
+    arrows.draw(lever, P, f"$P_{name}$", _P, ends_here=True)
     acting = (centre, s.normal, "N", _N), (centre, s.tangential, "T", _T), (pin, s.pin_reaction, "R", _R)
     for at, vector, symbol, colour in acting:
         outward = ("left" if centre[0] > 0 else "right") if symbol == "T" else ""
-        force(ax, at, vector @ placed, scale, sized(f"{symbol}_{name}", vector), colour, ha=outward)
+        arrows.draw(at, vector @ placed, force_label(f"{symbol}_{name}", vector), colour, ha=outward)
     word = "leading" if s.leading else "trailing"
     middle = float(shoe.drum_radius) * np.array([0.42, 0.36]) @ placed
     text = f"{name}: {word}\n{float(s.torque):.4g} N m\nC* {float(s.c_star):.3g}"

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from beamdyn.common.pictures import COLOURS
-from brakes.drawings.arrows import force, frame, scale_bar, sized
+from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
 from brakes.forklift import DuoServo, InternalForces, Kinematics, ShoeMotion
 
 _SIDES = {"right": COLOURS[0], "left": COLOURS[1]}
@@ -27,7 +27,7 @@ def positions(figure: Any, followed: Kinematics) -> None:
         f"piston at its bottom, drum turned {np.degrees(followed.drum.turn[-1]):.3g} deg",
     )
     for ax, progress, title in zip(panels, (0.0, 1.0, 2.0), titles, strict=True):
-        duo_servo(ax, followed.geometry, followed.geometry.motion(followed.clearance), progress)
+        duo_servo(ax, followed.geometry, followed.geometry.move_shoes(followed.clearance), progress)
         ax.set_title(title, fontsize=10)
 
 
@@ -58,7 +58,7 @@ def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float)
     _adjuster(ax, geometry, motion, progress)
     _key(ax)
     ax.update_datalim([(-1.04 * r, -1.04 * r), (1.04 * r, 1.04 * r)])
-    frame(ax, "")
+    finish_drawing(ax, "")
     return ax
 
 
@@ -151,14 +151,15 @@ def free_bodies(figure: Any, forces: InternalForces, followed: Kinematics | None
     largest = float(max(forces.A, forces.P_L, forces.C))
     scale = 0.9 * float(forces.levers.drum_radius) / largest
     for ax, side, title in ((left, "left", "trailing shoe"), (right, "right", "leading shoe")):
-        _free_body(ax, forces, followed, side, scale)
+        arrows = ForceArrows(ax, scale)
+        _draw_free_body(arrows, forces, followed, side)
         share = forces.leading_share if side == "right" else forces.trailing_share
-        frame(ax, f"{title}: {100 * float(share):.3g} % of the torque")
-        scale_bar(ax, scale, largest)
+        finish_drawing(ax, f"{title}: {100 * float(share):.3g} % of the torque")
+        arrows.add_scale_bar(largest)
 
 
-def _free_body(ax: Axes, f: InternalForces, followed: Kinematics | None, side: str, scale: float) -> None:
-    r = float(f.levers.drum_radius)
+def _draw_free_body(arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str) -> None:
+    ax, r = arrows.ax, float(f.levers.drum_radius)
     ax.add_patch(Circle((0, 0), r, fill=False, color="0.7", linewidth=1.2, linestyle="--"))
     ax.plot(0, 0, "+", color="0.5", markersize=8)
     outline, tip, pin = _outline(f, followed, side)
@@ -173,10 +174,10 @@ def _free_body(ax: Axes, f: InternalForces, followed: Kinematics | None, side: s
     )
     Q = sense * float(f.Q) * np.array([np.cos(gamma), np.sin(gamma)])
     a, b, ab = ("A", "B", "P_L") if side == "right" else ("C", "D", "P_T")
-    force(ax, contact, A, scale, sized(a, A), _NORMAL)
-    force(ax, contact, B, scale, sized(b, B), _RUB, ha="left" if side == "right" else "right")
-    force(ax, tip, P, scale, sized(ab, P), _PUSH, ends_here=True)
-    force(ax, pin, Q, scale, sized("Q", Q), COLOURS[2], ends_here=True)
+    arrows.draw(contact, A, force_label(a, A), _NORMAL)
+    arrows.draw(contact, B, force_label(b, B), _RUB, ha="left" if side == "right" else "right")
+    arrows.draw(tip, P, force_label(ab, P), _PUSH, ends_here=True)
+    arrows.draw(pin, Q, force_label("Q", Q), COLOURS[2], ends_here=True)
     ax.update_datalim([(-1.02 * r, -1.02 * r), (1.02 * r, 1.02 * r)])
 
 
@@ -185,7 +186,7 @@ def _outline(
 ) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
     """Points of the shoe, where the piston pushes, and where the adjuster does."""
     if followed is not None:
-        geometry, motion = followed.geometry, followed.geometry.motion(followed.clearance)
+        geometry, motion = followed.geometry, followed.geometry.move_shoes(followed.clearance)
         place = (geometry, motion, 2.0, side)
         tip, pin = moved(np.array([geometry.tip, geometry.adjuster], dtype=float), *place)
         rim = moved(0.97 * lining(geometry, motion), *place)

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Polygon
 from beamdyn.common.curves import curves
 from beamdyn.common.pictures import COLOURS
 from brakes.arrays import Numbers
-from brakes.drawings.arrows import force, frame, scale_bar, sized
+from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop
 
@@ -40,33 +40,36 @@ def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: Intern
 
 def truck(ax: Axes, stop: Stop) -> Axes:
     """The truck on its slope with weight, axle loads and tyre friction, arrows to one scale; of one case."""
-    t, beta = stop.truck, float(stop.slope)
+    t, beta = stop.truck, float(stop.conditions.slope)
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array(
         [[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]]
     )  # row vectors; downhill to +x
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
-    scale = 1.1 * L / weight
+    friction = float(stop.conditions.friction) * float(stop.front_load)
+    arrows = ForceArrows(ax, 1.1 * L / weight)
     _chassis(ax, stop, turn)
     cg = np.array([float(t.cg[0]), float(t.cg[1]) + r1])
     places = {
         "M g": (cg, np.array([np.sin(beta), -np.cos(beta)]) * weight, _WEIGHT),
         "N_A": (np.zeros(2), np.array([0.0, float(stop.front_load)]), _NORMAL),
         "N_B": (np.array([L, 0.0]), np.array([0.0, float(stop.rear_load)]), _NORMAL),
-        "R_A": (np.zeros(2), np.array([-float(stop.friction) * float(stop.front_load), 0.0]), _FRICTION),
+        "R_A": (np.zeros(2), np.array([-friction, 0.0]), _FRICTION),
     }
     aside = {"N_A": "right", "N_B": "left", "M g": "left" if float(t.cg[0]) < L / 2 else "right"}
     for name, (at, vector, colour) in places.items():
         pushes, ha = name.startswith("N"), aside.get(name, "")
-        force(ax, at @ turn, vector @ turn, scale, sized(name, vector), colour, ends_here=pushes, ha=ha)
+        label = force_label(name, vector)
+        arrows.draw(at @ turn, vector @ turn, label, colour, ends_here=pushes, ha=ha)
     ax.plot(*(cg @ turn), "o", color=_WEIGHT, markersize=7, zorder=7)
-    frame(ax, _title(stop))
-    scale_bar(ax, scale, weight, (0.78, 0.88))
+    finish_drawing(ax, _title(stop))
+    arrows.add_scale_bar(weight, (0.78, 0.88))
     return ax
 
 
 def _title(stop: Stop) -> str:
-    where = f"{np.degrees(float(stop.slope)):.3g} deg, {3.6 * float(stop.speed):.3g} km/h"
+    slope, speed = np.degrees(float(stop.conditions.slope)), 3.6 * float(stop.conditions.speed)
+    where = f"{slope:.3g} deg, {speed:.3g} km/h"
     how = f"stops within {float(stop.distance):.4g} m" if stop.stops else str(stop.status)
     return f"{where}: {how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
 

@@ -1,4 +1,4 @@
-"""Drum brakes of several shoes: simplex (leading and trailing), duplex (all leading), each shoe its own."""
+"""Drum brakes of several shoes: simplex (one leads, one trails), duplex (all lead), or any other set."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brakes.arrays import Numbers, not_negative, numbers, positive, refuse, together
-from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, only_one, solve
+from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
 
 
 @dataclass(frozen=True)
@@ -42,12 +42,12 @@ class DrumBrake:
 
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
-    """A leading and a trailing shoe; the same shoe twice unless a second is given."""
+    """Assemble a leading and a trailing shoe; the same shoe twice unless a second is given."""
     return DrumBrake((leading, trailing or leading), (True, False))
 
 
 def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
-    """Two shoes that lead forward and trail in reverse; the same shoe twice unless a second is given."""
+    """Assemble two shoes that lead forward and trail in reverse; the same twice unless a second is given."""
     return DrumBrake((first, second or first), (True, True))
 
 
@@ -57,6 +57,10 @@ class BrakeResult(SlidesOrLocks):
 
     Attributes
     ----------
+    brake : DrumBrake
+        The brake.
+    reverse : bool
+        Whether the drum turns backward.
     shoes : tuple of ShoeResult
         The shoes, in the brake's order.
     force, torque : ndarray
@@ -64,7 +68,7 @@ class BrakeResult(SlidesOrLocks):
     peak_pressure : ndarray
         Largest pressure on any lining [Pa].
     c_star, c_star_slope : ndarray
-        Sum of the shoe factors, torque / (force radius), and its derivative to the friction.
+        Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
         Of the shoe that locks first.
     """
@@ -92,7 +96,7 @@ def brake_torque(
     torque: Numbers | None = None,
     reverse: bool = False,
 ) -> BrakeResult:
-    """Forces in a brake whose shoes are pressed by the same force.
+    """Compute the forces in a brake whose shoes are pressed by the same force.
 
     Parameters
     ----------
@@ -115,31 +119,33 @@ def brake_torque(
     ValueError
         As for `shoe_torque`.
     """
-    name, value = only_one({"force": force, "peak_pressure": peak_pressure, "torque": torque})
+    name, value = take_only({"force": force, "peak_pressure": peak_pressure, "torque": torque})
     units = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
     value = positive(name, value, units[name])
     mu = not_negative("friction", friction)
     together(friction=mu, **{name: value})
-    unit = _results(brake, mu, 1.0, reverse)
+    at_unit_force = _solve_shoes(brake, mu, 1.0, reverse)
     if name == "torque":
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
-        limit = _least([shoe.locking_friction for shoe in unit])
+        limit = _least([shoe.locking_friction for shoe in at_unit_force])
         bound = "a shoe locks: no torque can be demanded of the brake"
         refuse(mu >= limit, "friction", mu, "", bound, "give a force to see which one, or less friction")
-        value = value / sum(shoe.torque for shoe in unit)
-    elif name == "peak_pressure":  # the shoe with the largest pressure for the force sets it
-        value = value / _largest([shoe.peak_pressure for shoe in unit])
-    return _assembled(brake, reverse, mu, _results(brake, mu, value, reverse))
+        value = value / sum(shoe.torque for shoe in at_unit_force)
+    elif name == "peak_pressure":  # the shoe with the largest pressure at a force limits the force
+        value = value / _largest([shoe.peak_pressure for shoe in at_unit_force])
+    return _assemble_result(brake, reverse, mu, _solve_shoes(brake, mu, value, reverse))
 
 
-def _results(brake: DrumBrake, mu: Numbers, force: Numbers, reverse: bool) -> tuple[ShoeResult, ...]:
+def _solve_shoes(brake: DrumBrake, mu: Numbers, force: Numbers, reverse: bool) -> tuple[ShoeResult, ...]:
     return tuple(
-        solve(shoe, mu, leading is not reverse, "force", force)
+        solve_shoe(shoe, mu, leading is not reverse, "force", force)
         for shoe, leading in zip(brake.shoes, brake.leading, strict=True)
     )
 
 
-def _assembled(brake: DrumBrake, reverse: bool, mu: Numbers, shoes: tuple[ShoeResult, ...]) -> BrakeResult:
+def _assemble_result(
+    brake: DrumBrake, reverse: bool, mu: Numbers, shoes: tuple[ShoeResult, ...]
+) -> BrakeResult:
     limit = _least([shoe.locking_friction for shoe in shoes])
     return BrakeResult(
         brake=brake,
@@ -166,7 +172,7 @@ def _largest(values: list[Numbers]) -> Numbers:
 
 
 def wheel_cylinder_force(bore: Numbers, line_pressure: Numbers) -> Numbers:
-    """Force of a wheel cylinder's piston [N] from its bore [m] and the line pressure [Pa]."""
+    """Compute the force [N] of a wheel cylinder's piston from its bore [m] and the line pressure [Pa]."""
     return np.pi / 4 * positive("bore", bore, "m") ** 2 * not_negative("line_pressure", line_pressure, "Pa")
 
 
@@ -180,7 +186,7 @@ def stop_energy(
     rolling_radius: Numbers | None = None,
     g: float = 9.806,
 ) -> Numbers:
-    """Energy that the brakes take up in a stop [J].
+    """Compute the energy that the brakes absorb in a stop [J].
 
     Parameters
     ----------
@@ -191,7 +197,7 @@ def stop_energy(
     descent : float or ndarray
         Height lost during the stop [m]; negative uphill.
     inertia : float or ndarray
-        Moment of inertia of all that turns with the wheels [kg m2]; needs `rolling_radius` [m].
+        Moment of inertia of the wheels and all that turns with them [kg m2]; needs `rolling_radius`.
     rolling_radius : float or ndarray, optional
         Radius of the wheels [m].
     g : float
@@ -205,7 +211,7 @@ def stop_energy(
     Raises
     ------
     ValueError
-        If a value is out of bounds, the final speed exceeds the first, or the radius is missing.
+        If a value is out of bounds, the final speed is not below the first, or the radius is missing.
     """
     m, v1, v2 = (
         positive("mass", mass, "kg"),
@@ -224,23 +230,23 @@ def stop_energy(
 def temperature_rise(
     energy: Numbers, drum_mass: Numbers, specific_heat: Numbers = 500.0, share: Numbers = 1.0
 ) -> Numbers:
-    """Mean rise of a drum's temperature in one stop [K], no heat lost meanwhile.
+    """Compute the mean temperature rise of a drum in one stop [K], without loss of heat.
 
     Parameters
     ----------
     energy : float or ndarray
         Energy of the stop [J].
     drum_mass : float or ndarray
-        Mass that is heated, of all drums that share the energy [kg].
+        Total mass of the drums that share the energy [kg].
     specific_heat : float or ndarray
-        Of the drum [J/(kg K)]; 500 for cast iron.
+        Specific heat of the drums [J/(kg K)]; 500 for cast iron.
     share : float or ndarray
-        Part of the energy that goes into the drum, from 0 to 1.
+        Fraction of the energy that goes into the drums, from 0 to 1.
 
     Returns
     -------
     float or ndarray
-        Rise [K].
+        Temperature rise [K].
 
     Raises
     ------
@@ -248,6 +254,6 @@ def temperature_rise(
         If a value is out of bounds.
     """
     part = not_negative("share", share)
-    refuse(np.asarray(part) > 1, "share", part, "", "give a part of the energy, from 0 to 1")
+    refuse(np.asarray(part) > 1, "share", part, "", "give a fraction of the energy, from 0 to 1")
     heated = positive("drum_mass", drum_mass, "kg") * positive("specific_heat", specific_heat, "J/(kg K)")
     return not_negative("energy", energy, "J") * part / heated

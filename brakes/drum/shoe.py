@@ -1,9 +1,9 @@
-"""A pivoted long shoe: from actuating force, peak pressure or torque to all forces on it.
+"""Forces on a pivoted long shoe, from its actuating force, its peak pressure or its torque.
 
-The pressure is proportional to the radial displacement, p = p0 sin(alpha - delta). It vanishes on the
-axis of the paper (delta = 0), or on the line from the centre to the pin, as a shoe that turns about
-its pin has it and as textbooks have it (Shigley; delta = atan(b/c), theta = alpha - delta). In axes
-turned by delta the same formulas hold for both.
+The pressure is proportional to the radial displacement of the lining, p = p0 sin(alpha - delta). It vanishes
+either on the -y axis (delta = 0), as the paper assumes, or on the line from the centre to the pin
+(delta = atan(b/c)), as it does for a rigid shoe that turns about its pin and in textbooks (Shigley, whose
+theta is alpha - delta). In axes turned by delta the same formulas hold for both.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from brakes.arrays import (
     together,
 )
 
-_ROUNDING = 1e-9  # [rad] an arc that starts on the pin line may miss it by rounding
+_ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 
 
 @dataclass(frozen=True)
 class Shoe:
-    """A shoe on a fixed pin, inside a drum. Every length and angle may be an array, one value a case.
+    """A shoe on a fixed pin, inside a drum. Every length and angle may be an array, one entry per case.
 
     Parameters
     ----------
@@ -42,13 +42,13 @@ class Shoe:
     lining : tuple
         Angles alpha1 < alpha2 of the lining's ends, from -y towards +x [rad].
     pivot : tuple
-        Pin (b, -c) [m], below the drum's centre; b may have either sign. Beyond the drum's radius (beside
-        the drum) the moment of the friction about the pin may turn round: then the shoes swap roles.
+        Pin (b, -c) [m], below the drum's centre; b may have either sign. With the pin outside the
+        drum's radius the moment of the friction about it may change sign: then the trailing shoe can lock.
     force_arm : float or ndarray
         Height a of the actuating force above the drum's centre [m].
     pressure_zero : {"axis", "pivot"}
-        Line on which the pressure vanishes: the -y axis (the paper's), or that from the centre to the
-        pin (the textbooks').
+        Line on which the pressure vanishes: the -y axis (the paper's assumption), or the line from the
+        centre to the pin (the textbooks').
 
     Raises
     ------
@@ -124,7 +124,7 @@ class Shoe:
 
 @dataclass(frozen=True)
 class _Integrals:
-    """Integrals over the arc, in the axes of the pressure.
+    """Integrals over the arc, in axes turned by delta.
 
     K, S, C are those of sin, sin^2, sin cos; n and d the arms [m] of the normal and, for friction 1,
     of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).
@@ -151,13 +151,13 @@ def _integrals(shoe: Shoe) -> _Integrals:
 
 
 def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
-    """The pin's b and c in the axes of the pressure."""
+    """The pin's b and c [m] in axes turned by delta."""
     far, angle = np.hypot(*shoe.pivot), shoe.pin_angle - shoe.phase
     return far * np.sin(angle), far * np.cos(angle)
 
 
 class SlidesOrLocks(Result):
-    """Base of what slides, or grips by itself at enough friction."""
+    """Base of results of shoes that slide, or lock by themselves if the friction is large enough."""
 
     friction: Numbers
     locking_friction: Numbers
@@ -185,7 +185,7 @@ class SlidesOrLocks(Result):
 
 @dataclass(frozen=True)
 class ShoeResult(SlidesOrLocks):
-    """Forces on a shoe; vectors are in its axes, their components last.
+    """Forces on a shoe; vectors are in its own axes, their components last.
 
     Past self-locking the formulas do not hold: forces, torque and factors are then nan, `locked` is
     true, and `message` says so.
@@ -199,17 +199,17 @@ class ShoeResult(SlidesOrLocks):
     normal, tangential, pin_reaction : ndarray, shape (..., 2)
         Resultants of pressure and friction on the shoe, and the pin's force on it [N].
     effective_arm : ndarray
-        Torque over the size of the friction resultant, rho [m]; never less than the drum's radius.
+        Torque over the size of the friction's resultant, rho [m]; never less than the drum's radius.
     closure : ndarray
-        Moment about the drum's centre left over, relative to P (a + c): rounding only.
+        Residual moment about the drum's centre, relative to P (a + c): rounding only.
     c_star, c_star_slope : ndarray
-        Shoe factor C* = torque / (force radius), and its derivative to the friction.
+        Shoe factor C* = torque / (force radius), and its derivative with respect to the friction.
     locking_friction : ndarray
         Friction at which the shoe locks; inf if it never does.
     margin : ndarray
         1 - friction / locking_friction: 0 at locking, negative past it.
     locked : ndarray of bool
-        Whether the friction is at or past locking.
+        Whether the friction is at or past self-locking.
     """
 
     shoe: Shoe
@@ -230,7 +230,7 @@ class ShoeResult(SlidesOrLocks):
     locked: Numbers
 
     def pressure(self, alpha: Numbers) -> np.ndarray:
-        """Pressure at angles alpha [Pa], 0 off the lining; of one case."""
+        """Pressure [Pa] at angles alpha [rad], 0 off the lining; of one case."""
         alpha = np.asarray(alpha, dtype=float)
         a1, a2 = self.shoe.lining
         on = (alpha >= a1) & (alpha <= a2)
@@ -247,7 +247,7 @@ def shoe_torque(
     torque: Numbers | None = None,
     leading: bool = True,
 ) -> ShoeResult:
-    """All forces on a shoe, from its actuating force, its peak pressure or its torque.
+    """Compute all forces on a shoe from its actuating force, its peak pressure or its torque.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def shoe_torque(
     force, peak_pressure, torque : float or ndarray, optional
         Exactly one of: actuating force P [N], largest pressure on the lining [Pa], torque [N m].
     leading : bool
-        Whether the drum turns towards the pin on this shoe; a drum that turns back swaps them.
+        Whether the drum's surface moves towards the pin on this shoe.
 
     Returns
     -------
@@ -279,16 +279,16 @@ def shoe_torque(
     """
     mu = not_negative("friction", friction)
     given = {"force": force, "peak_pressure": peak_pressure, "torque": torque}
-    name, value = only_one(given)
+    name, value = take_only(given)
     value = positive(name, value, {"force": "N", "peak_pressure": "Pa", "torque": "N m"}[name])
     together(friction=mu, **{name: value}, shoe=_integrals(shoe).n)
     if name == "torque":
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
-    return solve(shoe, mu, leading, name, value)
+    return solve_shoe(shoe, mu, leading, name, value)
 
 
-def solve(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers) -> ShoeResult:
-    """The work of `shoe_torque`, on checked values; a force of nan gives nan."""
+def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers) -> ShoeResult:
+    """Compute the forces as `shoe_torque` does, from checked inputs; a force of nan gives forces of nan."""
     i, s, r = _integrals(shoe), -1.0 if leading else 1.0, shoe.drum_radius
     arm, area = shoe.moment_arm, shoe.face_width * np.asarray(r)
     mu, value, n, d = np.broadcast_arrays(mu, value, i.n, i.d)
@@ -332,7 +332,7 @@ def solve(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers) -> 
 
 
 def _closure(shoe: Shoe, force: np.ndarray, moment: np.ndarray, pin: np.ndarray) -> np.ndarray:
-    """Moments about the centre, which the solution did not use, relative to P (a + c)."""
+    """Sum of the moments about the centre, which the solution does not use, relative to P (a + c)."""
     b, y = shoe.pivot
     left = moment - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
     return np.abs(left) / (np.abs(force) * shoe.moment_arm)
@@ -347,8 +347,8 @@ def _turn(v: np.ndarray, angle: Numbers) -> np.ndarray:
     return _vector(c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1])
 
 
-def only_one(given: dict[str, Any]) -> tuple[str, Any]:
-    """Name and value of the only one of several inputs that is given, or a ValueError."""
+def take_only(given: dict[str, Any]) -> tuple[str, Any]:
+    """Name and value of the one input that is given; a ValueError unless it is exactly one."""
     present = {name: value for name, value in given.items() if value is not None}
     if len(present) != 1:
         got = " and ".join(present) or "none"

@@ -1,15 +1,22 @@
 """A forklift's brakes: how it stops, how its duo-servo shoes move, and the force on every part.
 
-After Yoo et al. 1997; the corrected mechanics is the default, `model="as_printed"` the paper's.
+After Yoo et al. 1997, with the mechanics corrected; `brakes.reproduce` has the paper's own.
 """
 
 from brakes.forklift.duo_servo import BENDIX_12_5, DuoServo, ShoeMotion
-from brakes.forklift.forces import InternalForces, internal_forces
-from brakes.forklift.kinematics import Event, Kinematics, Stage, constraint_rank, follow, stage_1, stage_2
+from brakes.forklift.forces import InternalForces, equilibrium_equations, internal_forces
+from brakes.forklift.kinematics import (
+    Event,
+    Kinematics,
+    Stage,
+    build_seating_mechanism,
+    build_turning_mechanism,
+    constraint_rank,
+    follow_shoes,
+)
 from brakes.forklift.levers import Levers
-from brakes.forklift.newton import NewtonResult, newton_raphson
 from brakes.forklift.procedure import Procedure, brake_procedure
-from brakes.forklift.vehicle import Stop, Truck, stop
+from brakes.forklift.vehicle import Stop, StopConditions, Truck, stop
 
 __all__ = [
     "BENDIX_12_5",
@@ -18,18 +25,18 @@ __all__ = [
     "InternalForces",
     "Kinematics",
     "Levers",
-    "NewtonResult",
     "Procedure",
     "ShoeMotion",
     "Stage",
     "Stop",
+    "StopConditions",
     "Truck",
     "brake_procedure",
+    "build_seating_mechanism",
+    "build_turning_mechanism",
     "constraint_rank",
-    "follow",
+    "equilibrium_equations",
+    "follow_shoes",
     "internal_forces",
-    "newton_raphson",
-    "stage_1",
-    "stage_2",
     "stop",
 ]

@@ -1,12 +1,9 @@
-"""Geometry of a duo-servo brake and where its shoes end, in closed form (Yoo et al. 1997, section 3).
+"""Geometry of a duo-servo brake and the motion of its shoes in closed form (Yoo et al. 1997, section 3).
 
 Axes: x to the right, y up, the drum's centre at the origin; the drum turns counter-clockwise, the right
 shoe leads; the left side mirrors the right one at rest. In stage 1 each shoe turns about its adjuster
 pin until the contact point of its lining reaches the drum. In stage 2 everything turns with the drum by
-psi, until the right piston reaches its bottom. A piston's place is where its face cuts the x axis.
-
-Table 7 gives the clearance in metres, without saying so. The paper prints no coordinates: those of
-`BENDIX_12_5` are a fit that reproduces Tables 5-7 within their rounding.
+psi, until the right piston reaches its bottom. A piston's position is where its face cuts the x axis.
 """
 
 from __future__ import annotations
@@ -22,24 +19,24 @@ from brakes.forklift.levers import Levers
 
 @dataclass(frozen=True)
 class DuoServo:
-    """The right side of a duo-servo brake at rest; any value may be an array, one value a design.
+    """The right side of a duo-servo brake at rest; any value may be an array, one entry per design.
 
     Parameters
     ----------
     drum_radius : float or ndarray
         r [m].
     tip : tuple
-        Pin between shoe and piston (x, y) [m], in the upper right.
+        Pin between shoe and piston, (x, y) [m]: to the right of the centre and above it.
     adjuster : tuple
-        Pin between shoe and adjuster (x, y) [m], in the lower right.
+        Pin between shoe and adjuster, (x, y) [m]: to the right of the centre and below it.
     face_tilt : float or ndarray
-        Tilt of the piston's face [rad]: its normal is (cos, -sin) of it; alpha1 = alpha2.
+        Tilt of the piston's face [rad]: its normal is (cos, -sin) of the tilt; alpha1 = alpha2.
     contact_angle : float or ndarray
-        Where the lining touches, from +x upward [rad]; at rest at the radius r - clearance.
+        Angle of the lining's contact point, from +x upward [rad]; its radius at rest is r - clearance.
     piston_bottom : float or ndarray
-        How far the piston can be pushed in from its place at rest [m].
+        Travel of the piston from rest to its bottom, inward [m].
     piston_stroke : float or ndarray, optional
-        How far it can come out from there [m]; not checked unless given.
+        Largest travel of the piston from rest, outward [m]; not checked unless given.
 
     Raises
     ------
@@ -85,8 +82,8 @@ class DuoServo:
             bound = "it must lie inside the drum (drum_radius)"
             refuse(far >= self.drum_radius, f"distance of {name} from the centre", far, "m", bound)
 
-    def motion(self, clearance: Numbers) -> ShoeMotion:
-        """Where the shoes go.
+    def move_shoes(self, clearance: Numbers) -> ShoeMotion:
+        """Compute the motion of the shoes through both stages.
 
         Parameters
         ----------
@@ -119,10 +116,10 @@ class DuoServo:
         psi = self._drum_turn(*tip)
         bound = "larger than the drum allows: the piston does not reach its bottom"
         refuse(np.isnan(psi), "clearance", c, "m", bound, advice)
-        return self._moved(c, turn, psi, tip)
+        return self._assemble_motion(c, turn, psi, tip)
 
-    def levers(self, clearance: Numbers | None = None) -> Levers:
-        """Lever arms at the end of the shoes' motion.
+    def find_levers(self, clearance: Numbers | None = None) -> Levers:
+        """Find the lever arms at the end of the shoes' motion.
 
         Parameters
         ----------
@@ -137,23 +134,23 @@ class DuoServo:
         Raises
         ------
         ValueError
-            If the clearance is missing, or as for `motion`.
+            If the clearance is missing, or as for `move_shoes`.
         """
         if clearance is None:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
-        return self.motion(clearance).levers
+        return self.move_shoes(clearance).levers
 
-    def piston(self, x: Numbers, y: Numbers) -> Numbers:
-        """Place of a piston whose face passes through a point of the right side [m]."""
+    def piston_position(self, x: Numbers, y: Numbers) -> Numbers:
+        """Position [m] of a piston whose face passes through a point of the right side."""
         return x - y * np.tan(self.face_tilt)
 
     def _seating_turn(self, c: Numbers) -> np.ndarray:
-        """Clockwise turn about the adjuster pin that brings the contact point to the drum; nan: none does."""
+        """Clockwise turn [rad] about the adjuster pin that brings the contact point to the drum, or nan."""
         r, (hx, hy) = self.drum_radius, self.adjuster
         vx, vy = (r - c) * np.cos(self.contact_angle) - hx, (r - c) * np.sin(self.contact_angle) - hy
         along, across = hx * vx + hy * vy, hx * vy - hy * vx
-        wanted = (r**2 - hx**2 - hy**2 - vx**2 - vy**2) / 2  # = along cos(turn) + across sin(turn)
-        return np.arctan2(across, along) - _arccos(wanted / np.hypot(along, across))
+        target = (r**2 - hx**2 - hy**2 - vx**2 - vy**2) / 2  # = along cos(turn) + across sin(turn)
+        return np.arctan2(across, along) - _arccos(target / np.hypot(along, across))
 
     def _after_seating(self, turn: np.ndarray, x: Numbers, y: Numbers) -> tuple[np.ndarray, np.ndarray]:
         hx, hy = self.adjuster
@@ -161,30 +158,30 @@ class DuoServo:
         return hx + dx, hy + dy
 
     def _drum_turn(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Turn psi that pushes the right piston to its bottom; nan: none does."""
-        bottom = self.piston(*self.tip) - self.piston_bottom
+        """Turn psi [rad] that pushes the right piston to its bottom, or nan."""
+        bottom = self.piston_position(*self.tip) - self.piston_bottom
         angle = _arccos(bottom * np.cos(self.face_tilt) / np.hypot(x, y))
         return angle - self.face_tilt - np.arctan2(y, x)
 
-    def _moved(
+    def _assemble_motion(
         self, c: Numbers, turn: np.ndarray, psi: np.ndarray, tip: tuple[np.ndarray, np.ndarray]
     ) -> ShoeMotion:
-        (x, y), rest = tip, self.piston(*self.tip)
+        (x, y), rest = tip, self.piston_position(*self.tip)
         right, left = _turned(x, y, psi), _turned(-x, y, psi)
-        deep, where = self._penetration(c, turn)
+        depth, angle = self._penetration(c, turn)
         return ShoeMotion(
             geometry=self,
             clearance=c,
             seating_turn=turn[()],
             drum_turn=psi[()],
-            seating_travel=(self.piston(x, y) - rest)[()],
-            right_travel=(self.piston(*right) - rest)[()],
-            left_travel=(self.piston(-left[0], left[1]) - rest)[()],
+            seating_travel=(self.piston_position(x, y) - rest)[()],
+            right_travel=(self.piston_position(*right) - rest)[()],
+            left_travel=(self.piston_position(-left[0], left[1]) - rest)[()],
             right_tip=np.stack(right, axis=-1),
             left_tip=np.stack(left, axis=-1),
             tip_gap=(self.drum_radius - np.hypot(x, y))[()],
-            lining_penetration=deep[()],
-            penetration_angle=where[()],
+            lining_penetration=depth[()],
+            penetration_angle=angle[()],
             levers=self._levers(right, left, psi),
         )
 
@@ -204,7 +201,7 @@ class DuoServo:
         )
 
     def _penetration(self, c: Numbers, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """How far a lining concentric at rest, from pin to pin, enters the drum, and where on it."""
+        """Depth [m] by which a lining concentric at rest enters the drum, and the angle there [rad]."""
         ox, oy = self._after_seating(turn, 0.0, 0.0)  # centre of the lining's circle
         ends = np.arctan2(self.adjuster[1], self.adjuster[0]), np.arctan2(self.tip[1], self.tip[0])
         where = np.clip(np.arctan2(oy, ox) + turn, *ends)
@@ -215,10 +212,14 @@ class DuoServo:
 
 @dataclass(frozen=True)
 class ShoeMotion(Result):
-    """Where the shoes go; arrays have one value a case.
+    """Motion of the shoes from rest to the end of stage 2; arrays have one entry per case.
 
     Attributes
     ----------
+    geometry : DuoServo
+        The brake.
+    clearance : ndarray
+        Between lining and drum at rest [m].
     seating_turn : ndarray
         Stage 1: turn of each shoe about its adjuster pin [rad].
     drum_turn : ndarray
@@ -230,10 +231,10 @@ class ShoeMotion(Result):
     right_tip, left_tip : ndarray, shape (..., 2)
         Tip pins at the end [m].
     tip_gap : ndarray
-        From the tips to the drum's radius, least of the motion [m].
+        Smallest gap between the tips and the drum during the motion [m].
     lining_penetration, penetration_angle : ndarray
-        Depth by which a lining concentric at rest, that reaches from pin to pin, enters the drum [m]
-        (negative: a gap), and where on the lining, from +x at rest [rad].
+        Largest depth by which a lining that is concentric at rest and reaches from pin to pin enters the
+        drum [m] (negative: a gap), and its angle on the lining at rest, from +x [rad].
     levers : Levers
         Lever arms and directions at the end.
     """
@@ -254,22 +255,22 @@ class ShoeMotion(Result):
 
     @property
     def interference(self) -> tuple[str, ...]:
-        """What gets in the way, in sentences; the worst of many cases."""
-        found = []
-        deep, where = np.asarray(self.lining_penetration), np.asarray(self.penetration_angle)
-        if (deep > 1e-9).any():
-            k = np.unravel_index(deep.argmax(), deep.shape)
-            found.append(
-                f"the lining enters the drum by {1e3 * deep[k]:.3g} mm near {np.degrees(where[k]):.0f} deg: "
+        """Parts that collide, a sentence each; of many cases the worst."""
+        sentences = []
+        depth, angle = np.asarray(self.lining_penetration), np.asarray(self.penetration_angle)
+        if (depth > 1e-9).any():
+            k = np.unravel_index(depth.argmax(), depth.shape)
+            sentences.append(
+                f"the lining enters the drum by {1e3 * depth[k]:.3g} mm near {np.degrees(angle[k]):.0f} deg: "
                 "it touches there before it does at the contact point"
             )
         stroke = self.geometry.piston_stroke
         if stroke is not None and np.any(self.left_travel > stroke):
-            found.append(
+            sentences.append(
                 f"the left piston comes out {1e3 * np.max(self.left_travel):.4g} mm, "
                 f"past its stroke of {1e3 * np.min(stroke):.4g} mm"
             )
-        return tuple(found)
+        return tuple(sentences)
 
 
 BENDIX_12_5 = DuoServo(
@@ -280,7 +281,7 @@ BENDIX_12_5 = DuoServo(
     contact_angle=float(np.radians(56.5)),
     piston_bottom=0.00153,
 )
-"""Bendix duo-servo, 12.5 in: a fit to the published forces, not a drawing."""
+"""Bendix duo-servo, 12.5 in. The paper prints no coordinates; these are a fit to its Tables 5-7."""
 
 
 def _turned(x: Numbers, y: Numbers, angle: Numbers) -> tuple[np.ndarray, np.ndarray]:

@@ -1,19 +1,20 @@
-"""Internal forces of a duo-servo brake (Yoo et al. 1997, section 4), by an exact reduction.
+"""Internal forces of a duo-servo brake (Yoo et al. 1997, section 4), by exact reduction to one equation.
 
-The moments give B = (P_L a1 - Q b1) / r, D = (Q b2 - P_T a2) / r and B + D = T / r; the forces give
-R_L^2 = A^2 + B^2 = P_L^2 + Q^2 + 2 P_L Q cos(phi1) and R_T^2 = C^2 + D^2 = P_T^2 + Q^2 + 2 P_T Q cos(phi2),
-with phi1 = alpha1 + gamma, phi2 = alpha2 - gamma. Equal ratios A / B = C / D mean B / R_L = D / R_T.
+The moments about the drum's centre give B = (P_L a1 - Q b1) / r, D = (Q b2 - P_T a2) / r and B + D = T / r.
+The forces give the resultants R_L^2 = A^2 + B^2 = P_L^2 + Q^2 + 2 P_L Q cos(phi1) and
+R_T^2 = C^2 + D^2 = P_T^2 + Q^2 + 2 P_T Q cos(phi2), with phi1 = alpha1 + gamma, phi2 = alpha2 - gamma. Equal
+friction, A / B = C / D, means B / R_L = D / R_T.
 
 Given the torque, let u = D r / T be the share of the trailing shoe: Q = (P_T a2 + u T) / b2, and
 
     f(u) = u R_L - (1 - u) R_T = 0,   f(0) = -R_T < 0 < R_L = f(1).
 
-There is exactly one root: the logarithmic derivative of u R_L / ((1 - u) R_T) is positive throughout as
-long as phi1 and phi2 are within 90 degrees. All forces are positive there, provided B < R_L.
+There is exactly one root: for phi1 and phi2 within 90 degrees, u R_L / ((1 - u) R_T) rises with u from 0 to
+infinity. All forces are positive there if B < R_L; otherwise no friction gives this torque.
 
-Given the friction mu = B / A = D / C of the lining, with s = r mu / sqrt(1 + mu^2), the root Q of
-Q b2 - P_T a2 = s R_T and then P_L of P_L a1 - Q b1 = s R_L are those of quadratic equations. They exist
-below self-locking, s < min(a1, b2).
+Given the friction mu = B / A = D / C of the lining, with s = r mu / sqrt(1 + mu^2), Q follows from
+Q b2 - P_T a2 = s R_T, and P_L from P_L a1 - Q b1 = s R_L; both are quadratic equations. They have positive
+roots below self-locking, s < min(a1, b2).
 """
 
 from __future__ import annotations
@@ -26,7 +27,6 @@ import numpy as np
 from beamdyn.common.results import Result
 from brakes.arrays import Numbers, positive, refuse, together
 from brakes.forklift.levers import Levers
-from brakes.forklift.newton import ten_equations
 
 _STEPS = 200
 _ARMS_DIFFER = 1e-9
@@ -34,23 +34,25 @@ _FRICTION_DIFFERS = 0.01
 
 
 class Geometry(Protocol):
-    """What has lever arms at a clearance: a `DuoServo`, or `Levers` (without a clearance)."""
+    """What has lever arms at a clearance: a `DuoServo`, or `Levers`, which take no clearance."""
 
-    def levers(self, clearance: Any = None) -> Levers:
-        """Arms and directions at the end of the shoes' motion."""
+    def find_levers(self, clearance: Any = None) -> Levers:
+        """Find arms and directions at the end of the shoes' motion."""
         ...
 
 
 @dataclass(frozen=True)
 class InternalForces(Result):
-    """Forces in a duo-servo brake; arrays have one value a case, vectors their components last.
+    """Forces in a duo-servo brake; arrays have one entry per case, vectors their components last.
 
     Attributes
     ----------
     A, B, C, D : ndarray
         Sizes of the drum's normal and friction forces on the leading (A, B) and the trailing shoe [N].
+    levers : Levers
+        Arms and directions of the forces.
     Q, P_L : ndarray
-        Force of the adjuster, and of the piston that the leading shoe pushes in [N].
+        Force of the adjuster, and of the piston that the leading shoe pushes back [N].
     torque, piston_force : ndarray
         T of the brake [N m] and P_T on the trailing shoe [N].
     A_vector, B_vector, C_vector, D_vector : ndarray, shape (..., 2)
@@ -58,19 +60,20 @@ class InternalForces(Result):
     bolt_force : ndarray, shape (..., 2)
         Resultant of both pistons on the cylinder, which its bolts carry [N].
     lining_friction : ndarray
-        mu = B / A = D / C. Given the torque, this is a result: the lining must have it.
+        mu = B / A = D / C. Given the torque, it is a result: the friction that the lining must have.
     locking_friction, margin : ndarray
         Friction at which the brake locks, and 1 - lining_friction / locking_friction.
     c_star, c_star_slope : ndarray
-        Brake factor C* = T / (P_T r), and its derivative to the lining's friction.
+        Brake factor C* = T / (P_T r), and its derivative with respect to the lining's friction.
     leading_share, trailing_share : ndarray
-        Parts of the torque, B / (B + D) and D / (B + D).
+        Shares of the shoes in the torque, B / (B + D) and D / (B + D).
     residual : ndarray
-        Largest left-hand side of the paper's ten equations, in the larger of T / r and P_T, and r.
+        Largest of the `equilibrium_equations`, with the larger of T / r and P_T as the unit of force and r
+        as that of length.
     status : str or ndarray of str
         ``"equilibrium"``, ``"locked"`` or ``"no solution"``; the forces are nan for the last two.
     warnings : tuple of str
-        What to look at.
+        Reasons to doubt the result, a sentence each.
     """
 
     levers: Levers
@@ -124,7 +127,7 @@ def internal_forces(
     friction: Numbers | None = None,
     clearance: Numbers | None = None,
 ) -> InternalForces:
-    """Forces on the shoes, from the torque or from the lining's friction.
+    """Compute the forces on the shoes from the torque or from the lining's friction.
 
     Parameters
     ----------
@@ -153,65 +156,67 @@ def internal_forces(
     """
     if torque is None and friction is None:
         raise ValueError("give torque, or friction, or both to compare them")
-    levers = geometry.levers(clearance)
+    levers = geometry.find_levers(clearance)
     P_T = positive("piston_force", piston_force, "N")
     T = None if torque is None else positive("torque", torque, "N m")
     mu = None if friction is None else positive("friction", friction)
     shapes = {"piston_force": P_T, "torque": T, "friction": mu, "levers": levers.phi1 * levers.a1 * levers.b2}
     together(**{name: value for name, value in shapes.items() if value is not None})
     if T is None:
-        return _given_friction(levers, P_T, mu)
+        return _solve_from_friction(levers, P_T, mu)
     if mu is not None:
         bound = "the brake locks: no torque can be demanded of it"
         past = mu >= np.asarray(levers.locking_friction)
         refuse(past, "friction", mu, "", bound, "leave out the torque to see that it locks")
-    return _given_torque(levers, P_T, T, mu)
+    return _solve_from_torque(levers, P_T, T, mu)
 
 
-def _given_torque(levers: Levers, P_T: Numbers, T: Numbers, mu: Numbers | None) -> InternalForces:
+def _solve_from_torque(levers: Levers, P_T: Numbers, T: Numbers, mu: Numbers | None) -> InternalForces:
     shape = np.broadcast_shapes(*(np.shape(x) for x in (P_T, T, *vars(levers).values())))
-    u = _trailing_share(levers, np.broadcast_to(P_T, shape), np.broadcast_to(T, shape))
-    Q, P_L, R_L, R_T = _at_share(levers, P_T, T, u)
+    u = _solve_trailing_share(levers, np.broadcast_to(P_T, shape), np.broadcast_to(T, shape))
+    Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     r = levers.drum_radius
     B, D = T * (1 - u) / r, T * u / r
-    solved = (B < R_L) & (D < R_T)
-    status = np.where(solved, "equilibrium", "no solution")
+    balanced = (B < R_L) & (D < R_T)
+    status = np.where(balanced, "equilibrium", "no solution")
     with np.errstate(invalid="ignore"):
         A, C = np.sqrt((R_L - B) * (R_L + B)), np.sqrt((R_T - D) * (R_T + D))
-    return _result(levers, P_T, np.broadcast_to(T, shape), (A, B, C, D, Q, P_L), status, mu)
+    return _assemble_result(levers, P_T, np.broadcast_to(T, shape), (A, B, C, D, Q, P_L), status, mu)
 
 
-def _at_share(levers: Levers, P_T: Numbers, T: Numbers, u: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Q, P_L, R_L and R_T for a share of the trailing shoe."""
+def _forces_at_share(levers: Levers, P_T: Numbers, T: Numbers, u: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Q, P_L, R_L and R_T [N] at a share u of the trailing shoe in the torque."""
     Q = (P_T * levers.a2 + T * u) / levers.b2
     P_L = (T * (1 - u) + Q * levers.b1) / levers.a1
     return Q, P_L, _resultant(P_L, Q, levers.phi1), _resultant(P_T, Q, levers.phi2)
 
 
 def _resultant(P: Numbers, Q: Numbers, phi: Numbers) -> np.ndarray:
-    """Size of the sum of two forces at an angle phi."""
+    """Size [N] of the sum of two forces at an angle phi [rad]."""
     return np.hypot(P + Q * np.cos(phi), Q * np.sin(phi))
 
 
-def _trailing_share(levers: Levers, P_T: np.ndarray, T: np.ndarray) -> np.ndarray:
-    """Root u of f by Newton's method, by bisection where that leaves the bracket."""
+def _solve_trailing_share(levers: Levers, P_T: np.ndarray, T: np.ndarray) -> np.ndarray:
+    """Solve f(u) = 0 by Newton's method, with bisection where that leaves the bracket."""
     low, high = np.zeros(T.shape), np.ones(T.shape)
     u = np.full(T.shape, 0.4)
     for _ in range(_STEPS):
-        f, slope = _f(levers, P_T, T, u)
+        f, slope = _share_equation(levers, P_T, T, u)
         low, high = np.where(f < 0, u, low), np.where(f < 0, high, u)
         with np.errstate(divide="ignore", invalid="ignore"):
             new = u - f / slope
         new = np.where((new > low) & (new < high), new, (low + high) / 2)
-        moved, u = np.abs(new - u), new
-        if (moved <= 4e-16 * u).all():
+        change, u = np.abs(new - u), new
+        if (change <= 4e-16 * u).all():
             break
     return u
 
 
-def _f(levers: Levers, P_T: np.ndarray, T: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """F and its derivative."""
-    Q, P_L, R_L, R_T = _at_share(levers, P_T, T, u)
+def _share_equation(
+    levers: Levers, P_T: np.ndarray, T: np.ndarray, u: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """f(u) of the module's docstring and its derivative [N]."""
+    Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     dQ = T / levers.b2
     dP = (dQ * levers.b1 - T) / levers.a1
     dR_L = (P_L * dP + Q * dQ + (P_L * dQ + Q * dP) * np.cos(levers.phi1)) / R_L
@@ -219,40 +224,41 @@ def _f(levers: Levers, P_T: np.ndarray, T: np.ndarray, u: np.ndarray) -> tuple[n
     return u * R_L - (1 - u) * R_T, R_L + u * dR_L + R_T - (1 - u) * dR_T
 
 
-def _given_friction(levers: Levers, P_T: Numbers, mu: Numbers) -> InternalForces:
+def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers) -> InternalForces:
     r, mu = levers.drum_radius, np.asarray(mu)
     sigma = mu / np.hypot(1.0, mu)
     locked = mu >= levers.locking_friction
     s = np.where(locked, np.nan, r * sigma)
-    Q = _next_force(P_T, levers.a2, levers.b2, levers.phi2, s)
-    P_L = _next_force(Q, levers.b1, levers.a1, levers.phi1, s)
+    Q = _force_across_shoe(P_T, levers.a2, levers.b2, levers.phi2, s)
+    P_L = _force_across_shoe(Q, levers.b1, levers.a1, levers.phi1, s)
     R_L, R_T = _resultant(P_L, Q, levers.phi1), _resultant(P_T, Q, levers.phi2)
     cosine = 1 / np.hypot(1.0, mu)
     forces = (cosine * R_L, sigma * R_L, cosine * R_T, sigma * R_T, Q, P_L)
     status = np.broadcast_to(np.where(locked, "locked", "equilibrium"), np.shape(R_L))
-    return _result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None)
+    return _assemble_result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None)
 
 
-def _next_force(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numbers) -> np.ndarray:
-    """X of X b - P a = s |P + X|, the forces at an angle phi: the larger root of the squared equation."""
+def _force_across_shoe(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numbers) -> np.ndarray:
+    """Force X [N] at a shoe's other end from X b - P a = s |P + X|; phi is the angle between P and X."""
     half = a * b + s**2 * np.cos(phi)
     root = s * np.sqrt(a**2 + b**2 + 2 * a * b * np.cos(phi) - (s * np.sin(phi)) ** 2)
     return P * (half + root) / (b**2 - s**2)
 
 
-def _result(
+def _assemble_result(
     levers: Levers, P_T: Numbers, T: np.ndarray, forces: tuple, status: np.ndarray, mu: Numbers | None
 ) -> InternalForces:
     valid = status == "equilibrium"
     A, B, C, D, Q, P_L = (np.where(valid, force, np.nan) for force in forces)
-    P, Q_on = _toward(levers.alpha1, -1, P_L), _toward(levers.gamma, 1, Q)
-    P_trailing = -_toward(levers.alpha2, 1, P_T * np.ones(T.shape))
+    P, Q_on = _vector(levers.alpha1, -1, P_L), _vector(levers.gamma, 1, Q)
+    P_trailing = -_vector(levers.alpha2, 1, P_T * np.ones(T.shape))
     A_vector, B_vector = _split(-(P + Q_on), A, B)
     C_vector, D_vector = _split(-(P_trailing - Q_on), C, D)
     unknowns = np.concatenate([A_vector, B_vector, C_vector, D_vector], axis=-1)
     x = np.concatenate([np.moveaxis(unknowns, -1, 0), [Q, P_L]])
     unit = np.fmax(T / levers.drum_radius, P_T)
-    residual = np.max(np.abs(ten_equations(levers, T, P_T, x, unit)), axis=0)
+    scaled = equilibrium_equations(levers.in_radii, T / unit / levers.drum_radius, P_T / unit, x / unit)
+    residual = np.max(np.abs(scaled), axis=0)
     friction, limit = B / A, levers.locking_friction
     return InternalForces(
         levers=levers,
@@ -273,7 +279,7 @@ def _result(
         locking_friction=limit,
         margin=(1 - friction / limit)[()],
         c_star=(np.where(valid, T, np.nan) / (P_T * levers.drum_radius))[()],
-        c_star_slope=_slope(levers, P_T, friction, P_L, Q)[()],
+        c_star_slope=_c_star_slope(levers, P_T, friction, P_L, Q)[()],
         leading_share=(B / (B + D))[()],
         trailing_share=(D / (B + D))[()],
         residual=residual[()],
@@ -282,8 +288,47 @@ def _result(
     )
 
 
-def _slope(levers: Levers, P_T: Numbers, mu: np.ndarray, P_L: np.ndarray, Q: np.ndarray) -> np.ndarray:
-    """Derivative of C* to mu, from those of Q b2 - P_T a2 = s R_T and P_L a1 - Q b1 = s R_L to s."""
+def equilibrium_equations(
+    levers: Levers, torque: Numbers, piston_force: Numbers, unknowns: np.ndarray
+) -> np.ndarray:
+    """Evaluate the left-hand sides of the ten equations of equilibrium, (27)-(36) of the paper.
+
+    Parameters
+    ----------
+    levers : Levers
+        Arms and directions; with `Levers.in_radii` the unit of length is the drum's radius.
+    torque, piston_force : float or ndarray
+        T and P_T, in units consistent with the lengths and the unknowns.
+    unknowns : ndarray, shape (10, ...)
+        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L.
+
+    Returns
+    -------
+    ndarray, shape (10, ...)
+        In the paper's order: forces and moment of the leading, then of the trailing shoe; A normal to B,
+        C to D; equal friction A D = B C; torque of the drum. Zero at a solution.
+    """
+    r, alpha1, alpha2, gamma = levers.drum_radius, levers.alpha1, levers.alpha2, levers.gamma
+    Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L = unknowns
+    A, B, C, D = np.hypot(Ax, Ay), np.hypot(Bx, By), np.hypot(Cx, Cy), np.hypot(Dx, Dy)
+    return np.stack(
+        np.broadcast_arrays(
+            Ax + Bx + P_L * np.cos(alpha1) + Q * np.cos(gamma),
+            Ay + By - P_L * np.sin(alpha1) + Q * np.sin(gamma),
+            B * r + Q * levers.b1 - P_L * levers.a1,
+            Cx + Dx - piston_force * np.cos(alpha2) - Q * np.cos(gamma),
+            Cy + Dy - piston_force * np.sin(alpha2) - Q * np.sin(gamma),
+            D * r + piston_force * levers.a2 - Q * levers.b2,
+            Ax * Bx + Ay * By,
+            Cx * Dx + Cy * Dy,
+            A * D - B * C,
+            (B + D) * r - torque,
+        )
+    )
+
+
+def _c_star_slope(levers: Levers, P_T: Numbers, mu: np.ndarray, P_L: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """dC*/dmu, by differentiating Q b2 - P_T a2 = s R_T and P_L a1 - Q b1 = s R_L with respect to s."""
     r, root = levers.drum_radius, np.hypot(1.0, mu)
     s, cos1, cos2 = r * mu / root, np.cos(levers.phi1), np.cos(levers.phi2)
     R_L, R_T = _resultant(P_L, Q, levers.phi1), _resultant(P_T, Q, levers.phi2)
@@ -293,29 +338,29 @@ def _slope(levers: Levers, P_T: Numbers, mu: np.ndarray, P_L: np.ndarray, Q: np.
     return dT / (P_T * root**3)  # ds/dmu = r / root^3, C* = T / (P_T r)
 
 
-def _toward(angle: Numbers, sign: int, size: np.ndarray) -> np.ndarray:
-    """Vectors of a size at an angle above (+1) or below (-1) the horizontal."""
+def _vector(angle: Numbers, sign: int, size: np.ndarray) -> np.ndarray:
+    """Vectors of a size at an angle [rad] above (sign +1) or below (-1) the horizontal."""
     return np.stack(np.broadcast_arrays(size * np.cos(angle), sign * size * np.sin(angle)), axis=-1)
 
 
 def _split(total: np.ndarray, normal: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Normal and friction vectors of given sizes and sum; the friction along a counter-clockwise drum."""
+    """Split a sum into normal and friction vectors of given sizes, for a drum turning counter-clockwise."""
     across = np.stack([-total[..., 1], total[..., 0]], axis=-1)
     n, f, square = normal[..., None], friction[..., None], np.sum(total**2, axis=-1)[..., None]
     return (n**2 * total + n * f * across) / square, (f**2 * total - n * f * across) / square
 
 
 def _warnings(levers: Levers, friction: np.ndarray, lining: Numbers | None) -> list[str]:
-    found = []
+    sentences = []
     apart = np.max(np.abs(np.asarray(levers.b1) / levers.b2 - 1))
     if apart > _ARMS_DIFFER:
-        found.append(f"b1 and b2 differ by up to {apart:.3g}: Q has one line of action; give b1 = b2")
+        sentences.append(f"b1 and b2 differ by up to {apart:.3g}: Q has one line of action; give b1 = b2")
     if lining is not None:
         ratio = np.asarray(friction / lining)
         worst = ratio.flat[np.nanargmax(np.abs(ratio - 1))] if np.isfinite(ratio).any() else 1.0
         if abs(worst - 1) > _FRICTION_DIFFERS:
-            found.append(
+            sentences.append(
                 f"the torque needs {worst:.3g} times the friction that the lining has: the forces are not "
                 "those of this lining; leave out the torque"
             )
-    return found
+    return sentences

@@ -1,4 +1,4 @@
-"""The two stages of a duo-servo brake as mechanisms, followed position by position.
+"""The two stages of a duo-servo brake's motion as planar mechanisms, followed position by position.
 
 Stage 1, each side: shoe, dummy, piston (9 unknowns). The shoe is pinned at the adjuster (2) and to the
 dummy at its tip (2), the dummy slides on the piston's face (2), the piston in the cylinder (2): one
@@ -7,7 +7,8 @@ degree of freedom, followed until the contact point reaches the drum.
 Stage 2: drum, two shoes, adjuster, two dummies, two pistons (24 unknowns). The drum is pinned (2), the
 right shoe welded to it (3), the left one pinned at the drum's centre with its lining seated (2); the
 adjuster's pins (4), 6 a side as above: 23 independent rows, followed until the right piston reaches its
-bottom. Both shoes welded make a row redundant; pinned at their contact points only they leave mobility 2.
+bottom. Welding both shoes would make a row redundant; pinning them at their contact points alone would
+leave mobility 2.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ from brakes.planar import (
 )
 from brakes.planar.joints import Joint
 
-_RANK = 1e-9  # singular values below this part of the largest count as zero
+_RANK_TOLERANCE = 1e-9  # singular values below this fraction of the largest count as zero
 _ORIGIN = (0.0, 0.0)
 
 Point = tuple[float, float]
@@ -42,14 +43,14 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Stage:
-    """Positions of one stage, S of them.
+    """One stage of the motion, at S positions.
 
     Attributes
     ----------
     mechanism : Mechanism
-        The mechanism, drawn at the start of the stage.
+        The mechanism, described at the start of the stage.
     position : Position
-        Its positions.
+        The S positions of its bodies.
     travel : dict of ndarray, shape (S,)
         Piston travels ``"right"``, ``"left"`` from the start of the stage, outward [m].
     turn : ndarray, shape (S,)
@@ -57,7 +58,7 @@ class Stage:
     rank : ndarray of int, shape (S,)
         Rank of the constraints.
     least_singular_value : ndarray, shape (S,)
-        Smallest singular value of the constraints over the largest: how far from losing rank.
+        Smallest singular value of the constraints over the largest: near 0 a constraint is nearly redundant.
     """
 
     mechanism: Mechanism = field(repr=False)
@@ -69,13 +70,13 @@ class Stage:
 
     @property
     def constraints(self) -> int:
-        """Rows of the constraints; as many are independent where nothing is redundant."""
+        """Number of constraint rows; the rank where none is redundant."""
         return self.mechanism.system.constraints
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happens on the way: its stage, the turn [rad] there, and a sentence."""
+    """An event of the motion: its stage, the turn [rad] at which it happens, and a sentence."""
 
     name: str
     stage: int
@@ -89,14 +90,18 @@ class Kinematics(Result):
 
     Attributes
     ----------
+    geometry : DuoServo
+        The brake.
+    clearance : float
+        Between lining and drum at rest [m].
     right, left : Stage
         Stage 1 of the sides.
     drum : Stage
         Stage 2.
     events : tuple of Event
-        The linings reach the drum; the piston reaches its bottom.
+        Each lining reaches the drum; the right piston reaches its bottom.
     interference : tuple of str
-        What gets in the way.
+        Parts that collide, a sentence each.
     """
 
     geometry: DuoServo
@@ -118,7 +123,7 @@ def _stage_dict(stage: Stage) -> dict[str, Any]:
     return plain(stage) | {"travel": travel}
 
 
-def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
+def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
     """Follow the brake's parts through both stages.
 
     Parameters
@@ -128,7 +133,7 @@ def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinemat
     clearance : float
         Between lining and drum at rest [m].
     positions : int
-        Positions of each stage.
+        Number of positions of each stage.
 
     Returns
     -------
@@ -141,17 +146,20 @@ def follow(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinemat
         If the clearance is not positive, or larger than the drum allows.
     """
     c, n = positive("clearance", clearance, "m"), count("positions", positions, 2)
-    interference = geometry.motion(c).interference
-    right, left = (_stage_1(geometry, c, side, n) for side in ("right", "left"))
-    tips = tuple(_tip(geometry, stage, side) for stage, side in ((right, "right"), (left, "left")))
-    drum = _stage_2(geometry, tips, float(right.travel["right"][-1]), n)
+    interference = geometry.move_shoes(c).interference
+    right, left = (_follow_seating(geometry, c, side, n) for side in ("right", "left"))
+    tips = tuple(_seated_tip(geometry, stage, side) for stage, side in ((right, "right"), (left, "left")))
+    drum = _follow_turning(geometry, tips, float(right.travel["right"][-1]), n)
     return Kinematics(geometry, c, right, left, drum, _events(right, left, drum), interference)
 
 
-def stage_1(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
-    """Mechanism of stage 1 of one side, ``"right"`` or ``"left"``, with loads that measure and drive it."""
+def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
+    """Build the mechanism of stage 1 of one side, ``"right"`` or ``"left"``.
+
+    Its loads have no size: they measure the piston's travel and drive the clearance to zero.
+    """
     drawn = geometry.tip, geometry.adjuster, _contact(geometry, clearance)
-    tip, adjuster, contact = (_on(side, p) for p in drawn)
+    tip, adjuster, contact = (_on_side(side, p) for p in drawn)
     names = f"{side} shoe", f"{side} dummy", f"{side} piston"
     return Mechanism(
         bodies=names,
@@ -160,8 +168,8 @@ def stage_1(geometry: DuoServo, clearance: float, side: str = "right") -> Mechan
     )
 
 
-def stage_2(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
-    """Mechanism of stage 2, drawn with the linings seated."""
+def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
+    """Build the mechanism of stage 2, described with the linings seated and the tips at these points [m]."""
     sides = {"right": right_tip, "left": left_tip}
     parts = [f"{side} {part}" for side in sides for part in ("shoe", "dummy", "piston")]
     joints: list[Joint] = [
@@ -171,16 +179,18 @@ def stage_2(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
         Pin("seated lining", "left shoe", GROUND, _ORIGIN),
     ]
     for side, tip in sides.items():
-        joints.append(Pin(f"{side} adjuster pin", f"{side} shoe", "adjuster", _on(side, geometry.adjuster)))
+        joints.append(
+            Pin(f"{side} adjuster pin", f"{side} shoe", "adjuster", _on_side(side, geometry.adjuster))
+        )
         joints += _piston_side(geometry, side, tip)
     loads = (*(_measure(side, tip) for side, tip in sides.items()), Moment("drum", "drum", 0.0))
     return Mechanism(("drum", "adjuster", *parts), tuple(joints), loads)
 
 
 def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]:
-    """Tip pin, sliding on the tilted face, sliding in the cylinder: 6 rows."""
+    """Joints from shoe to cylinder, 6 rows: tip pin, sliding on the tilted face, sliding in the cylinder."""
     tilt, dummy, piston = geometry.face_tilt, f"{side} dummy", f"{side} piston"
-    face = _on(side, (np.sin(tilt), np.cos(tilt)))
+    face = _on_side(side, (np.sin(tilt), np.cos(tilt)))
     return (
         Pin(f"{side} tip", f"{side} shoe", dummy, tip),
         Slot(f"{side} face", dummy, piston, tip, face),
@@ -191,11 +201,11 @@ def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]
 
 
 def _measure(side: str, tip: Point) -> Force:
-    """Outward travel of a piston."""
-    return Force(side, f"{side} piston", tip, _on(side, (1.0, 0.0)), 0.0)
+    """Load without size that measures the outward travel of a piston."""
+    return Force(side, f"{side} piston", tip, _on_side(side, (1.0, 0.0)), 0.0)
 
 
-def _on(side: str, p: Point) -> Point:
+def _on_side(side: str, p: Point) -> Point:
     return (float(p[0]), float(p[1])) if side == "right" else (-float(p[0]), float(p[1]))
 
 
@@ -204,27 +214,27 @@ def _contact(geometry: DuoServo, c: float) -> Point:
     return radius * np.cos(angle), radius * np.sin(angle)
 
 
-def _stage_1(geometry: DuoServo, c: float, side: str, n: int) -> Stage:
-    mechanism = stage_1(geometry, c, side)
+def _follow_seating(geometry: DuoServo, c: float, side: str, n: int) -> Stage:
+    mechanism = build_seating_mechanism(geometry, c, side)
     path = stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
     turn = path.position.angle(f"{side} shoe") * (-1 if side == "right" else 1)
     return Stage(mechanism, path.position, {side: path.travel[side]}, turn, *constraint_rank(path.position))
 
 
-def _stage_2(geometry: DuoServo, tips: tuple[Point, ...], seated: float, n: int) -> Stage:
-    mechanism = stage_2(geometry, *tips)
+def _follow_turning(geometry: DuoServo, tips: tuple[Point, ...], seated: float, n: int) -> Stage:
+    mechanism = build_turning_mechanism(geometry, *tips)
     path = stroke(mechanism, "right", np.linspace(0.0, -seated - geometry.piston_bottom, n))
     travel = {side: path.travel[side] for side in ("right", "left")}
     return Stage(mechanism, path.position, travel, path.travel["drum"], *constraint_rank(path.position))
 
 
-def _tip(geometry: DuoServo, stage: Stage, side: str) -> Point:
-    x, y = stage.position.point(f"{side} shoe", _on(side, geometry.tip))[-1]
+def _seated_tip(geometry: DuoServo, stage: Stage, side: str) -> Point:
+    x, y = stage.position.point(f"{side} shoe", _on_side(side, geometry.tip))[-1]
     return float(x), float(y)
 
 
 def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
-    """Rank of the constraints, and their smallest singular value over the largest, at each position.
+    """Compute the rank of the constraints at each position, and how near they are to losing it.
 
     Parameters
     ----------
@@ -234,7 +244,7 @@ def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     rank : ndarray of int, shape (S,)
-        Independent rows; fewer than there are where some are redundant.
+        Number of independent rows.
     least : ndarray, shape (S,)
         Smallest singular value over the largest.
     """
@@ -242,11 +252,11 @@ def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
     rows = system.rows(position.batch).gradient[:, : system.constraints]
     values = np.linalg.svd(rows, compute_uv=False)
     relative = values / values[:, :1]
-    return (relative > _RANK).sum(axis=1), relative[:, -1]
+    return (relative > _RANK_TOLERANCE).sum(axis=1), relative[:, -1]
 
 
 def _events(right: Stage, left: Stage, drum: Stage) -> tuple[Event, ...]:
-    seated = tuple(
+    reached = tuple(
         Event(
             "lining reaches the drum",
             1,
@@ -264,4 +274,4 @@ def _events(right: Stage, left: Stage, drum: Stage) -> tuple[Event, ...]:
         f"the right piston reaches its bottom after the drum turns {np.degrees(drum.turn[-1]):.4f} deg; "
         f"the left piston is {1e3 * out:.3f} mm out",
     )
-    return (*seated, bottom)
+    return (*reached, bottom)

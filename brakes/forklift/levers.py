@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from brakes.arrays import Numbers, numbers, positive, refuse, together
 
 @dataclass(frozen=True)
 class Levers:
-    """Arms about the drum's centre and directions, as in the paper's Fig. 6; each may be an array.
+    """Lever arms about the drum's centre and directions of the forces, as in the paper's Fig. 6.
+
+    Every value may be an array, one entry per case.
 
     The drum turns counter-clockwise and the right shoe leads. On it act P_L (cos alpha1, -sin alpha1)
     and Q (cos gamma, sin gamma), on the left one P_T (-cos alpha2, -sin alpha2) and
@@ -26,7 +28,7 @@ class Levers:
     b1, b2 : float or ndarray
         Arms of Q on the leading and the trailing shoe [m]; equal, as Q has one line of action.
     alpha1, alpha2, gamma : float or ndarray
-        Angles of P_L, P_T, Q with the horizontal [rad].
+        Angles of P_L and P_T below, of Q above the horizontal [rad].
 
     Raises
     ------
@@ -54,6 +56,12 @@ class Levers:
             refuse(np.abs(value) > np.pi / 2, name, value, "rad", bound, "angles are in rad")
 
     @property
+    def in_radii(self) -> Levers:
+        """The same with all lengths over the drum's radius."""
+        arms = {name: getattr(self, name) / self.drum_radius for name in ("a1", "a2", "b1", "b2")}
+        return replace(self, drum_radius=1.0, **arms)
+
+    @property
     def phi1(self) -> Numbers:
         """Angle between P_L and Q [rad]."""
         return self.alpha1 + self.gamma
@@ -65,13 +73,13 @@ class Levers:
 
     @property
     def locking_friction(self) -> Numbers:
-        """Friction of the lining at which the brake locks; inf if it never does."""
+        """Friction of the lining at which the brake locks by itself; inf if it never does."""
         sigma = np.minimum(self.a1, self.b2) / self.drum_radius
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(sigma < 1, sigma / np.sqrt((1 - sigma) * (1 + sigma)), np.inf)[()]
 
-    def levers(self, clearance: None = None) -> Levers:
-        """Themselves: they belong to one position of the brake.
+    def find_levers(self, clearance: None = None) -> Levers:
+        """These levers: they belong to one position of the brake.
 
         Raises
         ------

@@ -1,30 +1,23 @@
 """A truck that reverses down a slope and stops with locked front wheels (Yoo et al. 1997, section 2).
 
-Axes: x down the slope, y up from the ground. The loaded front axle A is at x = 0 and locked, the rear
-axle B leads at x = L and rolls; the wheels have no mass. With M = m + mL, a = x_cg, b = L - a,
-gc = g cos(beta), gs = g sin(beta) and e = L + mu h:
+Axes: x down the slope, y up from the ground; the origin is where the front wheels touch it. The front axle A
+is locked; the rear axle B, at x = L, leads and rolls. The wheels have no mass. With the total mass M, the
+centre of gravity at x = a and at the height h = y_cg + r1 above the ground, b = L - a, and the friction mu:
 
-    N_A = M b gc / e,   R_A = mu N_A,   acceleration = gs - R_A / M,   torque of one brake = r1 R_A / 2.
+    N_A = M b g cos(beta) / (L + mu h),   R_A = mu N_A,
+    acceleration = g sin(beta) - R_A / M,   torque of one brake = r1 R_A / 2.
 
-In the corrected model h = y_cg + r1 is the height of the centre of gravity above the ground: the brake
-torque r1 R_A turns the body as well, which (3) leaves out. As printed, h = y_cg - r1: the axle's height is
-subtracted from a height that the data count from the axle, and the torque comes out about 30 % high:
-safe for strength, unsafe for the distance.
+Load transfer: the friction at the ground moves mu h N_A / L from the braked front axle to the leading rear
+axle. Both axle loads stay positive for any friction as long as the centre of gravity is between the axles.
+At rest gravity alone decides: the truck overturns past tan(beta) = b / h.
 
-Errata: (6) has theta' for theta''. (18) is g_c. (19) and (22) ignore the speed lost while the brake
-force rises. (25) has m_B b for m_A b. The text before (21): from 0 to A. (26) is for the axle, Tables 4
-and 5 for one brake.
-
-Which axle unloads: the friction at the ground turns the truck onto its leading, rear axle, which gains
-mu h N_A / L; the braked front axle loses it. As its friction falls with its load, N_A stays positive for
-any friction, and no axle lifts while the truck slides, as long as the centre of gravity is between the
-axles. At rest gravity alone decides: the truck overturns past tan(beta) = b / h.
+The paper's equation (3) and its tables differ; `brakes.reproduce.forklift_as_printed` has them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,7 +27,6 @@ from brakes.arrays import (
     first_where,
     not_negative,
     numbers,
-    one_of,
     pair,
     positive,
     refuse,
@@ -48,7 +40,7 @@ STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
 class Truck:
     """A truck and its load; x from the front axle towards the rear, y up from the front wheels' centre.
 
-    Every value may be an array, one value a design.
+    Every value may be an array, one entry per design.
 
     Parameters
     ----------
@@ -124,28 +116,79 @@ class Truck:
 
 
 @dataclass(frozen=True)
+class StopConditions:
+    """Road, speed and timing of a stop; every value may be an array, one entry per case.
+
+    Parameters
+    ----------
+    slope : float or ndarray
+        Angle beta of the ground [rad], positive downhill in the direction of travel.
+    speed : float or ndarray
+        Speed V before the stop [m/s].
+    friction : float or ndarray
+        Friction mu of the sliding front wheels on the ground.
+    reaction_time : float or ndarray
+        Time t1 until the brakes act [s].
+    rise_time : float or ndarray
+        Time t2 in which the brake force rises linearly [s].
+    gravity : float or ndarray
+        Gravity g [m/s2].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of bounds.
+    """
+
+    slope: Numbers
+    speed: Numbers
+    friction: Numbers
+    reaction_time: Numbers
+    rise_time: Numbers
+    gravity: Numbers = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        cleaned = {
+            "slope": numbers("slope", self.slope, "rad"),
+            "speed": positive("speed", self.speed, "m/s"),
+            "friction": positive("friction", self.friction),
+            "reaction_time": not_negative("reaction_time", self.reaction_time, "s"),
+            "rise_time": not_negative("rise_time", self.rise_time, "s"),
+            "gravity": positive("gravity", self.gravity, "m/s2"),
+        }
+        for name, value in cleaned.items():
+            object.__setattr__(self, name, value)
+        bound = "it must be less than a right angle; give rad"
+        refuse(np.abs(self.slope) >= np.pi / 2, "slope", self.slope, "rad", bound)
+        together(**vars(self))
+
+
+@dataclass(frozen=True)
 class Stop(Result):
-    """A stop, or why there is none; arrays have one value a case.
+    """A stop, or why there is none; arrays have one entry per case.
 
     Attributes
     ----------
+    truck : Truck
+        The truck and its load.
+    conditions : StopConditions
+        Road, speed and timing.
     stops : ndarray of bool
         Whether the truck comes to rest.
     status : str or ndarray of str
-        ``"stops"``, ``"stops in the rise time"``, ``"never stops"``, ``"front wheel lifts"`` or
-        ``"rear wheel lifts"``.
+        ``"stops"``, ``"stops in the rise time"`` or ``"never stops"``.
     acceleration : ndarray
         Down the slope with the full brake force, A [m/s2]; negative when the truck slows down.
     distance, time : ndarray
         From the driver's reaction to rest [m], [s]; inf if it never stops. ISO 6292 counts from the
         first actuation: subtract `reaction_distance`.
     reaction_distance, rise_distance, braking_distance : ndarray
-        Parts of the distance [m].
+        Parts of the distance [m]: before the brakes act, while their force rises, and at full force.
     speed_lost_in_rise : ndarray
-        Speed lost while the force rises [m/s], which (19) and (22) ignore; negative if gained.
+        Speed lost while the brake force rises [m/s]; negative if gained.
     speed_gained_coasting : ndarray
-        Speed that a freely rolling truck would gain in the reaction time [m/s]; the model holds the
-        speed there (engine brake), so that it is not in the distance.
+        Speed that a freely rolling truck would gain in the reaction time [m/s]. The model holds the
+        speed there (engine brake), so that the distance leaves it out.
     torque_per_brake : ndarray
         Torque of one of the two front brakes at full force [N m].
     front_load, rear_load : ndarray
@@ -155,11 +198,7 @@ class Stop(Result):
     """
 
     truck: Truck
-    model: str
-    distance_formula: str
-    slope: Numbers
-    speed: Numbers
-    friction: Numbers
+    conditions: StopConditions
     stops: Any
     status: Any
     acceleration: Numbers
@@ -190,164 +229,105 @@ _SENTENCES = {
     "stops in the rise time": "the truck stops while the brake force is still rising",
     "never stops": "the locked front wheels hold less than the slope pulls: the truck never stops; "
     "less slope, more friction, or another load",
-    "front wheel lifts": "the front wheels lift: nothing brakes, and the truck turns over the rear axle",
-    "rear wheel lifts": "the rear wheels lift: the truck turns over the front axle",
 }
 
 
-def stop(
-    truck: Truck,
-    *,
-    slope: Numbers,
-    speed: Numbers,
-    friction: Numbers,
-    reaction_time: Numbers,
-    rise_time: Numbers,
-    model: Literal["corrected", "as_printed"] = "corrected",
-    distance: Literal["exact", "printed"] = "exact",
-    factor: Numbers = 1.0,
-    g: float = STANDARD_GRAVITY,
-) -> Stop:
+def stop(truck: Truck, conditions: StopConditions) -> Stop:
     """Stop of a truck that reverses down a slope.
 
     Parameters
     ----------
     truck : Truck
         The truck and its load.
-    slope : float or ndarray
-        Angle beta of the ground [rad], positive downhill in the direction of travel.
-    speed : float or ndarray
-        Speed V before [m/s].
-    friction : float or ndarray
-        Friction mu of the sliding front wheels on the ground.
-    reaction_time, rise_time : float or ndarray
-        Times t1 without brake force, and t2 in which it rises linearly [s].
-    model : {"corrected", "as_printed"}
-        Whether the brake torque turns the body as well, or the paper's equation (3).
-    distance : {"exact", "printed"}
-        With the speed lost in the rise time, or the paper's (19)-(24).
-    factor : float or ndarray
-        On the slope's pull in the acceleration only: 0.97 reproduces the paper's tables, for a reason
-        that is not known.
-    g : float
-        Gravity [m/s2].
+    conditions : StopConditions
+        Road, speed and timing.
 
     Returns
     -------
     Stop
-        Complete result; a truck that does not stop is a status, not an error.
+        Complete result, arrays broadcast over all inputs. A truck that does not stop is a status, not an
+        error.
 
     Raises
     ------
     ValueError
-        If a value is out of bounds, or the truck would overturn at rest on the slope.
+        If the truck would overturn at rest on the slope, or the shapes do not broadcast.
     """
-    one_of("model", model, ("corrected", "as_printed"))
-    one_of("distance", distance, ("exact", "printed"))
-    V, mu = positive("speed", speed, "m/s"), positive("friction", friction)
-    t1, t2 = not_negative("reaction_time", reaction_time, "s"), not_negative("rise_time", rise_time, "s")
-    beta, k, g = _checked_slope(truck, slope), positive("factor", factor), positive("g", g, "m/s2")
-    together(
-        truck=_one_case(truck), slope=beta, speed=V, friction=mu, reaction_time=t1, rise_time=t2, factor=k
-    )
-    shape = np.broadcast_shapes(*(np.shape(x) for x in (_one_case(truck), beta, V, mu, t1, t2, k)))
-    V, mu, t1, t2, beta = (np.broadcast_to(x, shape) for x in (V, mu, t1, t2, beta))
-    slide = _slide(truck, beta, mu, model, k, g)
-    parts = (_exact if distance == "exact" else _printed)(V, slide.A, t1, t2)
-    status = np.select([slide.N_A <= 0, slide.N_B <= 0, slide.A >= 0, parts.early], _STATES, default="stops")
-    stops = np.isin(status, ("stops", "stops in the rise time"))
-    s3 = np.where(stops, parts.rest, np.inf)
+    _refuse_overturning(truck, conditions.slope)
+    one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase  # shape of its cases
+    together(truck=one_case, **vars(conditions))
+    beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*vars(conditions).values(), one_case)
+    slide = _slide(truck, beta, mu, g)
+    phases = _brake(V, slide.acceleration, t2)
+    stops = slide.acceleration < 0
+    braking = np.where(stops, phases.braking_distance, np.inf)
+    status = np.select([~stops, phases.in_rise], ["never stops", "stops in the rise time"], default="stops")
     return Stop(
         truck=truck,
-        model=model,
-        distance_formula=distance,
-        slope=beta[()],
-        speed=V[()],
-        friction=mu[()],
+        conditions=conditions,
         stops=stops[()],
         status=status[()],
-        acceleration=slide.A[()],
-        distance=(V * t1 + parts.rise + s3)[()],
-        time=np.where(stops, parts.time, np.inf)[()],
+        acceleration=slide.acceleration[()],
+        distance=(V * t1 + phases.rise_distance + braking)[()],
+        time=np.where(stops, t1 + phases.time, np.inf)[()],
         reaction_distance=(V * t1)[()],
-        rise_distance=parts.rise[()],
-        braking_distance=s3[()],
-        speed_lost_in_rise=parts.lost[()],
+        rise_distance=phases.rise_distance[()],
+        braking_distance=braking[()],
+        speed_lost_in_rise=phases.speed_lost[()],
         speed_gained_coasting=(g * np.sin(beta) * t1)[()],
-        torque_per_brake=(truck.front_wheel_radius * mu * slide.N_A / 2)[()],
-        front_load=slide.N_A[()],
-        rear_load=slide.N_B[()],
-        standing_front_load=slide.standing_A[()],
-        standing_rear_load=slide.standing_B[()],
+        torque_per_brake=(truck.front_wheel_radius * mu * slide.front_load / 2)[()],
+        front_load=slide.front_load[()],
+        rear_load=slide.rear_load[()],
+        standing_front_load=slide.standing_front_load[()],
+        standing_rear_load=slide.standing_rear_load[()],
     )
 
 
-def _one_case(truck: Truck) -> Numbers:
-    """Anything of the shape of the truck's cases."""
-    return truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase
+def _refuse_overturning(truck: Truck, slope: Numbers) -> None:
+    front, rear = truck.overturning_slopes
+    together(slope=slope, truck=front)
+    remedy = "less slope, or a lower centre of gravity"
+    for axle, limit, bad in (("rear", rear, slope >= rear), ("front", front, slope <= front)):
+        past = first_where(bad, limit)
+        bound = f"the truck overturns on it at rest, over the {axle} axle, past {past:.4g} rad"
+        refuse(bad, "slope", slope, "rad", bound, remedy)
 
 
 class _Slide(NamedTuple):
-    """Acceleration and loads of the axles with locked front wheels, and the loads at rest."""
+    """Acceleration and axle loads with locked front wheels, and the axle loads at rest."""
 
-    A: np.ndarray
-    N_A: np.ndarray
-    N_B: np.ndarray
-    standing_A: np.ndarray
-    standing_B: np.ndarray
-
-
-def _slide(truck: Truck, beta: np.ndarray, mu: np.ndarray, model: str, factor: Numbers, g: float) -> _Slide:
-    (a, y), r1, L, M = truck.cg, truck.front_wheel_radius, truck.wheelbase, truck.mass
-    h = y + r1 if model == "corrected" else y - r1
-    b, gc, gs = L - a, g * np.cos(beta), g * np.sin(beta)
-    e = L + mu * h
-    N_A = M * b * gc / e
-    standing = M * (b * gc - (y + r1) * gs) / L
-    return _Slide(factor * gs - mu * N_A / M, N_A, M * gc - N_A, standing, M * gc - standing)
+    acceleration: np.ndarray
+    front_load: np.ndarray
+    rear_load: np.ndarray
+    standing_front_load: np.ndarray
+    standing_rear_load: np.ndarray
 
 
-_STATES = ["front wheel lifts", "rear wheel lifts", "never stops", "stops in the rise time"]
+def _slide(truck: Truck, beta: np.ndarray, mu: np.ndarray, g: np.ndarray) -> _Slide:
+    (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
+    h, b, gc, gs = y + truck.front_wheel_radius, L - a, g * np.cos(beta), g * np.sin(beta)
+    N_A = M * b * gc / (L + mu * h)
+    standing = M * (b * gc - h * gs) / L
+    return _Slide(gs - mu * N_A / M, N_A, M * gc - N_A, standing, M * gc - standing)
 
 
-class _Parts(NamedTuple):
-    """Distances in the rise time and after it, time of the stop, whether it ends in the rise, speed lost."""
+class _Phases(NamedTuple):
+    """Distances while the brake force rises and after that, their time, whether the rise suffices."""
 
-    rise: np.ndarray
-    rest: np.ndarray
+    rise_distance: np.ndarray
+    braking_distance: np.ndarray
     time: np.ndarray
-    early: np.ndarray
-    lost: np.ndarray
+    in_rise: np.ndarray
+    speed_lost: np.ndarray
 
 
-def _checked_slope(truck: Truck, slope: Numbers) -> Numbers:
-    beta = numbers("slope", slope, "rad")
-    refuse(np.abs(beta) >= np.pi / 2, "slope", beta, "rad", "it must be less than a right angle; give rad")
-    front, rear = truck.overturning_slopes
-    together(slope=beta, truck=front)
-    remedy = "less slope, or a lower centre of gravity"
-    for axle, limit, bad in (("rear", rear, beta >= rear), ("front", front, beta <= front)):
-        past = first_where(bad, limit)
-        bound = f"the truck overturns on it at rest, over the {axle} axle, past {past:.4g} rad"
-        refuse(bad, "slope", beta, "rad", bound, remedy)
-    return beta
-
-
-def _exact(V: np.ndarray, A: np.ndarray, t1: np.ndarray, t2: np.ndarray) -> _Parts:
-    """With the speed lost in the rise time."""
+def _brake(V: np.ndarray, A: np.ndarray, t2: np.ndarray) -> _Phases:
+    """Phases of a stop whose deceleration rises linearly to -A within t2; for A >= 0 there is no end."""
     v2 = V + A * t2 / 2
-    early = v2 <= 0
-    brakes = np.where(A < 0, A, -1.0)  # where it does not, the caller puts inf
-    tau = np.sqrt(2 * V * t2 / -brakes)
-    rise = np.where(early, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
-    rest = np.where(early, 0.0, -(v2**2) / (2 * brakes))
-    time = np.where(early, t1 + tau, t1 + t2 / 2 - V / brakes)
-    return _Parts(rise, rest, time, early, np.where(early, V, V - v2))
-
-
-def _printed(V: np.ndarray, A: np.ndarray, t1: np.ndarray, t2: np.ndarray) -> _Parts:
-    """By (19)-(24), which take the full speed V into the third phase."""
-    brakes = np.where(A < 0, A, -1.0)
-    rest = -(V**2) / (2 * brakes)
-    none = np.zeros(np.shape(A))
-    return _Parts(A * t2**2 / 6 + V * t2, rest, t1 + t2 - V / brakes, none.astype(bool), none)
+    in_rise = v2 <= 0
+    slowing = np.where(A < 0, A, -1.0)  # the caller replaces what follows from the -1
+    tau = np.sqrt(2 * V * t2 / -slowing)
+    rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
+    braking = np.where(in_rise, 0.0, -(v2**2) / (2 * slowing))
+    time = np.where(in_rise, tau, t2 / 2 - V / slowing)
+    return _Phases(rise, braking, time, in_rise, np.where(in_rise, V, V - v2))

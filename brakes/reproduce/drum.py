@@ -12,8 +12,9 @@ from beamdyn.common.curves import grid
 from beamdyn.common.edge.tables import table
 from beamdyn.common.pictures import COLOURS
 from brakes.drawings.drum import brake_figure
-from brakes.drum import BrakeResult, Shoe, as_printed, brake_torque, simplex
+from brakes.drum import BrakeResult, Shoe, brake_torque, simplex
 from brakes.published import load
+from brakes.reproduce import drum_as_printed as as_printed
 from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
 
 _SYMBOLS = (

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 from rich.console import Group
 
+from beamdyn.common.edge.input_sweep import Output
+from brakes.answers.tables import list_outputs
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.drawings.forklift import distances, forces_over, truck
-from brakes.forklift import (
-    BENDIX_12_5,
-    InternalForces,
-    as_printed,
-    follow,
-    internal_forces,
-    newton_raphson,
-)
+from brakes.forklift import BENDIX_12_5, InternalForces, Stop, follow_shoes, internal_forces, stop
 from brakes.published import load
+from brakes.reproduce import forklift_as_printed as as_printed
 from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
+from brakes.reproduce.newton import newton_raphson
 
 # Table: inputs of its rows and of its columns as (key, heading, scale), and its quantities.
 _VEHICLE: dict[str, tuple[tuple[str, str], tuple[str, str], tuple[str, ...]]] = {
@@ -45,6 +43,7 @@ _WORDS = {
     "torque": "torque of one brake T",
 }
 _FORCES = ("A", "B", "Q", "P_L")
+_WAYS = ("as printed", "corrected")
 
 
 def title() -> str:
@@ -135,7 +134,7 @@ def _title(paper: dict[str, Any], name: str, what: tuple[str, ...]) -> str:
 
 def summary() -> Iterator[str]:
     """What the tables say to a brake engineer."""
-    printed, right = as_printed.base_stop(corrected=False), as_printed.base_stop()
+    printed, right = _base_stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)
     yield (
@@ -161,7 +160,7 @@ def notes() -> Iterator[str]:
 
 
 def _on_friction(found: InternalForces) -> str:
-    needed = as_printed.base_stop().torque_per_brake
+    needed = stop(*as_printed.base_case()).torque_per_brake
     right = internal_forces(found.levers, torque=needed, piston_force=_base("piston_force"))
     return (
         "The friction of the lining is a result of the paper's equations, which it does not show: "
@@ -174,7 +173,8 @@ def _on_friction(found: InternalForces) -> str:
 
 
 def _on_motion() -> str:
-    followed, motion = follow(BENDIX_12_5, _base("clearance")), BENDIX_12_5.motion(_base("clearance"))
+    clearance = _base("clearance")
+    followed, motion = follow_shoes(BENDIX_12_5, clearance), BENDIX_12_5.move_shoes(clearance)
     stages = followed.right, followed.left, followed.drum
     full = all(int(stage.rank.min()) == stage.constraints for stage in stages)
     turn, psi = np.degrees(float(motion.seating_turn)), np.degrees(float(motion.drum_turn))
@@ -199,6 +199,12 @@ def _on_newton(found: InternalForces) -> str:
         f"condition number is {plain.condition_number:.1e}, in units of T/r and r "
         f"{scaled.condition_number:.0f}. Our reduction to one equation needs no start."
     )
+
+
+def _base_stops(**varied: Any) -> tuple[Stop, Stop]:
+    """The stop at the base case as printed and corrected, with some inputs varied."""
+    case = as_printed.base_case(**varied)
+    return as_printed.stop_as_printed(*case), stop(*case)
 
 
 def base_forces() -> InternalForces:
@@ -228,10 +234,9 @@ def pictures() -> dict[str, Figure]:
 
 def _truck() -> Figure:
     figure = Figure(figsize=(12.0, 5.0), layout="constrained")
-    for ax, corrected in zip(figure.subplots(1, 2), (False, True), strict=True):
-        found = as_printed.base_stop(corrected)
-        truck(ax, found)
-        ax.set_title(f"{'corrected' if corrected else 'as printed'}\n{ax.get_title()}", fontsize=10)
+    for ax, name, shown in zip(figure.subplots(1, 2), _WAYS, _base_stops(), strict=True):
+        truck(ax, shown)
+        ax.set_title(f"{name}\n{ax.get_title()}", fontsize=10)
     return figure
 
 
@@ -239,11 +244,11 @@ def _distance() -> Figure:
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")
     speeds, slopes = np.linspace(5, 25, 81) / 3.6, np.radians([0.0, 5.0, 10.0, 15.0, 17.3, 20.0, 26.0])
     panels, top = figure.subplots(1, 2, sharey=True), 0.0
-    for ax, corrected in zip(panels, (False, True), strict=True):
-        found = as_printed.base_stop(corrected, slope=slopes[:, None], speed=3.6 * speeds)
-        distances(ax, speeds, slopes, found.distance)
-        top = max(top, float(found.distance[np.isfinite(found.distance)].max()))
-        ax.set_title("corrected" if corrected else "as printed", fontsize=11)
+    stops = _base_stops(slope=slopes[:, None], speed=3.6 * speeds)
+    for ax, name, distance in zip(panels, _WAYS, (s.distance for s in stops), strict=True):
+        distances(ax, speeds, slopes, distance)
+        top = max(top, float(distance[np.isfinite(distance)].max()))
+        ax.set_title(name, fontsize=11)
     panels[1].set_ylabel("")
     panels[0].set_ylim(0, 1.05 * top)
     return figure
@@ -251,13 +256,13 @@ def _distance() -> Figure:
 
 def _stages() -> Figure:
     figure = Figure(figsize=(11.0, 4.4), layout="constrained")
-    positions(figure, follow(BENDIX_12_5, _base("clearance")))
+    positions(figure, follow_shoes(BENDIX_12_5, _base("clearance")))
     return figure
 
 
 def _shoes() -> Figure:
     figure = Figure(figsize=(10.0, 5.4), layout="constrained")
-    free_bodies(figure, base_forces(), follow(BENDIX_12_5, _base("clearance")))
+    free_bodies(figure, base_forces(), follow_shoes(BENDIX_12_5, _base("clearance")))
     return figure
 
 
@@ -275,4 +280,27 @@ def _over() -> Figure:
         ax.set_title(f"Table {name[-1]} (circles: printed)", fontsize=11)
     for ax in figure.axes[1:]:
         ax.set_ylabel("")
+    return figure
+
+
+def compare(outputs: Sequence[Output], corrected: object, printed: object) -> Figure:
+    """Results by the right mechanics and by the paper's, side by side as a table.
+
+    Parameters
+    ----------
+    outputs : sequence of Output
+        Results to show.
+    corrected, printed : object
+        The two answers that have them, of one case.
+    """
+    figure = Figure(figsize=(9.0, 0.3 * (len(outputs) + 1)), layout="constrained")
+    ax = figure.subplots()
+    ax.set_axis_off()
+    made = ax.table(
+        list_outputs(outputs, [corrected, printed]), colLabels=["", "corrected", "as printed", "unit"],
+        colWidths=[0.55, 0.17, 0.17, 0.11],
+        cellLoc="right", bbox=Bbox.unit(), edges="horizontal",
+    )  # fmt: skip
+    made.auto_set_font_size(False)
+    made.set_fontsize(9)
     return figure

@@ -10,10 +10,9 @@ import pytest
 from beamdyn.common.edge.program import DONE, NO_ANSWER
 from brakes import reproduce
 from brakes.cli import main
-from brakes.drum import as_printed as drum_as_printed
-from brakes.forklift import as_printed
 from brakes.published import load
-from brakes.reproduce import caliper, drum, forklift
+from brakes.reproduce import caliper, drum, drum_as_printed, forklift
+from brakes.reproduce import forklift_as_printed as as_printed
 from brakes.reproduce.common import Cell, step
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brakes import forklift
-from brakes.forklift import BENDIX_12_5, Levers, Truck, internal_forces
+from brakes.forklift import BENDIX_12_5, Levers, StopConditions, Truck, internal_forces
 
 N = 100_000
 
@@ -61,16 +61,15 @@ def test_ten_thousand_designs_through_all_stages() -> None:
         front_wheel_radius=rng.uniform(0.35, 0.45, n),
         wheelbase=1.89,
     )
-    found = forklift.brake_procedure(
-        truck,
+    conditions = StopConditions(
         slope=rng.uniform(0, 0.3, n),
         speed=rng.uniform(2, 7, n),
         friction=rng.uniform(0.5, 0.8, n),
         reaction_time=0.5,
         rise_time=0.3,
-        piston_force=rng.uniform(1e4, 1.3e4, n),
-        clearance=rng.uniform(0.005, 0.021, n),
     )
+    piston_force, motion = rng.uniform(1e4, 1.3e4, n), BENDIX_12_5.move_shoes(rng.uniform(0.005, 0.021, n))
+    found = forklift.brake_procedure(truck, conditions, motion, piston_force=piston_force)
     assert (found.forces.status == "equilibrium").all() and 0 < found.stop.stops.mean() <= 1
     assert (np.isfinite(found.stop.distance) == found.stop.stops).all()
 
@@ -78,7 +77,7 @@ def test_ten_thousand_designs_through_all_stages() -> None:
 @pytest.mark.parametrize("rise_time", [0.0, 1e-9])
 def test_no_rise_time_leaves_the_plain_stop(rise_time: float) -> None:
     truck = Truck(5950.0, (1.049, 0.359), 3500.0, (-1.20, 0.450), 0.40, 1.89)
-    found = forklift.stop(truck, slope=0.0, speed=5.0, friction=0.7, reaction_time=0.0, rise_time=rise_time)
+    found = forklift.stop(truck, StopConditions(0.0, 5.0, 0.7, reaction_time=0.0, rise_time=rise_time))
     assert found.distance == pytest.approx(25 / (2 * -found.acceleration), rel=1e-8)
     assert found.time == pytest.approx(5 / -found.acceleration, rel=1e-8)
 
@@ -89,22 +88,22 @@ def test_distance_grows_without_bound_towards_the_slope_that_holds_no_more() -> 
     limit = np.arctan(0.7 * (1.89 - 1.049) / (1.89 + 0.7 * 0.759))
     gap = 10.0 ** -np.arange(3, 9)
     case = {"speed": 5.0, "friction": 0.7, "reaction_time": 0.5, "rise_time": 0.3}
-    short = forklift.stop(truck, slope=limit - gap, **case)
+    short = forklift.stop(truck, StopConditions(slope=limit - gap, **case))
     assert short.stops.all() and np.polyfit(np.log(gap), np.log(short.distance), 1)[0] == pytest.approx(
         -1, abs=0.02
     )
-    assert not forklift.stop(truck, slope=limit + gap, **case).stops.any()
+    assert not forklift.stop(truck, StopConditions(slope=limit + gap, **case)).stops.any()
 
 
 def test_clearance_towards_zero_seats_the_shoes_where_they_are() -> None:
     c = 10.0 ** -np.arange(4, 10)
-    found = BENDIX_12_5.motion(c)
+    found = BENDIX_12_5.move_shoes(c)
     assert np.polyfit(np.log(c), np.log(found.seating_turn), 1)[0] == pytest.approx(1, abs=0.01)
     assert (found.lining_penetration < c).all() and (found.drum_turn > 0).all()
 
 
 def test_tiny_torque_and_tiny_piston_force() -> None:
-    levers = BENDIX_12_5.levers(0.0106)
+    levers = BENDIX_12_5.find_levers(0.0106)
     weak = internal_forces(levers, torque=1e-6, piston_force=1e4)
     assert weak.status == "equilibrium" and weak.residual < 1e-12
     assert pytest.approx(1e4 * levers.a2 / levers.b2, rel=1e-9) == weak.Q

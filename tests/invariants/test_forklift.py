@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from brakes import forklift
-from brakes.forklift import BENDIX_12_5, DuoServo, Levers, Truck, internal_forces
+from brakes.forklift import BENDIX_12_5, DuoServo, Levers, StopConditions, Truck, internal_forces
 from brakes.planar import Mechanism, RotationLock
+from brakes.reproduce.newton import newton_raphson
 
 G = 9.806
 CLEARANCES = [0.0052, 0.0106, 0.0211]
@@ -31,20 +32,20 @@ def stops(draw):
     truck = Truck(m, (x, y), mL, (xL, number(0.0, 3.0)), r1, L)
     front, rear = truck.overturning_slopes
     slope = 0.95 * (front + (rear - front) * number(0.0, 1.0))
-    return forklift.stop(
-        truck,
+    conditions = StopConditions(
         slope=slope,
         speed=number(0.1, 15.0),
         friction=number(0.05, 1.5),
         reaction_time=number(0.0, 2.0),
         rise_time=number(0.01, 1.0),
     )
+    return forklift.stop(truck, conditions)
 
 
 @given(stops())
 def test_momentum_and_moment_of_every_truck(found):
     """From free bodies: the locked wheel, and the body with the truck's parts as point weights."""
-    truck, mu, beta = found.truck, found.friction, found.slope
+    truck, mu, beta = found.truck, found.conditions.friction, found.conditions.slope
     parts = [(truck.empty_mass, *truck.empty_cg), (truck.load_mass, *truck.load_cg)]
     r1, L, A = truck.front_wheel_radius, truck.wheelbase, found.acceleration
     weight = G * np.array([np.sin(beta), -np.cos(beta)])
@@ -66,7 +67,7 @@ def test_momentum_and_moment_of_every_truck(found):
 
 @given(stops())
 def test_standing_loads_balance_too(found):
-    truck, beta = found.truck, found.slope
+    truck, beta = found.truck, found.conditions.slope
     parts = [(truck.empty_mass, *truck.empty_cg), (truck.load_mass, *truck.load_cg)]
     weight = sum(m for m, *_ in parts) * G
     carried = found.standing_front_load + found.standing_rear_load
@@ -82,7 +83,8 @@ def test_standing_loads_balance_too(found):
 def test_a_sliding_truck_stops_if_and_only_if_it_can_stand(found):
     """Standing, the locked wheels hold mu times their load; the slope pulls with the weight's part."""
     weight = found.truck.mass * G
-    spare = found.friction * found.standing_front_load - weight * np.sin(found.slope)
+    road = found.conditions
+    spare = road.friction * found.standing_front_load - weight * np.sin(road.slope)
     if abs(spare) > 1e-9 * weight:
         assert found.stops == (spare > 0)
 
@@ -91,7 +93,7 @@ def test_a_sliding_truck_stops_if_and_only_if_it_can_stand(found):
 def test_distance_and_time_by_integration(speed):
     truck = Truck(5950.0, (1.049, 0.359), 3500.0, (-1.20, 0.450), 0.40, 1.89)
     case = {"slope": 0.1, "friction": 0.7, "reaction_time": 0.5, "rise_time": 0.3}
-    found = forklift.stop(truck, speed=speed, **case)
+    found = forklift.stop(truck, StopConditions(speed=speed, **case))
 
     def at_rest(t, y):
         return y[1]
@@ -222,7 +224,7 @@ def test_newton_only_ever_agrees(case, seed, damped):
     levers, P_T, T = case
     exact = internal_forces(levers, torque=T, piston_force=P_T)
     start = np.random.default_rng(seed).normal(size=10)
-    found = forklift.newton_raphson(levers, torque=T, piston_force=P_T, start=start, damped=damped)
+    found = newton_raphson(levers, torque=T, piston_force=P_T, start=start, damped=damped)
     if not found.physical:
         return
     x = np.concatenate([exact.A_vector, exact.B_vector, exact.C_vector, exact.D_vector, [exact.Q, exact.P_L]])
@@ -233,12 +235,9 @@ def test_newton_only_ever_agrees(case, seed, damped):
 
 def test_newton_agrees_from_most_published_starts():
     """The test above is not empty: for the paper's brake many random starts end at the solution."""
-    levers = BENDIX_12_5.levers(0.0106)
+    levers = BENDIX_12_5.find_levers(0.0106)
     starts = np.random.default_rng(1997).normal(size=(40, 10))
-    runs = [
-        forklift.newton_raphson(levers, torque=11e3, piston_force=11650.0, start=x, damped=True)
-        for x in starts
-    ]
+    runs = [newton_raphson(levers, torque=11e3, piston_force=11650.0, start=x, damped=True) for x in starts]
     physical = [run for run in runs if run.physical]
     assert 2 < len(physical) < 25 and sum(run.converged for run in runs) > len(physical)
     Q = internal_forces(levers, torque=11e3, piston_force=11650.0).Q
@@ -247,11 +246,11 @@ def test_newton_agrees_from_most_published_starts():
 
 def test_jacobian_of_newton():
     """Quadratic convergence from nearby: each step squares the error."""
-    levers = BENDIX_12_5.levers(0.0106)
-    x = forklift.newton_raphson(levers, torque=11e3, piston_force=11650.0).unknowns / (11e3 / 0.15875)
+    levers = BENDIX_12_5.find_levers(0.0106)
+    x = newton_raphson(levers, torque=11e3, piston_force=11650.0).unknowns / (11e3 / 0.15875)
     start = x + 1e-3 * np.cos(np.arange(10))
     case = {"torque": 11e3, "piston_force": 11650.0, "start": start}
-    sizes = [forklift.newton_raphson(levers, steps=k, **case).residual for k in range(3)]
+    sizes = [newton_raphson(levers, steps=k, **case).residual for k in range(3)]
     assert sizes[1] < 10 * sizes[0] ** 2 and sizes[2] < 1e-11
 
 
@@ -277,7 +276,7 @@ def brakes(draw):
 def test_mechanism_against_closed_form(case):
     """Two routes: the mechanism's constraints followed, and the turns in closed form."""
     brake, c = case
-    closed, path = brake.motion(c), forklift.follow(brake, c, positions=4)
+    closed, path = brake.move_shoes(c), forklift.follow_shoes(brake, c, positions=4)
     for stage in (path.right, path.left):
         assert stage.turn[-1] == pytest.approx(closed.seating_turn, rel=1e-10)
     assert path.right.travel["right"][-1] == pytest.approx(closed.seating_travel, rel=1e-10)
@@ -290,7 +289,7 @@ def test_mechanism_against_closed_form(case):
 @pytest.mark.parametrize("clearance", CLEARANCES)
 def test_lever_arms_from_the_mechanism(clearance):
     """Moments of unit forces at the pins of the last position."""
-    path, levers = forklift.follow(BENDIX_12_5, clearance), BENDIX_12_5.levers(clearance)
+    path, levers = forklift.follow_shoes(BENDIX_12_5, clearance), BENDIX_12_5.find_levers(clearance)
     place, drawn = path.drum.position, path.drum.mechanism
 
     def pin(name, body):
@@ -313,7 +312,7 @@ def test_lever_arms_from_the_mechanism(clearance):
 @pytest.mark.parametrize("clearance", CLEARANCES)
 def test_rank_at_every_position(clearance):
     """8 of 9 and 23 of 24 everywhere, far from losing a rank."""
-    path = forklift.follow(BENDIX_12_5, clearance)
+    path = forklift.follow_shoes(BENDIX_12_5, clearance)
     for stage, rank in ((path.right, 8), (path.left, 8), (path.drum, 23)):
         assert (stage.rank == rank).all() and len(stage.rank) == 21
         assert stage.mechanism.system.constraints == rank and stage.mechanism.system.size == rank + 1
@@ -321,11 +320,11 @@ def test_rank_at_every_position(clearance):
 
 
 def seated_mechanism():
-    motion = BENDIX_12_5.motion(0.0106)
+    motion = BENDIX_12_5.move_shoes(0.0106)
     turn = -motion.drum_turn
     back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     tips = back @ motion.right_tip, back @ motion.left_tip
-    return forklift.stage_2(BENDIX_12_5, *(tuple(map(float, tip)) for tip in tips))
+    return forklift.build_turning_mechanism(BENDIX_12_5, *(tuple(map(float, tip)) for tip in tips))
 
 
 def test_welding_both_shoes_makes_a_row_redundant():
@@ -343,23 +342,23 @@ def test_pinning_contact_points_leaves_mobility_two():
 
 
 def test_gap_at_the_tips():
-    motion = BENDIX_12_5.motion(np.array(CLEARANCES))
+    motion = BENDIX_12_5.move_shoes(np.array(CLEARANCES))
     for tip in (motion.right_tip, motion.left_tip):
         np.testing.assert_allclose(motion.tip_gap, 0.15875 - np.linalg.norm(tip, axis=-1), rtol=1e-12)
-    path = forklift.follow(BENDIX_12_5, 0.0106)
+    path = forklift.follow_shoes(BENDIX_12_5, 0.0106)
     radius = np.linalg.norm(path.right.position.point("right shoe", BENDIX_12_5.tip), axis=-1)
     assert motion.tip_gap[1] == pytest.approx(0.15875 - radius.max(), rel=1e-10)
 
 
 def test_events():
-    path = forklift.follow(BENDIX_12_5, 0.0106)
+    path = forklift.follow_shoes(BENDIX_12_5, 0.0106)
     assert [event.name for event in path.events] == ["lining reaches the drum"] * 2 + ["piston bottoms"]
     assert "21.039 mm" in path.events[0].message and "42.291 mm" in path.events[2].message
-    assert path.interference == BENDIX_12_5.motion(0.0106).interference
+    assert path.interference == BENDIX_12_5.move_shoes(0.0106).interference
 
 
 def test_contact_point_reaches_the_drum_in_the_mechanism():
-    path = forklift.follow(BENDIX_12_5, 0.0106)
+    path = forklift.follow_shoes(BENDIX_12_5, 0.0106)
     for side, stage in (("right", path.right), ("left", path.left)):
         sign = 1 if side == "right" else -1
         at = (0.15875 - 0.0106) * np.array([sign * np.cos(np.radians(56.5)), np.sin(np.radians(56.5))])
@@ -371,9 +370,9 @@ def test_contact_point_reaches_the_drum_in_the_mechanism():
 
 def test_virtual_work_of_the_drum():
     """Without friction the shoes' torque would be the pistons' work: T dpsi = sum of P dx, in stage 2."""
-    path = forklift.follow(BENDIX_12_5, 0.0106, positions=401)
+    path = forklift.follow_shoes(BENDIX_12_5, 0.0106, positions=401)
     turn, right, left = path.drum.turn, path.drum.travel["right"], path.drum.travel["left"]
-    levers = BENDIX_12_5.levers(0.0106)
+    levers = BENDIX_12_5.find_levers(0.0106)
     tilt = np.radians(19.7)
     rates = [np.gradient(x, turn, edge_order=2)[-1] for x in (right, left)]
     # a face force F has the horizontal part F cos(tilt) on its piston, and the arm a about the drum

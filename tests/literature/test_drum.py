@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from brakes import drum
-from brakes.drum import as_printed
 from brakes.published import load
+from brakes.reproduce import drum_as_printed as as_printed
 
 PAPER = load("vardanyan_2019")
 BOOKS = load("drum_textbooks")

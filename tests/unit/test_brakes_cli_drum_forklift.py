@@ -159,12 +159,13 @@ def test_forklift_prints_all_stages(run) -> None:
     assert err.count("enters the drum by 1.55 mm near 26 deg") == 1
 
 
-def test_models_side_by_side(run) -> None:
-    code, out, _ = run("forklift", FORKLIFT, "--model", "both")
-    assert code == DONE
-    assert cells(out, "torque of one brake")[:2] == ["8480.8", "11000"]
-    assert cells(out, "acceleration, wheels locked")[:2] == ["-1.5715", "-2.9922"]
-    assert cells(out, "leading shoe: drum's normal force A")[1] == "117211"
+def test_the_papers_own_mechanics_is_not_an_option(run, edited) -> None:
+    code, out, err = run("forklift", FORKLIFT, "--model", "as_printed")
+    assert (code, out) == (BAD_INPUT, "") and "--model" in err
+    code, out, err = run(
+        "forklift", edited(FORKLIFT, "friction = 0.7", 'friction = 0.7\nmodel = "corrected"')
+    )
+    assert (code, out) == (BAD_INPUT, "") and "stop.model: unknown key" in err
 
 
 @pytest.mark.parametrize("stage, there, absent", [
@@ -210,34 +211,23 @@ def test_bad_forklifts(run, edited, old: str, new: str, parts: list[str]) -> Non
 def test_files_of_a_forklift(run, tmp_path: Path) -> None:
     plot, sheet, result = tmp_path / "f.svg", tmp_path / "f.csv", tmp_path / "f.json"
     files = ("--plot", plot, "--csv", sheet, "--json", result)
-    assert run("forklift", FORKLIFT, "--model", "both", *files)[0] == DONE
+    assert run("forklift", FORKLIFT, *files)[0] == DONE
     assert "<svg" in plot.read_text()
-    heads, *lines = table(sheet)
-    rows = {line[0]: dict(zip(heads, line, strict=True)) for line in lines}
+    rows = {name: float(value) for name, value, _ in table(sheet)[1:]}
     saved = json.loads(result.read_text())
-    assert float(rows["distance"]["corrected"]) == saved["corrected"]["stop"]["distance"]
-    assert float(rows["A"]["as_printed"]) == saved["as_printed"]["forces"]["A"]
-    stage = saved["corrected"]["kinematics"]["drum"]
+    assert rows["distance"] == saved["stop"]["distance"] and rows["A"] == saved["forces"]["A"]
+    stage = saved["kinematics"]["drum"]
     assert len(stage["travel"]["left"]) == len(stage["rank"]) == 21
-    assert "mm out" in saved["corrected"]["kinematics"]["events"][0]["message"]
+    assert "mm out" in saved["kinematics"]["events"][0]["message"]
 
 
-def test_sweep_of_a_forklift_by_each_model(run, tmp_path: Path) -> None:
+def test_sweep_of_a_forklift(run, tmp_path: Path) -> None:
     path = tmp_path / "s.csv"
-    options = ("--sweep", "load_mass=0:3500:3 kg", "--result", "distance", "--csv", path, "--force")
-    found = {}
-    for model in ("corrected", "as_printed"):
-        code, out, err = run("forklift", FORKLIFT, "--stage", "vehicle", "--model", model, *options)
-        assert code == DONE
-        found[model] = [float(row[1]) for row in table(path)[1:]]
-        assert ("1 of 3 cases do not stop" in err, "never" in out) == ((model == "corrected",) * 2)
-    assert found["as_printed"] == pytest.approx([120.46, 12.555, 9.557], abs=5e-3)  # Table 3
-    assert found["corrected"][0] == float("inf")
-
-
-def test_both_models_cannot_be_swept(run) -> None:
-    code, _, err = run("forklift", FORKLIFT, "--model", "both", "--sweep", "speed=10:20:3 km/h")
-    assert code == BAD_INPUT and "--model both" in err
+    options = ("--sweep", "load_mass=0:3500:3 kg", "--result", "distance", "--csv", path)
+    code, out, err = run("forklift", FORKLIFT, "--stage", "vehicle", *options)
+    assert code == DONE and "1 of 3 cases do not stop" in err and "never" in out
+    distances = [float(row[1]) for row in table(path)[1:]]
+    assert distances[0] == float("inf") and distances[2] == pytest.approx(13.425, abs=5e-4)
 
 
 def test_help_names_the_exit_codes(run) -> None:

@@ -17,11 +17,14 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
 from brakes import drum, forklift
-from brakes.answers.forklift import FORKLIFT as FORKLIFT_TYPE
+from brakes.answers.drum import BRAKE
+from brakes.answers.forklift import FORKLIFT as TYPE
+from brakes.answers.forklift import solve_stages
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
 from brakes.config.sweeps import numeric_inputs, with_arrays
 from brakes.config.wording import in_degrees
+from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRUM = tomllib.loads((EXAMPLES / "drum.toml").read_text())
@@ -161,43 +164,36 @@ def test_a_torque_demanded_of_a_brake_that_locks_is_refused() -> None:
 
 
 def test_the_example_is_the_truck_of_the_paper() -> None:
-    found = load_forklift(EXAMPLES / "forklift.toml").solve()
+    found = solve_stages(load_forklift(EXAMPLES / "forklift.toml"))
     assert found.stop is not None and found.motion is not None and found.forces is not None
     assert found.stop.acceleration == pytest.approx(-1.5715, abs=5e-5)  # the facts
     assert found.motion.geometry == forklift.BENDIX_12_5
     assert found.forces.torque == found.stop.torque_per_brake and found.torque_from == "the stop"
 
 
-def test_as_printed_gives_the_papers_base_case() -> None:
-    found = forklift_from_dict(changed(FORKLIFT, stop__model="as_printed")).solve().stop
-    assert found is not None
-    assert abs(found.distance - 9.557) < 5e-4 and abs(found.torque_per_brake - 11000.5) < 0.05
+def test_the_files_stop_as_printed_is_the_papers_base_case() -> None:
+    found = answer_as_printed(forklift_from_dict(FORKLIFT), ("vehicle", "forces"))
+    assert found is not None and found.stop is not None and found.forces is not None
+    assert abs(found.stop.distance - 9.557) < 5e-4 and abs(found.stop.torque_per_brake - 11000.5) < 0.05
+    assert found.forces.torque == found.stop.torque_per_brake and found.torque_from == "the stop"
 
 
-def test_slope_factor_and_distance_follow_the_model_unless_given() -> None:
-    def stop(**keys: Any) -> forklift.Stop:
-        found = forklift_from_dict(changed(FORKLIFT, **keys)).solve(("vehicle",)).stop
-        assert found is not None
-        return found
-
-    printed = {"stop__model": "as_printed"}
-    assert (stop().distance_formula, stop(**printed).distance_formula) == ("exact", "printed")
-    assert stop(**printed, stop__distance="exact").distance_formula == "exact"
-    gain = stop(**printed).acceleration - stop(**printed, stop__slope_factor=1).acceleration
-    assert gain == pytest.approx(-0.03 * 9.806 * np.sin(0.3019), rel=1e-12)
+def test_the_papers_stop_has_no_part_where_the_torque_is_given() -> None:
+    design = forklift_from_dict(changed(FORKLIFT, forces__torque="11 kN m"))
+    assert answer_as_printed(design, ("kinematics", "forces")) is None
 
 
 def test_a_torque_in_the_file_goes_before_that_of_the_stop() -> None:
     design = forklift_from_dict(changed(FORKLIFT, forces__torque="11 kN m"))
-    for found in (design.solve(), design.solve(("forces",))):
+    for found in (solve_stages(design), solve_stages(design, ("forces",))):
         assert found.forces is not None and found.forces.torque == 11000.0
         assert found.torque_from == "the file"
-    assert design.solve(("forces",)).stop is None  # not asked for
+    assert solve_stages(design, ("forces",)).stop is None  # not asked for
 
 
 def test_without_a_torque_it_follows_from_the_lining() -> None:
     data = {"brake": FORKLIFT["brake"], "forces": FORKLIFT["forces"] | {"lining_friction": 0.4}}
-    found = forklift_from_dict(data).solve()
+    found = solve_stages(forklift_from_dict(data))
     assert found.forces is not None and found.torque_from == "the lining's friction"
     assert found.forces.lining_friction == pytest.approx(0.4, rel=1e-12)
 
@@ -210,7 +206,7 @@ def test_each_stage_alone() -> None:
     for stages, tables in alone.items():
         design = forklift_from_dict({table: FORKLIFT[table] for table in tables})
         assert design.stages == stages
-        design.solve()
+        solve_stages(design)
     forces = {"piston_force": "11650 N", "torque": "11000 N m"}
     assert forklift_from_dict({"levers": LEVERS, "forces": forces}).stages == ("forces",)
 
@@ -225,7 +221,8 @@ def test_each_stage_alone() -> None:
         ({"stop__slope": "90 deg"}, ["stop.slope", "below"]),
         ({"stop__speed": "0 km/h"}, ["stop.speed", "greater than 0"]),
         ({"stop__speed": "20"}, ["stop.speed", "give a unit"]),
-        ({"stop__model": "right"}, ["stop.model", "'corrected'", "'as_printed'"]),
+        ({"stop__model": "as_printed"}, ["stop.model", "unknown key"]),
+        ({"stop__slope_factor": 0.97}, ["stop.slope_factor", "unknown key"]),
         ({"brake__tip_x": "200 mm"}, ["brake", "distance of tip", "inside the drum"]),
         ({"brake__adjuster_y": "122 mm"}, ["brake.adjuster_y", "below 0"]),
         ({"brake__tip": ["1 m"]}, ["brake.tip", "unknown key", "did you mean tip_"]),
@@ -253,13 +250,13 @@ def test_one_mistake_in_a_forklift(keys: dict[str, Any], parts: list[str]) -> No
 )
 def test_what_the_stages_refuse(keys: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        forklift_from_dict(changed(FORKLIFT, **keys)).solve()
+        solve_stages(forklift_from_dict(changed(FORKLIFT, **keys)))
 
 
 def test_a_stage_without_its_tables() -> None:
     design = forklift_from_dict({"brake": FORKLIFT["brake"]})
     with pytest.raises(ValueError, match=r"stage vehicle needs the tables \[truck\] and \[stop\]"):
-        design.solve(("vehicle",))
+        solve_stages(design, ("vehicle",))
 
 
 # Descriptions, words ------------------------------------------------------------------------------------
@@ -353,7 +350,7 @@ def test_a_sweep_is_its_cases_one_by_one() -> None:
 def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
-    answer = FORKLIFT_TYPE.solve(with_arrays(design, axes))
+    answer = solve_stages(with_arrays(design, axes))
     found = input_sweep.sweep(axes, [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)
@@ -370,7 +367,7 @@ def test_results_by_name() -> None:
 
 NUMBERS = ["0", "-1", "1e-300", "1e300", "1e308", "nan", "1", "45", "0.1", "1e6"]
 UNITS = ["m", "mm", "deg", "rad", "N", "N m", "kg", "km/h", "s", "Pa", "bar", ""]
-KEYS = [(build, data, t, k) for build, data in ((drum_from_dict, DRUM), (forklift_from_dict, FORKLIFT))
+KEYS = [(brake, data, t, k) for brake, data in ((BRAKE, DRUM), (TYPE, FORKLIFT))
         for t in data for k in data[t]]  # fmt: skip
 VALUES = st.one_of(
     st.builds(lambda n, u: f"{n} {u}".strip(), st.sampled_from(NUMBERS), st.sampled_from(UNITS)),
@@ -382,10 +379,10 @@ VALUES = st.one_of(
 @given(st.sampled_from(KEYS), VALUES)
 def test_any_value_anywhere_is_answered_or_refused(place, value: Any) -> None:
     """Without a warning of numpy, a crash, or an empty message."""
-    build, data, table, key = place
+    brake, data, table, key = place
     given_ = copy.deepcopy(data)
     given_[table][key] = value
     try:
-        build(given_).solve()
+        brake.solve(brake.read(given_, "any"))
     except ValueError as error:
         assert str(error)

@@ -48,7 +48,7 @@ def arrows(ax) -> dict[str, np.ndarray]:
 
 
 def stopped(**changes) -> forklift.Stop:
-    return forklift.stop(forklift.Truck(**(TRUCK | changes)), **STOP)
+    return forklift.stop(forklift.Truck(**(TRUCK | changes)), forklift.StopConditions(**STOP))
 
 
 def test_forces_on_a_drum_shoe_balance_as_drawn() -> None:
@@ -113,7 +113,8 @@ def test_a_truck_without_load_is_drawn_and_named() -> None:
 
 def test_slopes_on_which_it_never_stops_are_named() -> None:
     speeds, slopes = np.array([2.0, 4.0]), np.radians([0.0, 26.0])
-    found = forklift.stop(forklift.Truck(**TRUCK), **(STOP | {"slope": slopes[:, None], "speed": speeds}))
+    road = forklift.StopConditions(**(STOP | {"slope": slopes[:, None], "speed": speeds}))
+    found = forklift.stop(forklift.Truck(**TRUCK), road)
     ax = distances(axes(), speeds, slopes, found.distance)
     legend = ax.get_legend()
     assert legend is not None
@@ -122,13 +123,13 @@ def test_slopes_on_which_it_never_stops_are_named() -> None:
 
 @pytest.mark.parametrize("side", ["right", "left"])
 def test_the_tip_ends_where_the_kinematics_have_it(side: str) -> None:
-    motion = BRAKE.motion(0.0106)
+    motion = BRAKE.move_shoes(0.0106)
     (tip,) = moved(np.array([BRAKE.tip]), BRAKE, motion, 2.0, side)
     np.testing.assert_allclose(tip, getattr(motion, f"{side}_tip"), rtol=1e-13)
 
 
 def test_the_lining_drawn_enters_the_drum_as_deep_as_computed() -> None:
-    motion = BRAKE.motion(0.0106)
+    motion = BRAKE.move_shoes(0.0106)
     rim = moved(lining(BRAKE, motion), BRAKE, motion, 1.0, "right")
     deepest = np.hypot(*rim.T).max() - BRAKE.drum_radius
     assert deepest == pytest.approx(motion.lining_penetration, rel=1e-3)  # 121 points along the lining
@@ -136,13 +137,13 @@ def test_the_lining_drawn_enters_the_drum_as_deep_as_computed() -> None:
 
 @pytest.mark.parametrize("progress", [0.0, 0.5, 1.0, 1.5, 2.0])
 def test_the_brake_on_its_way(progress: float) -> None:
-    ax = duo_servo(axes(), BRAKE, BRAKE.motion(0.0106), progress)
+    ax = duo_servo(axes(), BRAKE, BRAKE.move_shoes(0.0106), progress)
     assert len(ax.lines) > 8
 
 
 @pytest.mark.parametrize("progress, drawn", [(0.0, False), (1.0, True), (2.0, True)])
 def test_the_key_says_what_red_is_where_there_is_any(progress: float, drawn: bool) -> None:
-    legend = duo_servo(axes(), BRAKE, BRAKE.motion(0.0106), progress).get_legend()
+    legend = duo_servo(axes(), BRAKE, BRAKE.move_shoes(0.0106), progress).get_legend()
     assert legend is not None
     assert ("inside the drum's wall" in [text.get_text() for text in legend.get_texts()]) == drawn
 
@@ -150,7 +151,7 @@ def test_the_key_says_what_red_is_where_there_is_any(progress: float, drawn: boo
 def test_duo_servo_shoes_balance_as_drawn() -> None:
     found = forklift.internal_forces(BRAKE, torque=11000.0, piston_force=11650.0, clearance=0.0106)
     figure = Figure(figsize=(8, 4))
-    free_bodies(figure, found, forklift.follow(BRAKE, 0.0106))
+    free_bodies(figure, found, forklift.follow_shoes(BRAKE, 0.0106))
     for ax, names in zip(figure.axes, (("C", "D", "P_T", "Q"), ("A", "B", "P_L", "Q")), strict=True):
         drawn = arrows(ax)
         assert np.hypot(*sum(drawn[name] for name in names)) < 1e-12
@@ -158,7 +159,7 @@ def test_duo_servo_shoes_balance_as_drawn() -> None:
 
 
 def test_free_bodies_of_levers_alone() -> None:
-    found = forklift.internal_forces(BRAKE.levers(0.0106), torque=11000.0, piston_force=11650.0)
+    found = forklift.internal_forces(BRAKE.find_levers(0.0106), torque=11000.0, piston_force=11650.0)
     figure = answer_figure(None, None, found)
     assert len(figure.axes) == 2
 

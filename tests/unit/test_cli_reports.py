@@ -44,7 +44,7 @@ COMMANDS = {
     "tradeoff": (beamdyn.cli, BLADE, ["--budget", "0.5 s"], 1),
     "drum": (brakes.cli, DRUM, [], 1),
     "drum --sweep": (brakes.cli, DRUM, ["--sweep", "friction=0.1:0.5:3"], 1),
-    "forklift": (brakes.cli, FORKLIFT, ["--model", "both"], 1),
+    "forklift": (brakes.cli, FORKLIFT, [], 1),
     "forklift --sweep": (brakes.cli, FORKLIFT, ["--sweep", "stop.speed=10:20:3 km/h"], 1),
     "caliper": (brakes.cli, OWN, [], 2),
     "caliper of parts": (brakes.cli, CLAMP, [], 2),

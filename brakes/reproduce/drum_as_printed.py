@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brakes.drum.assembly import brake_torque, simplex
-from brakes.drum.shoe import Shoe, shoe_torque
+from brakes.drum import Shoe, brake_torque, shoe_torque, simplex
 from brakes.published import load
 from brakes.published.errata import Erratum
 

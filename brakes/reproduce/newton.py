@@ -1,0 +1,166 @@
+"""The solution method of Yoo et al. 1997: Newton-Raphson on the ten equations (27)-(36), for comparison.
+
+Where it ends depends on its start: from most random ones it diverges, or converges to one of the three
+mirror images of the solution, which satisfy the equations as well (A x B or C x D of the wrong sign, or both;
+B and D enter the moments by their sizes, so that Q and P_L are positive in all four).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.results import Result
+from brakes.arrays import positive
+from brakes.forklift import Levers, equilibrium_equations
+
+_TOLERANCE = 1e-12  # on the largest left-hand side, in units of T/r and r
+_DIVERGED = 1e30  # the same, past which an iteration is given up
+SCALED_START = (-1.5, 0.1, 0.1, 0.7, 0.6, 0.1, 0.05, -0.3, 0.5, 1.4)
+
+
+@dataclass(frozen=True)
+class NewtonResult(Result):
+    """End of an iteration.
+
+    Attributes
+    ----------
+    unknowns : ndarray, shape (10,)
+        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L [N].
+    converged : bool
+        Whether the residual is below the tolerance.
+    physical : bool
+        Converged, with the friction along the drum's motion: no mirror image.
+    iterations : int
+        Steps taken.
+    residual : float
+        Largest left-hand side, in units of T/r and r.
+    condition_number : float
+        Of the Jacobian at the end, in the units of the iteration.
+    """
+
+    unknowns: np.ndarray
+    converged: bool
+    physical: bool
+    iterations: int
+    residual: float
+    condition_number: float
+
+    @property
+    def message(self) -> str:
+        """How it ended, in one sentence."""
+        if not self.converged:
+            return f"no convergence within {self.iterations} steps: try another start, or the reduction"
+        return (
+            "converged"
+            if self.physical
+            else "converged to a mirror image: friction against the drum's motion"
+        )
+
+
+def _jacobian(levers: Levers, x: np.ndarray) -> np.ndarray:
+    """Derivatives of the `equilibrium_equations` to the unknowns, shape (10, 10)."""
+    r, a1, b1, b2 = levers.drum_radius, levers.a1, levers.b1, levers.b2
+    vectors = x[:8].reshape(4, 2)
+    A, B, C, D = sizes = np.hypot(*vectors.T)
+    eA, eB, eC, eD = vectors / sizes[:, None]
+    c, s = np.cos(levers.gamma), np.sin(levers.gamma)
+    J = np.zeros((10, 10))
+    J[0, [0, 2, 8, 9]] = 1, 1, c, np.cos(levers.alpha1)
+    J[1, [1, 3, 8, 9]] = 1, 1, s, -np.sin(levers.alpha1)
+    J[2, [2, 3, 8, 9]] = *(r * eB), b1, -a1
+    J[3, [4, 6, 8]] = 1, 1, -c
+    J[4, [5, 7, 8]] = 1, 1, -s
+    J[5, [6, 7, 8]] = *(r * eD), -b2
+    J[6, :4] = *vectors[1], *vectors[0]
+    J[7, 4:8] = *vectors[3], *vectors[2]
+    J[8, :8] = *(D * eA), *(-C * eB), *(-B * eC), *(A * eD)
+    J[9, [2, 3, 6, 7]] = *(r * eB), *(r * eD)
+    return J
+
+
+def newton_raphson(
+    levers: Levers,
+    *,
+    torque: float,
+    piston_force: float,
+    start: np.ndarray | None = None,
+    damped: bool = False,
+    scaled: bool = True,
+    steps: int = 50,
+) -> NewtonResult:
+    """Solve the ten equations of one case by Newton-Raphson.
+
+    Parameters
+    ----------
+    levers : Levers
+        Arms and directions.
+    torque, piston_force : float
+        T [N m] and P_T [N].
+    start : ndarray, shape (10,), optional
+        In units of T/r; one that works for the paper's brake unless given.
+    damped : bool
+        Whether a step is halved until the residual falls.
+    scaled : bool
+        Whether forces are over T/r and lengths over r; in SI units the Jacobian is ill-conditioned.
+    steps : int
+        Largest number of steps.
+
+    Returns
+    -------
+    NewtonResult
+        Where it ended.
+
+    Raises
+    ------
+    ValueError
+        If torque or piston force is not positive.
+    """
+    T, P_T = positive("torque", torque, "N m"), positive("piston_force", piston_force, "N")
+    unit = T / levers.drum_radius
+    force, used = (unit, levers.in_radii) if scaled else (1.0, levers)
+
+    def equations(x: np.ndarray) -> np.ndarray:
+        return equilibrium_equations(used, unit / force * used.drum_radius, P_T / force, x)
+
+    def residual(x: np.ndarray) -> float:
+        in_units = equilibrium_equations(levers.in_radii, 1.0, P_T / unit, x * force / unit)
+        return float(np.max(np.abs(in_units)))
+
+    x = np.array(SCALED_START if start is None else start, dtype=float) * unit / force
+    k, size = 0, residual(x)
+    with np.errstate(all="ignore"):
+        while k < steps and _TOLERANCE < size < _DIVERGED:
+            step = _newton_step(_jacobian(used, x), equations(x))
+            if step is None:
+                break
+            cut = 1.0
+            while damped and cut > 1e-6 and not residual(x + cut * step) < size:
+                cut /= 2
+            x, k = x + cut * step, k + 1
+            size = residual(x)
+        return _ended(x * force, _jacobian(used, x), k, size)
+
+
+def _newton_step(jacobian: np.ndarray, equations: np.ndarray) -> np.ndarray | None:
+    """Solve for the next step; None where the Jacobian is singular."""
+    try:
+        step = np.linalg.solve(jacobian, -equations)
+    except np.linalg.LinAlgError:
+        return None
+    return step if np.isfinite(step).all() else None
+
+
+def _ended(unknowns: np.ndarray, jacobian: np.ndarray, iterations: int, residual: float) -> NewtonResult:
+    Ax, Ay, Bx, By, Cx, Cy, Dx, Dy = unknowns[:8]
+    along = Ax * By - Ay * Bx < 0 and Cx * Dy - Cy * Dx < 0
+    converged = residual <= _TOLERANCE
+    return NewtonResult(
+        unknowns=unknowns,
+        converged=bool(converged),
+        physical=bool(converged and along),
+        iterations=iterations,
+        residual=residual,
+        condition_number=float(np.linalg.cond(jacobian)) if np.isfinite(jacobian).all() else np.inf,
+    )
