@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,12 +29,13 @@ from brakes.answers.planar import (
     reactions_table,
     select_rows,
 )
-from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, Stop
+from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, 
 from brakes.config.mechanism import CaliperInput, MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
 from brakes.config.wording import in_range
 from brakes.drawings.caliper import caliper_figure
 from brakes.planar import AssemblyError, Mechanism, OutOfReachError, solve
+from brakes.planar.described import inputs_of
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _STROKE_HEADS = (
@@ -122,7 +122,7 @@ class CaliperAnswer(PlanarAnswer):
         return (*self.run.warnings, *([locked] if locked else []))
 
     @cached_property
-    def stop(self) -> Stop | None:
+    def stop(self) ->  | None:
         """The stop, if the file has one: with the mean force of the pads at the end of the stroke."""
         if self.design.stop is None or self.refusals:
             return None
@@ -285,16 +285,16 @@ CALIPER, MECHANISM = CaliperType(), MechanismType()
 
 def names_table(name: str) -> RenderableType:
     """Table of the dimensions of a named caliper with their usual values."""
-    model = NAMED[name]
+    design = NAMED[name]()
     rows = [
-        (field.name, _show_dimension(getattr(model(), field.name), field), field.metadata["meaning"])
-        for field in dataclasses.fields(model)
+        (key, _show_dimension(getattr(design, key), entry.unit), entry.meaning)
+        for key, entry in inputs_of(NAMED[name]).items()
     ]
-    return table(f"{name}: {model.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))
+    return table(f"{name}: {design.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))
 
 
-def _show_dimension(value: Any, field: dataclasses.Field[Any]) -> str:
-    if field.metadata.get("unit") != "m":
+def _show_dimension(value: Any, unit: str) -> str:
+    if unit != "m":
         return str(value)
     if isinstance(value, tuple):
         return f"({value[0] * 1e3:.5g}, {value[1] * 1e3:.5g}) mm"

@@ -27,7 +27,7 @@ from brakes.answers.planar import (
 from brakes.config.mechanism import CaliperInput, MechanismInput
 from brakes.drawings.mechanism import draw_open_and_closed
 from brakes.drawings.mechanism_stroke import plot_curves
-from brakes.planar import Equilibrium, Mechanism, Stroke, assemble, solve, stroke
+from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
 
 _SCALES = {"mm": 1e-3, "deg": pi / 180}
 
@@ -38,7 +38,7 @@ def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
     return (*loads, *joint_outputs(mechanism, lambda answer: answer.last.magnitudes))
 
 
-def _load_outputs(load: Any) -> tuple[Output, Output]:
+def _load_outputs(load: Load) -> tuple[Output, Output]:
     name, key = load.name, name_output(load.name)
     _, travel, size = units_of(load)
     return (

@@ -19,17 +19,7 @@ from brakes.answers.base import Answer
 from brakes.config.mechanism import CaliperInput, MechanismInput
 from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
-from brakes.planar import (
-    Bar,
-    Cable,
-    Equilibrium,
-    Mechanism,
-    Moment,
-    Position,
-    RotationLock,
-    Stroke,
-    TorsionSpring,
-)
+from brakes.planar import Equilibrium, Joint, Load, Mechanism, Position, Stroke
 
 _FRAMES = 30  # of an animation
 _ROWS = 5  # of a stroke's table
@@ -104,10 +94,9 @@ class PlanarAnswer(Answer):
         animate(Position(mechanism, motion.position.batch[frames]), path, captions.__getitem__, force)
 
 
-def units_of(load: object) -> tuple[float, str, str]:
+def units_of(load: Load) -> tuple[float, str, str]:
     """Factor and unit of a load's travel for people, and the unit of its size."""
-    turns = isinstance(load, Moment | TorsionSpring)
-    return (180 / np.pi, "deg", "N m") if turns else (1e3, "mm", "N")
+    return (180 / np.pi, "deg", load.unit) if load.is_couple else (1e3, "mm", load.unit)
 
 
 def joint_outputs(mechanism: Mechanism, magnitudes: Any) -> list[Output]:
@@ -117,7 +106,7 @@ def joint_outputs(mechanism: Mechanism, magnitudes: Any) -> list[Output]:
             f"largest_{name_output(joint.name)}",
             f"largest force of {joint.name}",
             lambda answer, name=joint.name: np.max(np.abs(magnitudes(answer)[name])),
-            "N m" if isinstance(joint, RotationLock) else "N",
+            joint.unit,
         )
         for joint in mechanism.joints
     ]
@@ -147,20 +136,17 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
     return table(title, heads, [*loads, (), *joints, *_member_rows(equilibrium)], (0, 1, 5))
 
 
-def _joint_row(joint: Any, equilibrium: Equilibrium) -> Sequence[str]:
-    ends = (joint.bodies[0], joint.bodies[-1]) if isinstance(joint, Cable) else (joint.body, joint.other)
+def _joint_row(joint: Joint, equilibrium: Equilibrium) -> Sequence[str]:
     force = np.ravel(equilibrium.reactions.get(joint.name, (np.nan, np.nan)))
     size = equilibrium.magnitudes[joint.name]
-    turns = isinstance(joint, RotationLock)
-    xy = ("", "") if turns else (format_force(force[0]), format_force(force[1]))
-    unit = "N m" if turns else _sense(joint, float(np.ravel(size)[0]))
-    return (joint.name, f"on {ends[0]} from {ends[1]}", *xy, format_force(size), unit)
+    xy = ("", "") if joint.is_couple else (format_force(force[0]), format_force(force[1]))
+    unit = joint.unit if joint.is_couple else _sense(joint, float(np.ravel(size)[0]))
+    ends = f"on {joint.acts_on[0]} from {joint.acts_on[-1]}"
+    return (joint.name, ends, *xy, format_force(size), unit)
 
 
-def _sense(joint: object, size: float) -> str:
-    if not isinstance(joint, Bar) or not np.isfinite(size):
-        return ""
-    return "tension" if size > 0 else "compression"
+def _sense(joint: Joint, size: float) -> str:
+    return "" if not np.isfinite(size) else joint.signs[0] if size > 0 else joint.signs[1]
 
 
 def _member_rows(equilibrium: Equilibrium) -> Iterable[Sequence[str]]:

@@ -12,7 +12,7 @@ from brakes.calipers.designs import (
     VBrake,
 )
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
-from brakes.calipers.stopping import Stop, stop
+from brakes.calipers.stopping import StoppingDistance, stop
 
 __all__ = [
     "NAMED",
@@ -26,7 +26,7 @@ __all__ = [
     "PadWear",
     "PivotFriction",
     "SinglePivot",
-    "Stop",
+    "StoppingDistance",
     "VBrake",
     "stop",
 ]

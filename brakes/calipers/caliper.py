@@ -5,34 +5,39 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from beamdyn.common.checks import count, not_negative, positive, real_array
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
 from brakes.planar import (
-    Cable,
-    Contact,
     Equilibrium,
-    Force,
+    Joint,
     Mechanism,
-    Pin,
     Position,
-    Spring,
-    TorsionSpring,
     solve,
     solve_with_friction,
     stroke,
 )
-from brakes.planar.joints import Joint
+from brakes.planar.described import Described, check_inputs
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
-Split = Literal["equal force", "equal work"]
-_SPLITS = ("equal force", "equal work")
 _FINGER = 40.0  # N, a firm squeeze
 _NOISE = 1e-9  # part of the largest force that is rounding
 _CLOSED = 1e-12  # of the clearance: Newton's last step
+
+Split = Annotated[
+    Literal["equal force", "equal work"],
+    Described("choice", "how the rim loads the two pads", choices=("equal force", "equal work")),
+]
+LeverRatio = Annotated[
+    float, Described("number", "travel of the finger over that of the cable", bound="positive")
+]
+Clearance = Annotated[
+    float, Described("number", "mean gap between pad and rim, open", unit="m", bound="positive")
+]
+PivotRadius = Annotated[float, Described("number", "radius of the pivots", unit="m", bound="not negative")]
 
 
 class _Forces(NamedTuple):
@@ -79,20 +84,15 @@ class Caliper:
     cable: str = CABLE
     pads: tuple[str, str] = (RIGHT_PAD, LEFT_PAD)
     split: Split = "equal force"
-    lever_ratio: float = 4.0
-    clearance: float = 1.25e-3
-    pivot_radius: float = 4e-3
+    lever_ratio: LeverRatio = 4.0
+    clearance: Clearance = 1.25e-3
+    pivot_radius: PivotRadius = 4e-3
     name: str = "caliper"
 
     def __post_init__(self) -> None:
-        if self.split not in _SPLITS:
-            raise ValueError(f"split = {self.split!r}: give {' or '.join(map(repr, _SPLITS))}")
-        positive("lever_ratio", self.lever_ratio)
-        positive("clearance", self.clearance, "m")
-        not_negative("pivot_radius", self.pivot_radius, "m")
+        check_inputs(self)
         for name in (self.cable, *self.pads):
-            if isinstance(self.mechanism.load(name), Spring | TorsionSpring):
-                raise ValueError(f"load {name!r} is a spring: name a force, a moment or a cable pair")
+            self.mechanism.load(name).with_magnitude(None)
         if len({self.cable, *self.pads}) < 3:
             raise ValueError(f"cable {self.cable!r} and pads {self.pads}: name three different loads")
 
@@ -102,7 +102,7 @@ class Caliper:
     def free(self) -> Mechanism:
         """The mechanism before the pads touch: with what centres it, and without tension."""
         held = replace(self.mechanism, joints=(*self.mechanism.joints, *self.centring))
-        return _loaded(held, {self.cable: 0.0, **dict.fromkeys(self.pads, 0.0)})
+        return _with_magnitudes(held, {self.cable: 0.0, **dict.fromkeys(self.pads, 0.0)})
 
     @cached_property
     def contact(self) -> float:
@@ -196,7 +196,7 @@ class Caliper:
         return solve(self._with(tension, right, None), position[0])
 
     def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
-        return _loaded(
+        return _with_magnitudes(
             self.mechanism, dict(zip((self.cable, *self.pads), (tension, right, left), strict=True))
         )
 
@@ -227,20 +227,14 @@ class Caliper:
         motion = stroke(self.free, self.cable, [travel])
         tension = self.lever_ratio * _FINGER
         right, left = self._forces(motion.position, tension).pads[0]
-        joints = tuple(
-            replace(joint, radius=self.pivot_radius, friction=coefficient)
-            if isinstance(joint, Pin)
-            else joint
-            for joint in self.free.joints
-        )
-        rubbing = _loaded(
-            replace(self.free, joints=joints), {self.cable: None, self.pads[0]: right, self.pads[1]: left}
-        )
-        found = solve_with_friction(rubbing, self.cable, motion.position.of(rubbing))
-        squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (found.squeeze, found.release))
+        joints = tuple(joint.with_pivot(self.pivot_radius, coefficient) for joint in self.free.joints)
+        magnitudes = {self.cable: None, self.pads[0]: right, self.pads[1]: left}
+        mechanism = _with_magnitudes(replace(self.free, joints=joints), magnitudes)
+        band = solve_with_friction(mechanism, self.cable, motion.position.of(mechanism))
+        squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (band.squeeze, band.release))
         locked = [
             f"{way}: {e.message}"
-            for way, e in (("squeeze", found.squeeze), ("release", found.release))
+            for way, e in (("squeeze", band.squeeze), ("release", band.release))
             if e.status == "self-locking"
         ]
         return PivotFriction(
@@ -255,9 +249,7 @@ class Caliper:
     def worn(self, lost: float) -> Caliper:
         """The caliper whose pads have each lost a thickness [m]: their faces lie further from the rim."""
         lost = not_negative("lost", lost, "m", "it is the thickness that a pad has lost")
-        loads = tuple(
-            _shifted(load, lost) if load.name in self.pads else load for load in self.mechanism.loads
-        )
+        loads = tuple(load.shifted(lost) if load.name in self.pads else load for load in self.mechanism.loads)
         return replace(self, mechanism=replace(self.mechanism, loads=loads), clearance=self.clearance + lost)
 
     def wear(self, lost: Sequence[float] | np.ndarray) -> PadWear:
@@ -270,22 +262,13 @@ class Caliper:
         return PadWear(lost, cable, cable * self.lever_ratio, advantage)
 
 
-def _loaded(mechanism: Mechanism, magnitudes: dict[str, float | None]) -> Mechanism:
+def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) -> Mechanism:
     """The mechanism with other magnitudes of some of its loads."""
     loads = tuple(
-        replace(load, magnitude=magnitudes[load.name])
-        if load.name in magnitudes and not isinstance(load, Spring | TorsionSpring)
-        else load
+        load.with_magnitude(magnitudes[load.name]) if load.name in magnitudes else load
         for load in mechanism.loads
     )
     return replace(mechanism, loads=loads)
-
-
-def _shifted(load: object, lost: float) -> object:
-    if not isinstance(load, Force):
-        raise ValueError("the wear of a pad needs its load to be a force on its face")
-    (x, y), (dx, dy) = load.at, np.array(load.direction) / np.hypot(*load.direction)
-    return replace(load, at=(x + lost * float(dx), y + lost * float(dy)))
 
 
 def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float) -> _Forces:
@@ -298,20 +281,17 @@ def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: n
         return x if a is b else w * x + (1 - w) * y
 
     forces = np.stack([mean(a.amplitudes[name], b.amplitudes[name]) for name in pads], axis=-1)
-    reactions = {name: mean(force, b.reactions[name]) for name, force in a.reactions.items()}
-    joints = a.position.mechanism.joints
-    sizes = {  # of a pin not the mean of the sizes, but the size of the mean
-        joint.name: np.linalg.norm(reactions[joint.name], axis=-1)
-        if isinstance(joint, Pin)
-        else mean(a.magnitudes[joint.name], b.magnitudes[joint.name])
-        for joint in joints
+    mechanism, multiplier = a.position.mechanism, mean(a.multiplier, b.multiplier)
+    sizes = {
+        joint.name: joint.size(multiplier[:, mechanism.system.joints[joint.name]])
+        for joint in mechanism.joints
     }
-    one_way = [*pads, *(joint.name for joint in joints if isinstance(joint, Contact | Cable))]
+    one_way = [*pads, *(joint.name for joint in mechanism.joints if joint.one_way)]
     return _Forces(
         worst=a if a.status != "determined" else b,
         warnings=_one_way({**sizes, **dict(zip(pads, forces.T, strict=True))}, one_way),
         pads=forces,
-        reactions=reactions,
+        reactions={name: mean(force, b.reactions[name]) for name, force in a.reactions.items()},
         magnitudes=sizes,
         virtual_work=np.maximum(a.virtual_work, b.virtual_work),
         residual=np.maximum(a.residual, b.residual),

@@ -8,24 +8,29 @@ whose own coordinates are lost; the others have dimensions usual for their kind,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
 
-from brakes.calipers.caliper import CABLE, LEFT_PAD, RIGHT_PAD, Caliper, Split
+from brakes.calipers.caliper import (
+    CABLE,
+    LEFT_PAD,
+    RIGHT_PAD,
+    Caliper,
+    Clearance,
+    LeverRatio,
+    PivotRadius,
+    Split,
+)
 from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
+from brakes.planar.described import Described
+from brakes.planar.points import Point
 
-Point = tuple[float, float]
 MM = 1e-3
 RIGHT, LEFT = "right arm", "left arm"
 
 
-def _mm(x: float, y: float) -> Point:
-    """A point in mm."""
-    return x * MM, y * MM
-
-
-def _metres(meaning: str) -> dict[str, str]:
-    return {"unit": "m", "meaning": meaning}
+def _point(meaning: str) -> Described:
+    return Described("point", meaning, unit="m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,11 +49,9 @@ class Design:
 
     label: ClassVar[str]
 
-    lever_ratio: float = field(
-        default=4.0, metadata={"unit": "", "meaning": "travel of the finger over that of the cable"}
-    )
-    clearance: float = field(default=1.25e-3, metadata=_metres("mean gap between pad and rim, open"))
-    pivot_radius: float = field(default=4e-3, metadata=_metres("radius of the pivots"))
+    lever_ratio: LeverRatio = 4.0
+    clearance: Clearance = 1.25e-3
+    pivot_radius: PivotRadius = 4e-3
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -89,26 +92,21 @@ class EeBrake(Design):
 
     label = "eeBrake (reconstructed)"
 
-    pivot: Point = field(default=_mm(17.5, -19), metadata=_metres("pivot of the right lever on the panel"))
-    pad: Point = field(default=_mm(12.75, -45), metadata=_metres("right pad"))
-    upper_pin: Point = field(
-        default=_mm(25.5, 11.053947511008978),
-        metadata=_metres("pin of the strut on the right lever; mirrored, O"),
+    pivot: Annotated[Point, _point("pivot of the right lever on the panel")] = (17.5 * MM, -19 * MM)
+    pad: Annotated[Point, _point("right pad")] = (12.75 * MM, -45 * MM)
+    upper_pin: Annotated[Point, _point("pin of the strut on the right lever; mirrored, O")] = (
+        25.5 * MM,
+        11.053947511008978 * MM,
     )
-    link_pin: Point = field(
-        default=_mm(-22, 20.679813957477265), metadata=_metres("pin A of the link on the upper-left lever")
+    link_pin: Annotated[Point, _point("pin A of the link on the upper-left lever")] = (
+        -22 * MM,
+        20.679813957477265 * MM,
     )
-    strut_pin: Point = field(
-        default=_mm(-12.6, 29), metadata=_metres("pin B of the strut on the upper-left lever")
-    )
-    housing: Point = field(
-        default=_mm(-3.765798714439799, 33.9), metadata=_metres("face C of the cable's housing")
-    )
-    link_anchor: Point = field(default=_mm(-3.6, 14.9), metadata=_metres("pin G of the link on the panel"))
-    cable_anchor: Point = field(
-        default=_mm(17.5, -19), metadata=_metres("end of the inner wire on the panel")
-    )
-    split: Split = field(default="equal force", metadata={"meaning": "how the rim loads the two pads"})
+    strut_pin: Annotated[Point, _point("pin B of the strut on the upper-left lever")] = (-12.6 * MM, 29 * MM)
+    housing: Annotated[Point, _point("face C of the cable's housing")] = (-3.765798714439799 * MM, 33.9 * MM)
+    link_anchor: Annotated[Point, _point("pin G of the link on the panel")] = (-3.6 * MM, 14.9 * MM)
+    cable_anchor: Annotated[Point, _point("end of the inner wire on the panel")] = (17.5 * MM, -19 * MM)
+    split: Split = "equal force"
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -143,12 +141,10 @@ class SinglePivot(Design):
 
     label = "single-pivot side-pull"
 
-    bolt: Point = field(default=_mm(0, 0), metadata=_metres("mount bolt, on which both arms turn"))
-    pad: Point = field(default=_mm(12.5, -48), metadata=_metres("right pad"))
-    clamp: Point = field(default=_mm(-42, 2), metadata=_metres("cable clamp, on the arm of the right pad"))
-    housing: Point = field(
-        default=_mm(-42, 34), metadata=_metres("stop of the housing, on the arm of the left pad")
-    )
+    bolt: Annotated[Point, _point("mount bolt, on which both arms turn")] = (0 * MM, 0 * MM)
+    pad: Annotated[Point, _point("right pad")] = (12.5 * MM, -48 * MM)
+    clamp: Annotated[Point, _point("cable clamp, on the arm of the right pad")] = (-42 * MM, 2 * MM)
+    housing: Annotated[Point, _point("stop of the housing, on the arm of the left pad")] = (-42 * MM, 34 * MM)
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -178,15 +174,13 @@ class DualPivot(Design):
 
     label = "dual-pivot side-pull"
 
-    bolt: Point = field(default=_mm(0, 0), metadata=_metres("mount bolt, pivot of the arm of the left pad"))
-    side_pivot: Point = field(default=_mm(27, 4), metadata=_metres("pivot of the arm of the right pad"))
-    roller: Point = field(default=_mm(13, 1), metadata=_metres("roller between the arms"))
-    pad: Point = field(default=_mm(12.5, -46), metadata=_metres("right pad"))
-    clamp: Point = field(default=_mm(-38, 2), metadata=_metres("cable clamp, on the arm of the right pad"))
-    housing: Point = field(
-        default=_mm(-38, 34), metadata=_metres("stop of the housing, on the arm of the left pad")
-    )
-    split: Split = field(default="equal force", metadata={"meaning": "how the rim loads the two pads"})
+    bolt: Annotated[Point, _point("mount bolt, pivot of the arm of the left pad")] = (0 * MM, 0 * MM)
+    side_pivot: Annotated[Point, _point("pivot of the arm of the right pad")] = (27 * MM, 4 * MM)
+    roller: Annotated[Point, _point("roller between the arms")] = (13 * MM, 1 * MM)
+    pad: Annotated[Point, _point("right pad")] = (12.5 * MM, -46 * MM)
+    clamp: Annotated[Point, _point("cable clamp, on the arm of the right pad")] = (-38 * MM, 2 * MM)
+    housing: Annotated[Point, _point("stop of the housing, on the arm of the left pad")] = (-38 * MM, 34 * MM)
+    split: Split = "equal force"
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -213,11 +207,11 @@ class CentrePull(Design):
 
     label = "centre-pull"
 
-    pivot: Point = field(default=_mm(20, 0), metadata=_metres("pivot of the right arm"))
-    pad: Point = field(default=_mm(12.5, -48), metadata=_metres("right pad"))
-    hook: Point = field(default=_mm(-32, 24), metadata=_metres("end of the straddle cable on the right arm"))
-    yoke: Point = field(default=_mm(0, 60), metadata=_metres("yoke on the straddle cable"))
-    stop: Point = field(default=_mm(0, 120), metadata=_metres("stop of the main cable's housing"))
+    pivot: Annotated[Point, _point("pivot of the right arm")] = (20 * MM, 0 * MM)
+    pad: Annotated[Point, _point("right pad")] = (12.5 * MM, -48 * MM)
+    hook: Annotated[Point, _point("end of the straddle cable on the right arm")] = (-32 * MM, 24 * MM)
+    yoke: Annotated[Point, _point("yoke on the straddle cable")] = (0 * MM, 60 * MM)
+    stop: Annotated[Point, _point("stop of the main cable's housing")] = (0 * MM, 120 * MM)
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -238,11 +232,11 @@ class Cantilever(Design):
 
     label = "cantilever"
 
-    pivot: Point = field(default=_mm(40, -25), metadata=_metres("boss of the right arm"))
-    pad: Point = field(default=_mm(12.5, 0), metadata=_metres("right pad"))
-    hook: Point = field(default=_mm(62, 12), metadata=_metres("end of the straddle cable on the right arm"))
-    yoke: Point = field(default=_mm(0, 70), metadata=_metres("yoke on the straddle cable"))
-    stop: Point = field(default=_mm(0, 130), metadata=_metres("stop of the main cable's housing"))
+    pivot: Annotated[Point, _point("boss of the right arm")] = (40 * MM, -25 * MM)
+    pad: Annotated[Point, _point("right pad")] = (12.5 * MM, 0 * MM)
+    hook: Annotated[Point, _point("end of the straddle cable on the right arm")] = (62 * MM, 12 * MM)
+    yoke: Annotated[Point, _point("yoke on the straddle cable")] = (0 * MM, 70 * MM)
+    stop: Annotated[Point, _point("stop of the main cable's housing")] = (0 * MM, 130 * MM)
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""
@@ -261,12 +255,10 @@ class VBrake(Design):
 
     label = "V-brake"
 
-    lever_ratio: float = field(
-        default=2.2, metadata={"unit": "", "meaning": "travel of the finger over that of the cable"}
-    )
-    pivot: Point = field(default=_mm(40, -25), metadata=_metres("boss of the right arm"))
-    pad: Point = field(default=_mm(12.5, 0), metadata=_metres("right pad"))
-    clamp: Point = field(default=_mm(34, 80), metadata=_metres("cable clamp at the top of the right arm"))
+    lever_ratio: LeverRatio = 2.2
+    pivot: Annotated[Point, _point("boss of the right arm")] = (40 * MM, -25 * MM)
+    pad: Annotated[Point, _point("right pad")] = (12.5 * MM, 0 * MM)
+    clamp: Annotated[Point, _point("cable clamp at the top of the right arm")] = (34 * MM, 80 * MM)
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""

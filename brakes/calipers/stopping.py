@@ -14,7 +14,7 @@ _RTOL, _ATOL = 1e-12, 1e-12  # of the integration [m]: below any distance that i
 
 
 @dataclass(frozen=True)
-class Stop(Result):
+class StoppingDistance(Result):
     """A stop on one rim with two pads.
 
     Parameters
@@ -46,7 +46,7 @@ def stop(
     wheel_inertia: float = 0.0,
     tyre_radius: float | None = None,
     rim_radius: float | None = None,
-) -> Stop:
+) -> StoppingDistance:
     """Stop on level ground by the pads of one rim alone, without slip of the tyre.
 
     With the force F on each of two pads, E = (M + J / R^2) v^2 / 2 = integral of 2 mu F (r / R) ds over the
@@ -71,7 +71,7 @@ def stop(
 
     Returns
     -------
-    Stop
+    StoppingDistance
 
     Raises
     ------
@@ -125,8 +125,10 @@ def _integrated(energy: float, factor: float, force: Callable[[float], float]) -
     return float(found.y[0, -1]) if found.success else np.inf
 
 
-def _result(distance: float, energy: float, speed: float) -> Stop:
+def _result(distance: float, energy: float, speed: float) -> StoppingDistance:
     if distance == np.inf:
-        return Stop(distance, energy, 0.0, "does not stop", "the pads do not press long enough: no stop")
+        return StoppingDistance(
+            distance, energy, 0.0, "does not stop", "the pads do not press long enough: no stop"
+        )
     deceleration = speed**2 / (2 * distance) if distance else 0.0
-    return Stop(distance, energy, deceleration, "stops", f"stops in {distance:.6g} m")
+    return StoppingDistance(distance, energy, deceleration, "stops", f"stops in {distance:.6g} m")

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, cached_property
 from os import PathLike
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, create_model
+from pydantic import AfterValidator, Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
 from beamdyn.common.edge.units import quantity, show
-from brakes import planar
-from brakes.calipers import NAMED, Caliper, Design, Stop, stop
-from brakes.planar import GROUND, Mechanism
-from brakes.planar.rows import Point as Coordinates
+from brakes.calipers import NAMED, Caliper, Design, StoppingDistance, stop
+from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
+from brakes.planar.described import Described
+from brakes.planar.described import inputs_of as described_inputs
+from brakes.planar.points import Point as Coordinates
 
 __all__ = [
     "CaliperInput",
@@ -60,7 +61,7 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
     name = data.get("caliper")
     if isinstance(name, str):
         return validated(_model_of(name) if name in NAMED else CaliperInput, data, source)
-    return validated(MechanismInput, _with_points(data), source)
+    return validated(CompleteMechanismInput, _with_points(data), source)
 
 
 def named(name: str) -> CaliperInput:
@@ -92,17 +93,17 @@ class DirectionQuantity(Quantity):
         return tuple(Quantity().parse(value) for value in _two(given, '[1, 0] or "30 deg"'))
 
 
-class Turned(float):
-    """A travel given as an angle [rad]."""
+class Angle(float):
+    """A travel that was given as an angle [rad]."""
 
 
 class TravelQuantity(Quantity):
     """A travel: a length, or an angle where the driver is a moment."""
 
     def convert(self, given: object) -> float:
-        """A length [m], or `Turned`."""
+        """A length [m], or `Angle`."""
         try:
-            return Turned(quantity(given, "rad"))
+            return Angle(quantity(given, "rad"))
         except ValueError:
             return quantity(given, "m")
 
@@ -114,13 +115,6 @@ def _two(given: object, example: str) -> list[Any]:
 
 
 Point = Annotated[Coordinates, PointQuantity("m", meaning="point in the drawing")]
-Direction = Annotated[Coordinates, DirectionQuantity(meaning="direction, as a vector or an angle")]
-Name = Annotated[str, Field(description="name")]
-Body = Annotated[str, Field(description="body")]
-Other = Annotated[str, Field(description="other body; the ground if not given")]
-Rubbing = Annotated[float, Quantity(symbol="mu", meaning="coefficient of friction", least=0)]
-ForceSize = Annotated[float, Quantity("N", meaning="magnitude; unknown if not given")]
-Length = Annotated[float, Quantity("m", meaning="length, if not the drawing's", above=0)]
 
 
 # A caliper's run ----------------------------------------------------------------------------------
@@ -137,11 +131,11 @@ class RunInput(Section):
         None
     )
     points: Annotated[int, Field(description="positions of the stroke", ge=2)] = 100
-    friction: Rubbing = 0.0
+    friction: Annotated[float, Quantity(symbol="mu", meaning="coefficient of friction", least=0)] = 0.0
     wear: list[Annotated[float, Quantity("m", meaning="thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
 
 
-class StopInput(Section):
+class CaliperStopInput(Section):
     """[stop]: a vehicle stopped by this brake alone."""
 
     mass: Annotated[float, Quantity("kg", symbol="M", meaning="mass, wheels included", above=0)]
@@ -155,8 +149,8 @@ class StopInput(Section):
         None
     )
 
-    def with_force(self, pad_force: float) -> Stop:
-        """The stop with a force on each pad [N]."""
+    def with_force(self, pad_force: float) -> StoppingDistance:
+        """The stopping distance with a force on each pad [N]."""
         return stop(pad_force=pad_force, **dict(self))
 
 
@@ -183,7 +177,7 @@ class CaliperInput(Section):
     ]
     title: Annotated[str, Field(description="title")] = ""
     run: RunInput = RunInput()
-    stop: StopInput | None = None
+    stop: CaliperStopInput | None = None
 
     @property
     def core(self) -> Caliper:
@@ -196,9 +190,11 @@ class CaliperInput(Section):
 def _model_of(name: str) -> type[CaliperInput]:
     """The model of a caliper's file, with the dimensions of its design."""
     design = NAMED[name]
-    fields: dict[str, Any] = {f.name: (_annotation(f), f.default) for f in dataclasses.fields(design)}
     dimensions = create_model(
-        f"{design.__name__}Dimensions", __base__=DimensionsInput, __doc__=DimensionsInput.__doc__, **fields
+        f"{design.__name__}Dimensions",
+        __base__=DimensionsInput,
+        __doc__=DimensionsInput.__doc__,
+        **_fields_of(design),
     )
     dimensions.design = design
     return create_model(
@@ -209,202 +205,104 @@ def _model_of(name: str) -> type[CaliperInput]:
     )
 
 
-def _annotation(field: dataclasses.Field[Any]) -> Any:
-    """What a dimension is in a file."""
-    unit, meaning = field.metadata.get("unit"), field.metadata["meaning"]
-    if unit is None:
-        return Annotated[Literal["equal force", "equal work"], Field(description=meaning)]
-    if isinstance(field.default, tuple):
-        return Annotated[Coordinates, PointQuantity(unit, meaning=meaning)]
-    return Annotated[float, Quantity(unit, meaning=meaning)]
+# Joints and loads ---------------------------------------------------------------------------------
+
+
+class PartInput(CoreSection):
+    """A joint or load: its keys are the inputs that its class describes."""
+
+    part: ClassVar[type[Part]]
+
+    @cached_property
+    def core(self) -> Part:
+        """The joint or load."""
+        return self.part(**dict(self))
+
+
+@cache
+def model_of_part(part: type[Part]) -> type[PartInput]:
+    """The model of the tables of a joint or load."""
+    model = create_model(
+        f"{part.__name__}Input", __base__=PartInput, __doc__=f"[[{part.key()}]].", **_fields_of(part)
+    )
+    model.part = part
+    return model
+
+
+def _fields_of(core: type) -> dict[str, Any]:
+    """Annotation and default of each described input of a core class."""
+    defaults = {field.name: field.default for field in dataclasses.fields(core)}
+    return {key: _field_of(d, defaults[key]) for key, d in described_inputs(core).items()}
+
+
+def _field_of(described: Described, default: object) -> tuple[Any, Any]:
+    annotation = _KINDS[described.kind](described)
+    if default is None:
+        return annotation | None, None
+    if default is dataclasses.MISSING:
+        return annotation, ... if described.default is None else described.default
+    return annotation, default
+
+
+def _number(d: Described) -> Any:
+    words: dict[str, Any] = {"symbol": d.symbol, "meaning": d.meaning, "remedy": d.remedy}
+    bounds = {"positive": {"above": 0.0}, "not negative": {"least": 0.0}}.get(d.bound or "", {})
+    return Annotated[float, Quantity(d.unit, **words, **bounds)]
+
+
+def _point(d: Described) -> Any:
+    return Annotated[Coordinates, PointQuantity(d.unit, meaning=d.meaning)]
+
+
+def _list_of(kind: Any, meaning: str) -> Any:
+    return Annotated[list[kind], AfterValidator(tuple), Field(description=meaning)]
+
+
+_KINDS: dict[str, Callable[[Described], Any]] = {
+    "name": lambda d: Annotated[str, Field(description=d.meaning)],
+    "names": lambda d: _list_of(str, d.meaning),
+    "choice": lambda d: Annotated[Literal[d.choices], Field(description=d.meaning)],
+    "flag": lambda d: Annotated[bool, Field(description=d.meaning)],
+    "number": _number,
+    "point": _point,
+    "points": lambda d: _list_of(_point(d), d.meaning),
+    "direction": lambda d: Annotated[Coordinates, DirectionQuantity(meaning=d.meaning)],
+}
 
 
 # Any mechanism ------------------------------------------------------------------------------------
 
 
-class _Part(CoreSection):
-    """A joint or load: its keys are those of the core's."""
-
-    part: ClassVar[type]
-    name: Name
-
-    @cached_property
-    def core(self) -> Any:
-        """The joint or load."""
-        return self.part(**dict(self))
-
-
-class PinInput(_Part):
-    """[[pin]]."""
-
-    part = planar.Pin
-    body: Body
-    other: Other = GROUND
-    at: Point
-    at_other: Point | None = None
-    radius: Annotated[float, Quantity("m", symbol="r", meaning="radius of the pivot", least=0)] = 0.0
-    friction: Rubbing = 0.0
-
-
-class BarInput(_Part):
-    """[[bar]]."""
-
-    part = planar.Bar
-    body: Body
-    other: Other = GROUND
-    at: Point
-    to: Point
-    length: Length | None = None
-
-
-class SlotInput(_Part):
-    """[[slot]]."""
-
-    part = planar.Slot
-    body: Body
-    other: Other = GROUND
-    at: Point
-    along: Direction
-    on: Point | None = None
-    friction: Rubbing = 0.0
-
-
-class ContactInput(_Part):
-    """[[contact]]."""
-
-    part = planar.Contact
-    body: Body
-    other: Other = GROUND
-    at: Point
-    normal: Direction
-    on: Point | None = None
-    friction: Rubbing = 0.0
-
-
-class RotationLockInput(_Part):
-    """[[rotation_lock]]."""
-
-    part = planar.RotationLock
-    body: Body
-    other: Other = GROUND
-    ratio: Annotated[float, Quantity(meaning="ratio of the angles")] = 1.0
-
-
-class CableInput(_Part):
-    """[[cable]] of fixed length."""
-
-    part = planar.Cable
-    bodies: Annotated[list[str], Field(description="body of each point")]
-    points: list[Point]
-    length: Length | None = None
-
-    @cached_property
-    def core(self) -> planar.Cable:
-        """The cable."""
-        return planar.Cable(self.name, tuple(self.bodies), tuple(self.points), self.length)
-
-
-class ForceInput(_Part):
-    """[[force]]."""
-
-    part = planar.Force
-    body: Body
-    at: Point
-    direction: Direction
-    magnitude: ForceSize | None = None
-    follows: Annotated[bool, Field(description="whether it turns with the body")] = False
-
-
-class MomentInput(_Part):
-    """[[moment]]."""
-
-    part = planar.Moment
-    body: Body
-    magnitude: Annotated[float, Quantity("N m", meaning="magnitude; unknown if not given")] | None = None
-    other: Other = GROUND
-
-
-class CablePairInput(_Part):
-    """[[cable_pair]]: a cable and its housing."""
-
-    part = planar.CablePair
-    body: Body
-    other: Other = GROUND
-    at: Point
-    to: Point
-    magnitude: ForceSize | None = None
-
-
-class SpringInput(_Part):
-    """[[spring]]."""
-
-    part = planar.Spring
-    body: Body
-    other: Other = GROUND
-    at: Point
-    to: Point
-    stiffness: Annotated[float, Quantity("N/m", symbol="k", meaning="stiffness", least=0)]
-    free_length: Annotated[float, Quantity("m", meaning="length without force", least=0)]
-
-
-class TorsionSpringInput(_Part):
-    """[[torsion_spring]]."""
-
-    part = planar.TorsionSpring
-    body: Body
-    stiffness: Annotated[float, Quantity("N m/rad", symbol="k", meaning="stiffness", least=0)]
-    free_angle: Annotated[float, Quantity("rad", meaning="angle without moment, from the drawing")]
-    other: Other = GROUND
-
-
 class RolesInput(Section):
-    """[caliper] of a mechanism: which of its loads are the cable and the pads."""
+    """[caliper] of a mechanism: its cable and pads, and what `Caliper` describes (added by `_Roles`)."""
 
     cable: Annotated[str, Field(description="load that closes the brake")]
     pads: Annotated[
         list[str], Field(description="forces on the right and left pad", min_length=2, max_length=2)
     ]
     centring: Annotated[list[str], Field(description="joints that hold only until the pads touch")] = []  # noqa: RUF012
-    split: Annotated[
-        Literal["equal force", "equal work"], Field(description="how the rim loads coupled pads")
-    ] = "equal force"
-    lever_ratio: Annotated[float, Quantity(meaning="travel of finger over cable", above=0)] = 4.0
-    clearance: Annotated[float, Quantity("m", meaning="mean gap between pad and rim", above=0)] = 1.25e-3
-    pivot_radius: Annotated[float, Quantity("m", meaning="radius of the pivots", least=0)] = 4e-3
-
-
-_JOINTS = ("pin", "bar", "slot", "contact", "rotation_lock", "cable")
-_LOADS = ("force", "moment", "cable_pair", "spring", "torsion_spring")
 
 
 class MechanismInput(CoreSection):
-    """Any mechanism: its bodies, joints and loads, and where it is a caliper its cable and pads."""
+    """Any mechanism: its bodies, joints and loads, and where it is a caliper its cable and pads.
+
+    A list of tables for each kind of joint and load is added by `CompleteMechanismInput`.
+    """
 
     title: Annotated[str, Field(description="title")] = "mechanism"
     bodies: Annotated[list[str], Field(description="names of the bodies; the ground is there by itself")]
     points: dict[str, Point] = {}  # noqa: RUF012
-    pin: list[PinInput] = []  # noqa: RUF012
-    bar: list[BarInput] = []  # noqa: RUF012
-    slot: list[SlotInput] = []  # noqa: RUF012
-    contact: list[ContactInput] = []  # noqa: RUF012
-    rotation_lock: list[RotationLockInput] = []  # noqa: RUF012
-    cable: list[CableInput] = []  # noqa: RUF012
-    force: list[ForceInput] = []  # noqa: RUF012
-    moment: list[MomentInput] = []  # noqa: RUF012
-    cable_pair: list[CablePairInput] = []  # noqa: RUF012
-    spring: list[SpringInput] = []  # noqa: RUF012
-    torsion_spring: list[TorsionSpringInput] = []  # noqa: RUF012
     caliper: RolesInput | None = None
     run: RunInput = RunInput()
-    stop: StopInput | None = None
+    stop: CaliperStopInput | None = None
 
     @cached_property
     def core(self) -> Caliper | Mechanism:
         """The caliper, or the mechanism if it does not say which loads are cable and pads."""
         joints, loads = (
-            [p.core for kind in kinds for p in getattr(self, kind)] for kinds in (_JOINTS, _LOADS)
+            [table.core for part in parts for table in getattr(self, part.key())] for parts in (JOINTS, LOADS)
         )
-        self._check_run([load.name for load in loads])
+        self._check_run({load.name: load for load in loads})
         if self.caliper is None:
             return Mechanism(tuple(self.bodies), tuple(joints), tuple(loads))
         roles = self.caliper
@@ -418,7 +316,7 @@ class MechanismInput(CoreSection):
         rest = {key: value for key, value in roles if key not in ("centring", "pads")}
         return Caliper(mechanism, centring, pads=(roles.pads[0], roles.pads[1]), name=self.title, **rest)
 
-    def _check_run(self, loads: list[str]) -> None:
+    def _check_run(self, loads: Mapping[str, Load]) -> None:
         run = self.run
         if run.driver is None:
             if run.travel is not None and self.caliper is None:
@@ -428,31 +326,44 @@ class MechanismInput(CoreSection):
             raise ValueError(f"run.driver = {show(run.driver)}: no such load; name one of {', '.join(loads)}")
         if run.travel is None:
             raise ValueError("run.travel: missing; give the travel of the driver")
-        turns = run.driver in [moment.name for moment in self.moment]
-        if turns != isinstance(run.travel, Turned):
-            wanted = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
-            raise ValueError(f"run.travel: the driver {show(run.driver)} moves by {wanted}")
+        turns = loads[run.driver].is_couple
+        if turns != isinstance(run.travel, Angle):
+            travel = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
+            raise ValueError(f"run.travel: the driver {show(run.driver)} moves by {travel}")
+
+
+_Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_fields_of(Caliper))
+_TABLES: dict[str, Any] = {"caliper": (_Roles | None, None)} | {
+    part.key(): (list[model_of_part(part)], []) for part in (*JOINTS, *LOADS)
+}
+CompleteMechanismInput = create_model(
+    "CompleteMechanismInput", __base__=MechanismInput, __module__=__name__, **_TABLES
+)
 
 
 def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
     """The tables with the names of points replaced by what [points] says of them."""
     points = data.get("points")
     known = points if isinstance(points, dict) else {}
+    return dict(data) | {
+        part.key(): [_table_with_points(table, part, known) for table in data[part.key()]]
+        for part in (*JOINTS, *LOADS)
+        if isinstance(data.get(part.key()), list)
+    }
+
+
+def _table_with_points(table: Any, part: type[Part], known: Mapping[str, Any]) -> Any:
+    """The table of a joint or load with the names of points replaced; anything else as it is."""
+    if not isinstance(table, dict):
+        return table
 
     def place(value: Any) -> Any:
         return known.get(value, value) if isinstance(value, str) else value
 
-    def of_part(table: Any) -> Any:
-        if not isinstance(table, dict):
-            return table
-        found = {key: place(v) if key in ("at", "to", "on", "at_other") else v for key, v in table.items()}
-        if isinstance(found.get("points"), list):
-            found["points"] = [place(value) for value in found["points"]]
-        return found
-
-    return {
-        key: [of_part(table) for table in value]
-        if key in (*_JOINTS, *_LOADS) and isinstance(value, list)
-        else value
-        for key, value in data.items()
-    }
+    replaced = {}
+    for key, described in described_inputs(part).items():
+        if described.kind == "point" and key in table:
+            replaced[key] = place(table[key])
+        elif described.kind == "points" and isinstance(table.get(key), list):
+            replaced[key] = [place(value) for value in table[key]]
+    return table | replaced

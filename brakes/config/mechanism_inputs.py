@@ -8,22 +8,20 @@ from typing import Any
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
-from brakes.config.mechanism import CaliperInput, MechanismInput, PointQuantity, named
-from brakes.planar.rows import Point as Coordinates
+from brakes.config.mechanism import CaliperInput, CompleteMechanismInput, PointQuantity, model_of_part, named
+from brakes.planar import JOINTS, LOADS, Part
+from brakes.planar.points import Point as Coordinates
 
-PARTS = {
-    "pin": "pins: name, body, other (the ground if not given), at; radius, friction",
-    "bar": "bars: name, body, other, at, to; length",
-    "slot": "slots: name, body, other, at, along; on, friction",
-    "contact": "contacts: name, body, other, at, normal; on, friction",
-    "rotation_lock": "bodies that turn together: name, body, other; ratio",
-    "cable": "cables of fixed length: name, bodies, points; length",
-    "force": "forces: name, body, at, direction; magnitude (unknown if not given), follows",
-    "moment": "moments: name, body, other; magnitude",
-    "cable_pair": "cables with their housing: name, body, other, at, to; magnitude",
-    "spring": "springs: name, body, other, at, to, stiffness, free_length",
-    "torsion_spring": "torsion springs: name, body, other, stiffness, free_angle",
-}
+
+def _keys(part: type[Part]) -> str:
+    """What its tables are, the keys that must be given, and those that may."""
+    fields = model_of_part(part).model_fields
+    required = [key for key, field in fields.items() if field.is_required()]
+    rest = [key for key in fields if key not in required]
+    return f"{part.label}: {'; '.join(', '.join(keys) for keys in (required, rest) if keys)}"
+
+
+PARTS = {part.key(): _keys(part) for part in (*JOINTS, *LOADS)}
 _TABLES = ("points", *PARTS)
 
 
@@ -34,7 +32,9 @@ def caliper_inputs(name: str) -> list[Input]:
 
 def mechanism_inputs(points: Iterable[str]) -> list[Input]:
     """Inputs of a mechanism: one for each of its points, one for each list of parts."""
-    rest = {entry.path: entry for entry in describe(MechanismInput) if _table(entry.path) not in _TABLES}
+    rest = {
+        entry.path: entry for entry in describe(CompleteMechanismInput) if _table(entry.path) not in _TABLES
+    }
     place = PointQuantity("m", meaning="point in the drawing")
     return [
         rest.pop("title"),
@@ -50,7 +50,7 @@ def _table(path: str) -> str:
 
 
 def _input(path: str, kind: Any, asked: Quantity, required: bool = False) -> Input:
-    return Input(path, MechanismInput, kind, asked, (), required, None if required else [])
+    return Input(path, CompleteMechanismInput, kind, asked, (), required, None if required else [])
 
 
 def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:

@@ -9,7 +9,7 @@ import numpy as np
 from brakes.calipers import Caliper, CaliperStroke
 from brakes.drawings.mechanism import draw_open_and_closed, draw_rim, force_scale
 from brakes.drawings.mechanism_stroke import plot_advantage, plot_pad_ratio, plot_reactions
-from brakes.planar import Equilibrium, Force, Position
+from brakes.planar import Equilibrium, Position
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,10 +31,9 @@ def draw_caliper(caliper: Caliper, closed: Equilibrium, ax: Axes, key: bool = Tr
         Draw the key of colours and scale; without it the title has the scale.
     """
     place = closed.position
-    loads = [caliper.mechanism.load(name) for name in caliper.pads]
-    faces = [place.point(load.body, load.at) for load in loads if isinstance(load, Force)]
-    if len(faces) == 2:
-        draw_rim(np.array(faces), ax)
+    shapes = [shape for name in caliper.pads for shape in caliper.mechanism.load(name).shapes()]
+    if [shape.style for shape in shapes] == ["force", "force"]:
+        draw_rim(np.array([place.point(*shape.ends[0]) for shape in shapes]), ax)
     draw_open_and_closed(Position(place.mechanism, np.zeros_like(place.coordinates)), closed, ax, key)
     newtons = 1e-3 / force_scale(closed)
     ax.set_title(caliper.name if key else f"{caliper.name} (1 mm is {newtons:.3g} N)")

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.common.pictures import COLOURS, output_path
 from brakes.drawings import mechanism_parts as parts
-from brakes.planar import Action, Cable, Contact, Equilibrium, Position, Slot, free_body
+from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,13 +56,13 @@ def draw_mechanism(
             if labels:
                 _write(ax, body, parts.label_place(position, body) * _MM, "0.25")
     for cable in parts.cables(position, equilibrium):
-        _draw_cable(ax, cable, alpha, labels)
-    for _, points in parts.springs(position):
+        _draw_member(ax, cable, alpha, labels, linestyle="--", linewidth=1.4, zorder=3)
+    for _, _, points in parts.shapes(position, "spring"):
         ax.plot(*(points * _MM).T, ":", color="0.25", linewidth=1.4, alpha=alpha, zorder=3)
     for member in parts.members(position, equilibrium):
-        _draw_member(ax, member, alpha, labels)
-    for at, grounded in parts.pins(position):
-        _draw_pin(ax, at * _MM, grounded, alpha)
+        _draw_member(ax, member, alpha, labels, linewidth=4, solid_capstyle="round", zorder=4)
+    for _, shape, points in parts.shapes(position, "pin"):
+        _draw_pin(ax, points[0] * _MM, GROUND in dict(shape.ends), alpha)
     _draw_faces(ax, position, alpha)
     ax.set_aspect("equal")
     ax.set(xlabel="x [mm]", ylabel="y [mm]")
@@ -86,15 +86,8 @@ def _colour(member: parts.Member) -> str:
     return "0.35" if not np.isfinite(member.force) else TENSION if member.force >= 0 else COMPRESSION
 
 
-def _draw_cable(ax: Axes, cable: parts.Member, alpha: float, label: bool) -> None:
-    ax.plot(*(cable.ends * _MM).T, "--", color=_colour(cable), linewidth=1.4, alpha=alpha, zorder=3)
-    if label:
-        _write_along(ax, cable)
-
-
-def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool) -> None:
-    width = {"linewidth": 4, "solid_capstyle": "round"}
-    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, zorder=4, **width)
+def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool, **line: Any) -> None:
+    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, **line)
     if label:
         _write_along(ax, member)
 
@@ -128,13 +121,11 @@ def _draw_faces(ax: Axes, position: Position, alpha: float) -> None:
     """Short lines along slots and contact faces."""
     low, high = parts.extent(position)
     half = 0.06 * float(np.linalg.norm(high - low)) * _MM
-    for joint in position.mechanism.joints:
-        if isinstance(joint, Slot | Contact):
-            x, y = joint.along if isinstance(joint, Slot) else (-joint.normal[1], joint.normal[0])
-            angle = float(position.angle(joint.other)) + np.arctan2(y, x)
-            along = half * np.array((np.cos(angle), np.sin(angle)))
-            at = position.point(joint.body, joint.at) * _MM
-            ax.plot(*np.stack((at - along, at + along)).T, color="0.1", linewidth=1.6, alpha=alpha, zorder=5)
+    for _, shape, points in parts.shapes(position, "face"):
+        x, y = shape.along
+        angle = float(position.angle(shape.frame)) + np.arctan2(y, x)
+        along, at = half * np.array((np.cos(angle), np.sin(angle))), points[0] * _MM
+        ax.plot(*np.stack((at - along, at + along)).T, color="0.1", linewidth=1.6, alpha=alpha, zorder=5)
 
 
 # Forces -------------------------------------------------------------------------------------------
@@ -264,7 +255,7 @@ def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) 
     corners = parts.outline(equilibrium.position, body)
     _draw_body(ax, corners * _MM, 1.0)
     loads = {load.name for load in equilibrium.position.mechanism.loads}
-    pulling = {joint.name for joint in equilibrium.position.mechanism.joints if isinstance(joint, Cable)}
+    pulling = {name for name, _, _ in parts.shapes(equilibrium.position, "cable")} - loads
     couples = []
     for action in free_body(equilibrium, body):
         if not np.isfinite(action.at).all():

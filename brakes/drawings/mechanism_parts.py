@@ -7,20 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from brakes.planar import (
-    GROUND,
-    Bar,
-    Cable,
-    CablePair,
-    Equilibrium,
-    Force,
-    Mechanism,
-    Pin,
-    Position,
-    RotationLock,
-    Spring,
-    free_body,
-)
+from brakes.planar import GROUND, Equilibrium, Mechanism, Position, Shape, free_body
 
 
 class Member(NamedTuple):
@@ -42,22 +29,16 @@ class Arrow(NamedTuple):
 
 def points_of(mechanism: Mechanism, body: str) -> list[tuple[float, float]]:
     """Points of a body in the drawing at which joints and loads act, without repeats [m]."""
-    found = [at for part in mechanism.parts for owner, at in _ends(part) if owner == body]
-    return list(dict.fromkeys((float(x), float(y)) for x, y in found))
+    ends = [end for part in mechanism.parts for shape in part.shapes() for end in shape.ends]
+    return list(dict.fromkeys((float(x), float(y)) for owner, (x, y) in ends if owner == body))
 
 
-def _ends(part: object) -> Iterator[tuple[str, tuple[float, float]]]:
-    """The bodies and points of a joint or load that has points."""
-    if isinstance(part, Pin):
-        yield part.body, part.at
-        yield part.other, part.at if part.at_other is None else part.at_other
-    elif isinstance(part, Cable):
-        yield from zip(part.bodies, part.points, strict=True)
-    elif isinstance(part, Bar | CablePair | Spring):
-        yield part.body, part.at
-        yield part.other, part.to
-    elif hasattr(part, "at"):
-        yield part.body, part.at  # pyright: ignore[reportAttributeAccessIssue]
+def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndarray]]:
+    """Shapes of a style: the name of the joint or load, the shape, and its points (k, 2) [m]."""
+    for part in position.mechanism.parts:
+        for shape in part.shapes():
+            if shape.style == style:
+                yield part.name, shape, np.array([position.point(*end) for end in shape.ends])
 
 
 def outline(position: Position, body: str) -> np.ndarray:
@@ -83,14 +64,9 @@ def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def _is_two_force(mechanism: Mechanism, body: str) -> bool:
-    on_it = [part for part in mechanism.parts if body in _bodies(part)]
-    return len(on_it) == 2 and all(isinstance(part, Pin) for part in on_it)
-
-
-def _bodies(part: object) -> tuple[str, ...]:
-    if isinstance(part, Cable):
-        return tuple(part.bodies)
-    return tuple(getattr(part, key) for key in ("body", "other") if hasattr(part, key))
+    joints = [joint for joint in mechanism.joints if body in joint.acts_on]
+    loaded = any(body in load.acts_on for load in mechanism.loads)
+    return len(joints) == 2 and all(joint.is_hinge for joint in joints) and not loaded
 
 
 def label_place(position: Position, body: str) -> np.ndarray:
@@ -107,15 +83,22 @@ def label_place(position: Position, body: str) -> np.ndarray:
 
 def members(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
     """Bars and bodies with two pins."""
-    mechanism = position.mechanism
-    for joint in mechanism.joints:
-        if isinstance(joint, Bar):
-            ends = position.point(joint.body, joint.at), position.point(joint.other, joint.to)
-            force = np.nan if equilibrium is None else float(np.ravel(equilibrium.magnitudes[joint.name])[0])
-            yield Member(joint.name, np.array(ends), force)
-    for body in two_force_bodies(mechanism):
-        ends = np.array([position.point(body, at) for at in points_of(mechanism, body)])
+    yield from _members("bar", position, equilibrium)
+    for body in two_force_bodies(position.mechanism):
+        ends = np.array([position.point(body, at) for at in points_of(position.mechanism, body)])
         yield Member(body, ends, np.nan if equilibrium is None else _axial(equilibrium, body, ends))
+
+
+def cables(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
+    """Cables and cable pairs."""
+    return _members("cable", position, equilibrium)
+
+
+def _members(style: str, position: Position, equilibrium: Equilibrium | None) -> Iterator[Member]:
+    """Joints and loads of a style, with the size of their force."""
+    sizes = {} if equilibrium is None else equilibrium.magnitudes | equilibrium.amplitudes
+    for name, _, points in shapes(position, style):
+        yield Member(name, points, float(np.ravel(sizes.get(name, np.nan))[0]))
 
 
 def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
@@ -125,41 +108,11 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
     return float(at_end[0])
 
 
-def cables(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
-    """Cables and cable pairs, with their points (k, 2) and tensions."""
-    for part in position.mechanism.parts:
-        if isinstance(part, Cable | CablePair):
-            points = np.array([position.point(body, at) for body, at in _ends(part)])
-            sizes = {} if equilibrium is None else equilibrium.magnitudes | equilibrium.amplitudes
-            yield Member(part.name, points, float(np.ravel(sizes.get(part.name, np.nan))[0]))
-
-
-def springs(position: Position) -> Iterator[tuple[str, np.ndarray]]:
-    """Names and ends (2, 2) of springs."""
-    for part in position.mechanism.loads:
-        if isinstance(part, Spring):
-            yield part.name, np.array([position.point(body, at) for body, at in _ends(part)])
-
-
-def pins(position: Position) -> Iterator[tuple[np.ndarray, bool]]:
-    """Places of the pins and of the ends of bars, and whether they are on the ground."""
-    for joint in position.mechanism.joints:
-        if isinstance(joint, Pin):
-            yield position.point(joint.body, joint.at), GROUND in (joint.body, joint.other)
-        elif isinstance(joint, Bar):
-            for body, at in _ends(joint):
-                yield position.point(body, at), body == GROUND
-
-
 def outer_forces(equilibrium: Equilibrium) -> list[Arrow]:
     """Loads on the bodies, and what the ground does to them."""
     mechanism = equilibrium.position.mechanism
     loads = {load.name for load in mechanism.loads}
-    outer = {
-        part.name
-        for part in mechanism.parts
-        if isinstance(part, Force) or (GROUND in _bodies(part) and not isinstance(part, RotationLock))
-    }
+    outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}
     return [
         Arrow(action.name, action.at, action.force, action.name not in loads)
         for body in mechanism.bodies

@@ -25,6 +25,7 @@ from brakes.planar import (
     GROUND,
     CablePair,
     Force,
+    Joint,
     Mechanism,
     Moment,
     Pin,
@@ -33,7 +34,6 @@ from brakes.planar import (
     Slot,
     stroke,
 )
-from brakes.planar.joints import Joint
 
 _RANK_TOLERANCE = 1e-9  # singular values below this fraction of the largest count as zero
 _ORIGIN = (0.0, 0.0)

@@ -1,17 +1,27 @@
-"""Statics of planar mechanisms that names what is loose and what is undetermined."""
+"""Statics of planar mechanisms that names what is loose and what is undetermined.
+
+`JOINTS` and `LOADS` list all kinds: files, forms and drawings take them from there.  `Joint` and `Load` tell
+how to write a new one.
+"""
 
 from brakes.planar.diagnosis import AssemblyError, OutOfReachError
 from brakes.planar.freebody import Action, free_body
-from brakes.planar.friction import Friction, solve_with_friction
+from brakes.planar.friction import FrictionalEquilibrium, solve_with_friction
 from brakes.planar.joints import Bar, Cable, Contact, Pin, RotationLock, Slot
 from brakes.planar.kinematics import Stroke, Toggle, assemble, stroke, trace
 from brakes.planar.loads import CablePair, Force, Moment, Spring, TorsionSpring
 from brakes.planar.mechanism import Mechanism, Position
-from brakes.planar.rows import GROUND
+from brakes.planar.part import Joint, Load, Part, Shape
+from brakes.planar.points import GROUND
 from brakes.planar.statics import Equilibrium, solve
+
+JOINTS: tuple[type[Joint], ...] = (Pin, Bar, Slot, Contact, RotationLock, Cable)
+LOADS: tuple[type[Load], ...] = (Force, Moment, CablePair, Spring, TorsionSpring)
 
 __all__ = [
     "GROUND",
+    "JOINTS",
+    "LOADS",
     "Action",
     "AssemblyError",
     "Bar",
@@ -20,13 +30,17 @@ __all__ = [
     "Contact",
     "Equilibrium",
     "Force",
-    "Friction",
+    "FrictionalEquilibrium",
+    "Joint",
+    "Load",
     "Mechanism",
     "Moment",
     "OutOfReachError",
+    "Part",
     "Pin",
     "Position",
     "RotationLock",
+    "Shape",
     "Slot",
     "Spring",
     "Stroke",

@@ -19,7 +19,7 @@ _STILL = 1e-9  # sliding velocity, over the largest, that counts as none
 
 
 @dataclass(frozen=True)
-class Friction:
+class FrictionalEquilibrium:
     """Equilibrium with friction in either direction of motion, and without.
 
     Parameters
@@ -36,7 +36,9 @@ class Friction:
     without: Equilibrium
 
 
-def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | None = None) -> Friction:
+def solve_with_friction(
+    mechanism: Mechanism, driver: str, position: Position | None = None
+) -> FrictionalEquilibrium:
     """Reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
 
     A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
@@ -54,7 +56,7 @@ def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | 
 
     Returns
     -------
-    Friction
+    FrictionalEquilibrium
 
     Raises
     ------
@@ -72,7 +74,7 @@ def solve_with_friction(mechanism: Mechanism, driver: str, position: Position | 
     balance = balance_of(mechanism, position)
     sliding = _sliding(mechanism.system, balance, driver)
     squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
-    return Friction(squeeze, release, without)
+    return FrictionalEquilibrium(squeeze, release, without)
 
 
 def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
@@ -81,7 +83,7 @@ def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
     rate = times(gradient, motion)
     driven = rate[:, [system.loads[driver]]]
-    own = rate[:, list(system.rubbing.values())]
+    own = rate[:, list(system.friction.values())]
     if (np.abs(driven) < _STILL).any():
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
     return np.where(np.abs(own) > _STILL, np.sign(own * driven), 0.0)
@@ -101,7 +103,7 @@ def _branch(
     result = result_of(mechanism, position, balance, forces, multiplier, locked)
     if not locked.any():
         return result
-    names = " and ".join(map(repr, system.rubbing))
+    names = " and ".join(map(repr, system.friction))
     message = (
         f"self-locking at {locked.sum()} of {len(locked)} positions: with the friction of {names} no load of "
         "the given direction moves the mechanism this way; reduce friction or the radius of the pivots"
@@ -139,8 +141,7 @@ def _friction(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Set the friction rows; residual of equilibrium and its derivative by the unknowns."""
     slope = balance.matrix.copy()
-    for k, (name, row) in enumerate(system.rubbing.items()):
-        own = system.joints[name]
+    for k, (row, own) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
         size = np.linalg.norm(multiplier[:, own], axis=1, keepdims=True)
         multiplier[:, row] = law[:, k] * size[:, 0]
         direction = law[:, [k]] * multiplier[:, own] / np.maximum(size, _TINY)

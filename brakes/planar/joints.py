@@ -1,32 +1,25 @@
-"""Joints between two bodies, or a body and the ground: what they forbid and how they rub.
+"""Joints between two bodies, or a body and the ground.
 
 Coordinates [m] are those of the drawing.  The force of a joint is the one on the body named first; a bar or
-cable in tension and a contact that pushes are positive.
+cable in tension and a contact that pushes are positive.  `Joint` tells how to write a new one.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated
 
-from beamdyn.common.checks import not_negative, positive, real
-from brakes.planar.rows import (
-    GROUND,
-    Friction,
-    Line,
-    Path,
-    Point,
-    Row,
-    Turn,
-    apart,
-    direction,
-    point,
-    polyline,
-)
+from brakes.planar.described import Body, Coefficient, Described, Direction, DrawnPoint, Length, Other
+from brakes.planar.part import Joint, OneWay, Shape
+from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
+from brakes.planar.rows import FrictionLaw, Line, Path, Row, Turn
+
+SLACK = OneWay("cable", "push", "it is slack; remove it, or reverse the loads")
 
 
 @dataclass(frozen=True)
-class Pin:
+class Pin(Joint):
     """A pin: a point of a body stays on a point of another.
 
     Parameters
@@ -41,41 +34,56 @@ class Pin:
         Radius of the pivot [m] and coefficient of friction.
     """
 
-    name: str
-    body: str
-    other: str
-    at: Point
-    at_other: Point | None = None
-    radius: float = 0.0
-    friction: float = 0.0
+    label = "pins"
+    is_hinge = True
+
+    body: Body
+    other: Other
+    at: DrawnPoint
+    at_other: DrawnPoint | None = None
+    radius: Annotated[
+        float,
+        Described(
+            "number",
+            "radius of the pivot",
+            unit="m",
+            symbol="r",
+            bound="not negative",
+            remedy="give the radius of the pivot",
+        ),
+    ] = 0.0
+    friction: Coefficient = 0.0
 
     def __post_init__(self) -> None:
-        key = f"pin {self.name!r}"
-        point(f"{key}: at", self.at)
-        point(f"{key}: at_other", self._at_other)
-        not_negative(f"{key}: radius", self.radius, "m", "give the radius of the pivot")
-        _friction(key, self.friction)
+        super().__post_init__()
         if self.friction and not self.radius:
-            raise ValueError(f"{key} has friction but no radius: give the radius of the pivot in m")
+            raise ValueError(f"{self.title} has friction but no radius: give the radius of the pivot in m")
 
     @property
-    def _at_other(self) -> Point:
-        return self.at if self.at_other is None else self.at_other
+    def _ends(self) -> tuple[End, End]:
+        return (self.body, self.at), (self.other, self.at if self.at_other is None else self.at_other)
 
     def rows(self) -> tuple[Row, ...]:
         """Two rows, along x and y."""
-        ends = self.body, self.at, self.other, self._at_other
-        return Line(*ends, GROUND, (1.0, 0.0)), Line(*ends, GROUND, (0.0, 1.0))
+        end, other = self._ends
+        return Line(*end, *other, GROUND, (1.0, 0.0)), Line(*end, *other, GROUND, (0.0, 1.0))
 
-    def rubbing(self) -> Friction:
+    def friction_laws(self) -> tuple[FrictionLaw, ...]:
         """A couple against the rotation: the force touches the circle of radius r mu/sqrt(1 + mu^2)."""
-        return Friction(
-            Turn(self.body, self.other), self.radius * self.friction / math.hypot(1.0, self.friction)
-        )
+        arm = self.radius * self.friction / math.hypot(1.0, self.friction)
+        return (FrictionLaw(Turn(self.body, self.other), arm),)
+
+    def with_pivot(self, radius: float, friction: float) -> Pin:
+        """The pin with another radius [m] and friction."""
+        return replace(self, radius=radius, friction=friction)
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A pin."""
+        return (Shape("pin", self._ends),)
 
 
 @dataclass(frozen=True)
-class Bar:
+class Bar(Joint):
     """A two-force link of constant length between points of two bodies.
 
     Parameters
@@ -88,28 +96,32 @@ class Bar:
         Its length [m] if not the drawing's.
     """
 
-    name: str
-    body: str
-    other: str
-    at: Point
-    to: Point
-    length: float | None = None
+    label = "bars"
+    signs = ("tension", "compression")
+
+    body: Body
+    other: Other
+    at: DrawnPoint
+    to: DrawnPoint
+    length: Length | None = None
 
     def __post_init__(self) -> None:
-        key = f"bar {self.name!r}"
-        ends = point(f"{key}: at", self.at), point(f"{key}: to", self.to)
-        apart(key, ends, "move one of its ends, or join the bodies by a pin")
-        if self.length is not None:
-            positive(f"{key}: length", self.length, "m")
+        super().__post_init__()
+        check_distinct(self.title, (self.at, self.to), "move one of its ends, or join the bodies by a pin")
 
     def rows(self) -> tuple[Row, ...]:
         """One row, positive in tension."""
         length = math.dist(self.at, self.to) if self.length is None else self.length
         return (Path((self.body, self.other), (self.at, self.to), length),)
 
+    def shapes(self) -> tuple[Shape, ...]:
+        """A bar with pins at its ends."""
+        ends = self.rows()[0].ends
+        return (Shape("bar", ends), *(Shape("pin", (end,)) for end in ends))
+
 
 @dataclass(frozen=True)
-class Slot:
+class Slot(Joint):
     """A point of a body slides along a straight slot of another; it holds both ways.
 
     Parameters
@@ -126,30 +138,31 @@ class Slot:
         Coefficient of friction.
     """
 
-    name: str
-    body: str
-    other: str
-    at: Point
-    along: Point
-    on: Point | None = None
-    friction: float = 0.0
+    label = "slots"
 
-    def __post_init__(self) -> None:
-        _check_line(f"slot {self.name!r}", self.at, self.on, self.friction)
-        direction(f"slot {self.name!r}: along", self.along)
+    body: Body
+    other: Other
+    at: DrawnPoint
+    along: Direction
+    on: DrawnPoint | None = None
+    friction: Coefficient = 0.0
 
     def rows(self) -> tuple[Row, ...]:
         """One row: the force on the body, positive to the left of `along`."""
-        x, y = direction("along", self.along)
+        x, y = unit_vector("along", self.along)
         return (_line(self, (-y, x)),)
 
-    def rubbing(self) -> Friction:
+    def friction_laws(self) -> tuple[FrictionLaw, ...]:
         """A force against the sliding."""
-        return Friction(_line(self, direction("along", self.along)), self.friction)
+        return (FrictionLaw(_line(self, unit_vector("along", self.along)), self.friction),)
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A short line along the slot."""
+        return (Shape("face", ((self.body, self.at),), self.other, self.along),)
 
 
 @dataclass(frozen=True)
-class Contact:
+class Contact(Joint):
     """A point of a body pushes on a straight face of another.
 
     Parameters
@@ -166,30 +179,35 @@ class Contact:
         Coefficient of friction.
     """
 
-    name: str
-    body: str
-    other: str
-    at: Point
-    normal: Point
-    on: Point | None = None
-    friction: float = 0.0
+    label = "contacts"
+    one_way = OneWay("contact", "pull", "it is open, or its normal is reversed; remove or turn it")
 
-    def __post_init__(self) -> None:
-        _check_line(f"contact {self.name!r}", self.at, self.on, self.friction)
-        direction(f"contact {self.name!r}: normal", self.normal)
+    body: Body
+    other: Other
+    at: DrawnPoint
+    normal: Direction
+    on: DrawnPoint | None = None
+    friction: Coefficient = 0.0
 
     def rows(self) -> tuple[Row, ...]:
         """One row, positive when it pushes."""
-        return (_line(self, direction("normal", self.normal)),)
+        return (_line(self, unit_vector("normal", self.normal)),)
 
-    def rubbing(self) -> Friction:
+    def _along(self) -> Point:
+        x, y = unit_vector("normal", self.normal)
+        return -y, x
+
+    def friction_laws(self) -> tuple[FrictionLaw, ...]:
         """A force against the sliding."""
-        x, y = direction("normal", self.normal)
-        return Friction(_line(self, (-y, x)), self.friction)
+        return (FrictionLaw(_line(self, self._along()), self.friction),)
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A short line along the face."""
+        return (Shape("face", ((self.body, self.at),), self.other, self._along()),)
 
 
 @dataclass(frozen=True)
-class RotationLock:
+class RotationLock(Joint):
     """The angle of a body is `ratio` times that of another (1: no relative rotation; -1: mirrored arms).
 
     Parameters
@@ -200,13 +218,11 @@ class RotationLock:
         Ratio of the angles; other than 1 it is a gear, whose housing is on the ground.
     """
 
-    name: str
-    body: str
-    other: str
-    ratio: float = 1.0
+    label = "bodies that turn together"
 
-    def __post_init__(self) -> None:
-        real(f"rotation lock {self.name!r}: ratio", self.ratio)
+    body: Body
+    other: Other
+    ratio: Annotated[float, Described("number", "ratio of the angles")] = 1.0
 
     def rows(self) -> tuple[Row, ...]:
         """One row: the couple on the body [N m]."""
@@ -214,7 +230,7 @@ class RotationLock:
 
 
 @dataclass(frozen=True)
-class Cable:
+class Cable(Joint):
     """A taut cable of fixed length over frictionless eyes; one tension, pulling positive.
 
     Parameters
@@ -229,41 +245,33 @@ class Cable:
         Its length [m] if not the drawing's.
     """
 
-    name: str
-    bodies: tuple[str, ...]
-    points: tuple[Point, ...]
-    length: float | None = None
+    label = "cables of fixed length"
+    one_way = SLACK
+
+    bodies: Annotated[tuple[str, ...], Described("names", "body of each point")]
+    points: Annotated[tuple[Point, ...], Described("points", "points in the drawing", unit="m")]
+    length: Length | None = None
 
     def __post_init__(self) -> None:
-        key = f"cable {self.name!r}"
+        super().__post_init__()
         if len(self.bodies) != len(self.points) or len(self.points) < 2:
             raise ValueError(
-                f"{key} has {len(self.bodies)} bodies and {len(self.points)} points: "
+                f"{self.title} has {len(self.bodies)} bodies and {len(self.points)} points: "
                 "give two or more points, and the body of each"
             )
-        apart(key, tuple(point(f"{key}: points", p) for p in self.points), "move one of its points")
-        if self.length is not None:
-            positive(f"{key}: length", self.length, "m")
+        check_distinct(self.title, self.points, "move one of its points")
 
     def rows(self) -> tuple[Row, ...]:
         """One row, positive in tension."""
-        length = polyline(self.points) if self.length is None else self.length
+        length = path_length(self.points) if self.length is None else self.length
         return (Path(tuple(self.bodies), tuple(self.points), length),)
 
-
-Joint = Pin | Bar | Slot | Contact | RotationLock | Cable
+    def shapes(self) -> tuple[Shape, ...]:
+        """A cable through its points."""
+        return (Shape("cable", self.rows()[0].ends),)
 
 
 def _line(joint: Slot | Contact, normal: Point) -> Line:
+    """The row of a joint's point along a normal that turns with the other body."""
     on = joint.at if joint.on is None else joint.on
     return Line(joint.body, joint.at, joint.other, on, joint.other, normal)
-
-
-def _check_line(key: str, at: Point, on: Point | None, friction: float) -> None:
-    point(f"{key}: at", at)
-    point(f"{key}: on", at if on is None else on)
-    _friction(key, friction)
-
-
-def _friction(key: str, value: float) -> None:
-    not_negative(f"{key}: friction", value, "", "friction opposes the motion by itself; give its size")

@@ -138,7 +138,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     ValueError
         If the mobility is not 1, or the driver does not move.
     """
-    if getattr(mechanism.load(driver), "follows", False):
+    if not mechanism.load(driver).has_coordinate:
         raise ValueError(f"driver {driver!r} follows its body and has no coordinate: drive another load")
     system, start, k = _start(mechanism, driver)
     wanted = real_array("values", values) / _units(system)[k]
@@ -241,8 +241,8 @@ def _finish(mechanism: Mechanism, driver: str, start: Node, nodes: list[Node], y
     single = (constraints.rank == system.size - 1)[:, None] & (rate[:, [k]] != 0)
     ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
     unit = _units(system)
-    follows = [getattr(load, "follows", False) for load in mechanism.loads]
-    travel = np.where(follows, np.nan, (rows.value[:, index] - start.value) * unit)
+    known = [load.has_coordinate for load in mechanism.loads]
+    travel = np.where(known, (rows.value[:, index] - start.value) * unit, np.nan)
     return Stroke(
         driver=driver,
         values=travel[:, k].copy(),

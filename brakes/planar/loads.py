@@ -1,19 +1,28 @@
 """Loads, each with a known magnitude or an unknown amplitude (`magnitude=None`) that equilibrium gives.
 
 Each load has a coordinate on which it does its work: the travel of the point along the force, the rotation,
-the shortening of the cable.  A load of magnitude 0 measures a travel, and any load may drive a stroke.
+the shortening of the cable.  A load of magnitude 0 measures a travel, and any load with a coordinate may
+drive a stroke.  `Load` tells how to write a new one.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated
 
-from beamdyn.common.checks import not_negative, real
-from brakes.planar.rows import GROUND, Line, Path, Point, Row, Turn, apart, direction, point, polyline
+import numpy as np
+
+from brakes.planar.described import Body, Described, Direction, DrawnPoint, NewtonMetres, Newtons, Other
+from brakes.planar.joints import SLACK
+from brakes.planar.part import AppliedLoad, Load, Shape
+from brakes.planar.points import GROUND, Point, check_distinct, path_length, unit_vector
+from brakes.planar.rows import Line, Path, Row, Turn
+
+_NO_DIRECTION = "it has no direction; move one of its ends"
 
 
 @dataclass(frozen=True)
-class Force:
+class Force(AppliedLoad):
     """A force on a point of a body.
 
     Parameters
@@ -30,26 +39,39 @@ class Force:
         Whether its direction turns with the body; otherwise it is fixed in space.
     """
 
-    name: str
-    body: str
-    at: Point
-    direction: Point
-    magnitude: float | None = None
-    follows: bool = False
+    label = "forces"
 
-    def __post_init__(self) -> None:
-        point(f"force {self.name!r}: at", self.at)
-        direction(f"force {self.name!r}: direction", self.direction)
-        _magnitude(f"force {self.name!r}", self.magnitude, "N")
+    body: Body
+    at: DrawnPoint
+    direction: Direction
+    magnitude: Newtons | None = None
+    follows: Annotated[bool, Described("flag", "whether it turns with the body")] = False
+
+    @property
+    def has_coordinate(self) -> bool:
+        """Whether its direction is fixed: otherwise its work depends on the path."""
+        return not self.follows
+
+    def _direction(self) -> Point:
+        return unit_vector("direction", self.direction)
 
     def row(self) -> Row:
         """Travel of the point along the force [m]."""
         frame = self.body if self.follows else GROUND
-        return Line(self.body, self.at, GROUND, self.at, frame, direction("direction", self.direction))
+        return Line(self.body, self.at, GROUND, self.at, frame, self._direction())
+
+    def shifted(self, distance: float) -> Force:
+        """The force with its point moved along its direction [m]."""
+        (x, y), (dx, dy) = self.at, self._direction()
+        return replace(self, at=(x + distance * dx, y + distance * dy))
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A force."""
+        return (Shape("force", ((self.body, self.at),)),)
 
 
 @dataclass(frozen=True)
-class Moment:
+class Moment(AppliedLoad):
     """A moment on a body, anticlockwise positive, and its opposite on another.
 
     Parameters
@@ -62,13 +84,11 @@ class Moment:
         The body that has the opposite moment.
     """
 
-    name: str
-    body: str
-    magnitude: float | None = None
-    other: str = GROUND
+    label = "moments"
 
-    def __post_init__(self) -> None:
-        _magnitude(f"moment {self.name!r}", self.magnitude, "N m")
+    body: Body
+    magnitude: NewtonMetres | None = None
+    other: Other = GROUND
 
     def row(self) -> Row:
         """Rotation of the body against the other [rad]."""
@@ -76,7 +96,7 @@ class Moment:
 
 
 @dataclass(frozen=True)
-class CablePair:
+class CablePair(AppliedLoad):
     """A cable and its housing: equal and opposite forces that pull points of two bodies together.
 
     Parameters
@@ -89,25 +109,31 @@ class CablePair:
         Its tension [N]; None: unknown.
     """
 
-    name: str
-    body: str
-    other: str
-    at: Point
-    to: Point
-    magnitude: float | None = None
+    label = "cables with their housing"
+    one_way = SLACK
+
+    body: Body
+    other: Other
+    at: DrawnPoint
+    to: DrawnPoint
+    magnitude: Newtons | None = None
 
     def __post_init__(self) -> None:
-        _check_ends(f"cable pair {self.name!r}", self.at, self.to)
-        _magnitude(f"cable pair {self.name!r}", self.magnitude, "N")
+        super().__post_init__()
+        check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
     def row(self) -> Row:
         """Shortening of the distance between the points [m]."""
         ends = self.at, self.to
-        return Path((self.body, self.other), ends, polyline(ends))
+        return Path((self.body, self.other), ends, path_length(ends))
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A cable between the points."""
+        return (Shape("cable", self.row().ends),)
 
 
 @dataclass(frozen=True)
-class Spring:
+class Spring(Load):
     """A linear spring between points of two bodies, which pulls with stiffness * (length - free).
 
     Parameters
@@ -122,26 +148,36 @@ class Spring:
         Length without force [m].
     """
 
-    name: str
-    body: str
-    other: str
-    at: Point
-    to: Point
-    stiffness: float
-    free_length: float
+    label = "springs"
+
+    body: Body
+    other: Other
+    at: DrawnPoint
+    to: DrawnPoint
+    stiffness: Annotated[
+        float, Described("number", "stiffness", unit="N/m", symbol="k", bound="not negative")
+    ]
+    free_length: Annotated[float, Described("number", "length without force", unit="m", bound="not negative")]
 
     def __post_init__(self) -> None:
-        _check_ends(f"spring {self.name!r}", self.at, self.to)
-        not_negative(f"spring {self.name!r}: stiffness", self.stiffness, "N/m")
-        not_negative(f"spring {self.name!r}: free_length", self.free_length, "m")
+        super().__post_init__()
+        check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
     def row(self) -> Row:
         """Shortening below the free length [m]."""
         return Path((self.body, self.other), (self.at, self.to), self.free_length)
 
+    def amplitude(self, coordinate: np.ndarray) -> np.ndarray:
+        """Minus stiffness times shortening: its tension, which is negative where it pushes [N]."""
+        return -self.stiffness * coordinate
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A spring."""
+        return (Shape("spring", self.row().ends),)
+
 
 @dataclass(frozen=True)
-class TorsionSpring:
+class TorsionSpring(Load):
     """A linear spring between the angles of two bodies: moment -stiffness * (angle - free angle) on the body.
 
     Parameters
@@ -156,29 +192,19 @@ class TorsionSpring:
         The other body.
     """
 
-    name: str
-    body: str
-    stiffness: float
-    free_angle: float
-    other: str = GROUND
+    label = "torsion springs"
 
-    def __post_init__(self) -> None:
-        not_negative(f"torsion spring {self.name!r}: stiffness", self.stiffness, "N m/rad")
-        real(f"torsion spring {self.name!r}: free_angle", self.free_angle, "rad")
+    body: Body
+    stiffness: Annotated[
+        float, Described("number", "stiffness", unit="N m/rad", symbol="k", bound="not negative")
+    ]
+    free_angle: Annotated[float, Described("number", "angle without moment, from the drawing", unit="rad")]
+    other: Other = GROUND
 
     def row(self) -> Row:
         """Rotation past the free angle [rad]."""
         return Turn(self.body, self.other, offset=self.free_angle)
 
-
-Load = Force | Moment | CablePair | Spring | TorsionSpring
-
-
-def _check_ends(key: str, at: Point, to: Point) -> None:
-    ends = point(f"{key}: at", at), point(f"{key}: to", to)
-    apart(key, ends, "it has no direction; move one of its ends")
-
-
-def _magnitude(key: str, value: float | None, unit: str) -> None:
-    if value is not None:
-        real(f"{key}: magnitude", value, unit, "or None for an unknown amplitude")
+    def amplitude(self, coordinate: np.ndarray) -> np.ndarray:
+        """Minus stiffness times rotation: its moment on the body [N m]."""
+        return -self.stiffness * coordinate

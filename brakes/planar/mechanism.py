@@ -9,9 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from brakes.planar.joints import Contact, Joint, Pin, Slot
-from brakes.planar.loads import Load
-from brakes.planar.rows import GROUND, Friction, Point, Row, bodies_of, suggestion
+from brakes.planar.part import Joint, Load, Part
+from brakes.planar.points import GROUND, Point, suggest
+from brakes.planar.rows import FrictionLaw
 from brakes.planar.system import System, build
 
 
@@ -25,10 +25,10 @@ class Mechanism:
     ----------
     bodies : tuple of str
         Names of the bodies; `GROUND` is there by itself.
-    joints : tuple of joints
-        `Pin`, `Bar`, `Slot`, `Contact`, `RotationLock`, `Cable`.
-    loads : tuple of loads
-        `Force`, `Moment`, `CablePair`, `Spring`, `TorsionSpring`.
+    joints : tuple of Joint
+        Such as a `Pin`; all kinds are in `JOINTS`.
+    loads : tuple of Load
+        Such as a `Force`; all kinds are in `LOADS`.
 
     Raises
     ------
@@ -49,31 +49,29 @@ class Mechanism:
             raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} is there by itself")
         _unique("body", self.bodies)
         _unique("joint or load", [part.name for part in self.parts])
-        for joint in self.joints:
-            _check_bodies(f"{_kind(joint)} {joint.name!r}", bodies_of(joint.rows()[0]), self.bodies)
-        for load in self.loads:
-            _check_bodies(f"{_kind(load)} {load.name!r}", bodies_of(load.row()), self.bodies)
+        for part in self.parts:
+            _check_bodies(part.title, part.acts_on, self.bodies)
 
     @property
-    def parts(self) -> tuple[Joint | Load, ...]:
+    def parts(self) -> tuple[Part, ...]:
         """Joints, then loads."""
-        return self.joints + self.loads
+        return (*self.joints, *self.loads)
 
     @cached_property
-    def rubbing(self) -> dict[str, Friction]:
-        """Friction of the joints that have some."""
-        laws = {
-            joint.name: joint.rubbing() for joint in self.joints if isinstance(joint, Pin | Slot | Contact)
+    def friction(self) -> dict[str, tuple[str, FrictionLaw]]:
+        """Friction by its name: that of the joint, and its label where the joint has several."""
+        return {
+            f"{joint.name} {law.label}".strip(): (joint.name, law)
+            for joint in self.joints
+            for law in joint.friction_laws()
+            if law.coefficient
         }
-        return {name: law for name, law in laws.items() if law.coefficient}
 
     @cached_property
     def system(self) -> System:
         """Its rows as arrays."""
-        joints: list[tuple[str, tuple[Row, ...]]] = [(joint.name, joint.rows()) for joint in self.joints]
-        loads: list[tuple[str, tuple[Row, ...]]] = [(load.name, (load.row(),)) for load in self.loads]
-        rubbing = [(name, law.row, law.coefficient) for name, law in self.rubbing.items()]
-        return build(self.bodies, joints, loads, rubbing)
+        joints = {joint.name: joint.rows() for joint in self.joints}
+        return build(self.bodies, joints, {load.name: load.row() for load in self.loads}, self.friction)
 
     @cached_property
     def drawing(self) -> Position:
@@ -84,7 +82,7 @@ class Mechanism:
         """The load of a name."""
         known = {load.name: load for load in self.loads}
         if name not in known:
-            raise ValueError(f"load {name!r} does not exist; {suggestion(name, known)}")
+            raise ValueError(f"load {name!r} does not exist; {suggest(name, known)}")
         return known[name]
 
 
@@ -138,10 +136,6 @@ class Position:
         return angle.reshape(self.coordinates.shape[:-1])
 
 
-def _kind(part: Joint | Load) -> str:
-    return "".join(f" {c.lower()}" if c.isupper() else c for c in type(part).__name__).strip()
-
-
 def _unique(what: str, names: Iterable[str]) -> None:
     twice = [name for name, times in Counter(names).items() if times > 1]
     if twice:
@@ -152,7 +146,7 @@ def _check_bodies(key: str, names: tuple[str, ...], bodies: tuple[str, ...]) -> 
     for name in names:
         if name != GROUND and name not in bodies:
             raise ValueError(
-                f"{key} is on body {name!r}, which does not exist; {suggestion(name, (*bodies, GROUND))}"
+                f"{key} is on body {name!r}, which does not exist; {suggest(name, (*bodies, GROUND))}"
             )
     if len(set(names)) == 1:
         raise ValueError(f"{key} acts on {names[0]!r} alone: name two different bodies, one of them movable")

@@ -1,21 +1,40 @@
-"""The three kinds of row that every joint and every load is made of.
+"""The rows of which every joint and every load is made: `Line`, `Path` and `Turn`.
 
 A row is a scalar function of the position.  Its gradient is at the same time a set of forces on the bodies:
-those of a unit multiplier (a joint) or of a unit magnitude (a load).
+those of a unit multiplier (a joint) or of a unit magnitude (a load).  Each kind of row has
+
+- `is_couple`: whether it is a couple [N m] on an angle [rad], rather than a force [N] on a length [m];
+- `bodies`, on which it acts, and `ends`, its points, which set the scales of the mechanism;
+- `arrays`, the class that evaluates all rows of its kind at once, and `entries`, what one row contributes to
+  the columns of its arrays after its index;
+- `constant`: the part of its value that does not depend on the position, lengths over that of the mechanism;
+- `effects`: what it does to a body at a given size, for free-body diagrams.
 """
 
 from __future__ import annotations
 
-import difflib
-import math
-from collections.abc import Iterable
-from itertools import pairwise
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple, Protocol
 
-from beamdyn.common.checks import real
+import numpy as np
 
-GROUND = "ground"
-Point = tuple[float, float]
+from brakes.planar.points import GROUND, End, Point
+from brakes.planar.row_arrays import Lines, Segments, Turns
+
+Arm = Callable[[str, Point], complex]  # from the centre of a body to a point of it, over L
+Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
+
+
+class Place(Protocol):
+    """Where the bodies are at one instant: a `Position`."""
+
+    def point(self, body: str, at: Point) -> np.ndarray:
+        """Where a point of a body is [m], shape (2,)."""
+        ...
+
+    def angle(self, body: str) -> np.ndarray:
+        """Angle by which a body has turned from the drawing [rad], shape ()."""
+        ...
 
 
 class Line(NamedTuple):
@@ -31,6 +50,36 @@ class Line(NamedTuple):
     frame: str
     normal: Point
 
+    arrays = Lines
+    is_couple = False
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The body of the point and that of the line."""
+        return self.body, self.other
+
+    @property
+    def ends(self) -> tuple[End, ...]:
+        """The point and that of the line."""
+        return (self.body, self.at), (self.other, self.on)
+
+    def constant(self, length: float) -> float:
+        """None."""
+        return 0.0
+
+    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
+        """One tuple."""
+        bodies = index[self.body], index[self.other], index[self.frame]
+        return [(*bodies, arm(self.body, self.at), arm(self.other, self.on), complex(*self.normal))]
+
+    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
+        """A force along the normal at the point, and its opposite on the other body."""
+        if body in self.bodies:
+            angle = place.angle(self.frame)
+            (x, y), cos, sin = self.normal, np.cos(angle), np.sin(angle)
+            normal = np.array((cos * x - sin * y, sin * x + cos * y))
+            yield place.point(self.body, self.at), (size if body == self.body else -size) * normal, 0.0
+
 
 class Path(NamedTuple):
     """Shortening of a polyline over points of bodies below a length [m]; a unit row pulls it together."""
@@ -38,6 +87,35 @@ class Path(NamedTuple):
     bodies: tuple[str, ...]
     points: tuple[Point, ...]
     length: float
+
+    arrays = Segments
+    is_couple = False
+
+    @property
+    def ends(self) -> tuple[End, ...]:
+        """All points."""
+        return tuple(zip(self.bodies, self.points, strict=True))
+
+    def constant(self, length: float) -> float:
+        """Its length."""
+        return self.length / length
+
+    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
+        """One tuple a segment."""
+        return [
+            (index[a], index[b], arm(a, p), arm(b, q))
+            for (a, p), (b, q) in zip(self.ends, self.ends[1:], strict=False)
+        ]
+
+    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
+        """At each point of the body, the pull towards its neighbours on the path."""
+        points = np.array([place.point(*end) for end in self.ends])
+        span = np.diff(points, axis=0)
+        pull = size * span / np.linalg.norm(span, axis=1, keepdims=True)
+        force = np.vstack((pull, np.zeros(2))) - np.vstack((np.zeros(2), pull))
+        for k, owner in enumerate(self.bodies):
+            if owner == body:
+                yield points[k], force[k], 0.0
 
 
 class Turn(NamedTuple):
@@ -48,54 +126,44 @@ class Turn(NamedTuple):
     ratio: float = 1.0
     offset: float = 0.0
 
+    arrays = Turns
+    is_couple = True
+    ends = ()
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The two bodies."""
+        return self.body, self.other
+
+    def constant(self, length: float) -> float:
+        """Minus the offset."""
+        return -self.offset
+
+    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
+        """One tuple."""
+        return [(index[self.body], index[self.other], self.ratio)]
+
+    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
+        """A couple; what a gear does not pass on, its housing on the ground takes."""
+        share = {self.body: 1.0, self.other: -self.ratio}
+        share[GROUND] = share.get(GROUND, 0.0) + self.ratio - 1.0
+        if share.get(body):
+            yield np.full(2, np.nan), np.zeros(2), size * share[body]
+
 
 Row = Line | Path | Turn
 
 
-class Friction(NamedTuple):
-    """A row along which friction acts, and its size per unit of the joint's force [m for a couple, or 1]."""
+class FrictionLaw(NamedTuple):
+    """Friction of a joint: |friction| = coefficient * |force of the joint|, against the motion.
+
+    row : the row along which it acts; its value grows in the direction of sliding.
+    coefficient : friction per unit of the joint's force [m if the row is a couple, else 1].
+    pressing : which of the joint's rows make up that force, by their indices; all if empty.
+    label : where it acts, in words, if the joint has several.
+    """
 
     row: Row
     coefficient: float
-
-
-def bodies_of(row: Row) -> tuple[str, ...]:
-    """The bodies on which a row acts."""
-    return row.bodies if isinstance(row, Path) else (row.body, row.other)
-
-
-def polyline(points: Iterable[Point]) -> float:
-    """Length of a polyline [m]."""
-    return sum(math.dist(p, q) for p, q in pairwise(points))
-
-
-def point(key: str, value: object) -> Point:
-    """Two finite coordinates [m], or a ValueError that names the key."""
-    try:
-        x, y = value  # pyright: ignore[reportGeneralTypeIssues]  (anything else is refused below)
-    except (TypeError, ValueError):
-        raise ValueError(f"{key} = {value!r}: give two coordinates (x, y) in m") from None
-    return real(f"{key}: x", x, "m"), real(f"{key}: y", y, "m")
-
-
-def direction(key: str, value: object) -> Point:
-    """A unit vector along two components."""
-    x, y = point(key, value)
-    size = math.hypot(x, y)
-    if not size:
-        raise ValueError(f"{key} = (0, 0) has no direction: give a vector that is not zero")
-    return x / size, y / size
-
-
-def apart(key: str, points: tuple[Point, ...], what: str) -> None:
-    """A ValueError if two successive points coincide."""
-    for p, q in pairwise(points):
-        if p == q:
-            raise ValueError(f"{key} has zero length at {p}: {what}")
-
-
-def suggestion(name: object, known: Iterable[str]) -> str:
-    """The remedy for a name that is not known."""
-    known = tuple(known)
-    near = difflib.get_close_matches(str(name), known, n=1)
-    return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(map(repr, known))}"
+    pressing: tuple[int, ...] = ()
+    label: str = ""

@@ -8,10 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from brakes.planar.diagnosis import names_of_moving, self_stress, unheld
-from brakes.planar.joints import Cable, Contact, RotationLock
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import Decomposition, decompose, times
-from brakes.planar.loads import CablePair, Spring, TorsionSpring
 from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.system import Rows, System
 
@@ -137,13 +135,11 @@ def balance_of(mechanism: Mechanism, position: Position) -> Balance:
     given = np.zeros(rows.value.shape)
     unknown = list(range(system.constraints))
     for load, row in zip(mechanism.loads, system.loads.values(), strict=True):
-        if isinstance(load, Spring | TorsionSpring):
-            per_row = system.length if isinstance(load, Spring) else 1 / system.length
-            given[:, row] = -load.stiffness * per_row * rows.value[:, row]
-        elif load.magnitude is None:
+        amplitude = load.amplitude(rows.value[:, row] * (system.length / system.unit[row]))
+        if amplitude is None:
             unknown.append(row)
         else:
-            given[:, row] = load.magnitude / system.unit[row]
+            given[:, row] = amplitude / system.unit[row]
     index = np.array(unknown, int)
     return Balance(rows, index, given, rows.gradient[:, index].swapaxes(1, 2))
 
@@ -238,14 +234,13 @@ def _forces(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> tuple[d
     physical = multiplier * system.unit
     for joint in mechanism.joints:
         own = system.joints[joint.name]
-        parts = physical[:, own]
-        magnitudes[joint.name] = parts[:, 0] if parts.shape[1] == 1 else np.hypot(*parts.T)
-        if not isinstance(joint, RotationLock):
-            first = system.bodies[joint.bodies[0] if isinstance(joint, Cable) else joint.body]
+        magnitudes[joint.name] = joint.size(physical[:, own])
+        if not joint.is_couple:
+            first = system.bodies[joint.acts_on[0]]
             force = (rows.force[:, own, first] * multiplier[:, own]).sum(axis=1)
             reactions[joint.name] = np.stack((force.real, force.imag), axis=-1)
     amplitudes = {name: physical[:, row] for name, row in system.loads.items()}
-    friction = {name: physical[:, row] for name, row in system.rubbing.items()}
+    friction = {name: physical[:, row] for name, row in system.friction.items()}
     return reactions, magnitudes, amplitudes, friction
 
 
@@ -255,14 +250,11 @@ def _warnings(mechanism: Mechanism, sizes: dict[str, np.ndarray], forces: Decomp
     largest = max((float(np.fmax.reduce(np.abs(size))) for size in sizes.values()), default=0.0)
     found = []
     for part in mechanism.parts:
-        if least[part.name] < -_BALANCED * largest:
-            pull = f"{part.name!r} would have to {{}} with {-least[part.name]:.6g} N: "
-            if isinstance(part, Contact):
-                found.append(
-                    f"contact {pull.format('pull')}it is open, or its normal is reversed; remove or turn it"
-                )
-            if isinstance(part, Cable | CablePair):
-                found.append(f"cable {pull.format('push')}it is slack; remove it, or reverse the loads")
+        way, size = part.one_way, least[part.name]
+        if way is not None and size < -_BALANCED * largest:
+            found.append(
+                f"{way.noun} {part.name!r} would have to {way.cannot} with {-size:.6g} N: {way.remedy}"
+            )
     if (weak := forces.kept.min()) < _WEAK:
         found.append(
             f"reactions hang on the last digits of the drawing (smallest singular value {weak:.1g}): "

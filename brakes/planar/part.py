@@ -1,0 +1,204 @@
+"""What every joint and every load is and brings; the base classes tell how to write a new one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar, Literal, NamedTuple, Self
+
+import numpy as np
+
+from brakes.planar.described import Described, check_inputs
+from brakes.planar.points import GROUND, End, Point
+from brakes.planar.rows import FrictionLaw, Row
+
+
+class Shape(NamedTuple):
+    """A part of the drawing of a joint or load.
+
+    style : how it is drawn: a bar or cable through `ends`, a spring between them, a pin or a face at the
+        first of them; a force is drawn as an arrow where it is known.
+    ends : points of bodies; each body's outline goes around those of all its joints and loads.
+    frame : the body with which a face turns.
+    along : direction of a face.
+    """
+
+    style: Literal["bar", "cable", "spring", "pin", "face", "force"]
+    ends: tuple[End, ...]
+    frame: str = GROUND
+    along: Point = (1.0, 0.0)
+
+
+class OneWay(NamedTuple):
+    """Words for a joint or load that acts one way only: what it is, what it cannot do, and the remedy."""
+
+    noun: str
+    cannot: str
+    remedy: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """A joint or a load.
+
+    Parameters
+    ----------
+    name : str
+        Its name, which no other joint or load of the mechanism has.
+
+    Raises
+    ------
+    ValueError
+        If an input is not as it is described.
+    """
+
+    label: ClassVar[str] = ""
+    one_way: ClassVar[OneWay | None] = None
+
+    name: Annotated[str, Described("name", "name")]
+
+    def __post_init__(self) -> None:
+        check_inputs(self, f"{self.title}: ")
+
+    @classmethod
+    def kind(cls) -> str:
+        """What it is in words, such as "rotation lock"."""
+        return "".join(f" {c.lower()}" if c.isupper() else c for c in cls.__name__).strip()
+
+    @classmethod
+    def key(cls) -> str:
+        """Its table in a file, such as "rotation_lock"."""
+        return cls.kind().replace(" ", "_")
+
+    @property
+    def title(self) -> str:
+        """Kind and name, for messages."""
+        return f"{self.kind()} {self.name!r}"
+
+    def rows(self) -> tuple[Row, ...]:
+        """What it forbids (a joint), or the coordinate on which it does its work (a load)."""
+        raise NotImplementedError
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """How it is drawn."""
+        return ()
+
+    @property
+    def acts_on(self) -> tuple[str, ...]:
+        """The bodies on which it acts, that whose force is given first."""
+        return self.rows()[0].bodies
+
+    @property
+    def is_couple(self) -> bool:
+        """Whether it acts by a couple alone."""
+        return all(row.is_couple for row in self.rows())
+
+    @property
+    def unit(self) -> str:
+        """Unit of its size."""
+        return "N m" if self.is_couple else "N"
+
+
+class Joint(Part):
+    """Base class of joints.
+
+    In order to write a new joint:
+
+    1. Derive a frozen dataclass from `Joint`, in a module of its own.  Its fields are its inputs; annotate
+       each by a type of `described` or by ``Annotated[type, Described(...)]``.  Checks, TOML tables and forms
+       follow from that; the table's name is the class name in snake case.
+    2. `rows` returns what the joint forbids: each `Line`, `Path` or `Turn` has the value 0 as long as the
+       joint holds, and is an unknown reaction.  The force of the joint is the one on the first body of the
+       first row.  The constructor must refuse what makes a row meaningless (points that coincide); extend
+       `__post_init__`, and call that of the base class first.
+    3. With one row, its multiplier is the size of the joint, with a sign; with several it is the length of
+       the vector of multipliers.  Override `size` if that is not a force, or not the one of interest.
+    4. If it rubs, `friction_laws` returns where and how; laws with a coefficient of 0 are left out.  If
+       friction comes from a pivot, override `with_pivot` as well.
+    5. `shapes` returns how it is drawn, by the styles of `Shape`.
+    6. `label` is its name in the plural, for forms.  Set `one_way` if only a positive size makes sense,
+       `signs` if the signs of the size have names, and `is_hinge` if it holds a point and nothing else.
+    7. Add the class to `JOINTS` and to `__all__` in `brakes/planar/__init__.py`, and write a test of it
+       against a closed form.  Files, forms, statics, strokes, friction and drawings take it from there.
+    """
+
+    signs: ClassVar[tuple[str, str]] = ("", "")
+    is_hinge: ClassVar[bool] = False
+
+    def friction_laws(self) -> tuple[FrictionLaw, ...]:
+        """Friction at the joint; none if its coefficient is 0."""
+        return ()
+
+    def size(self, multiplier: np.ndarray) -> np.ndarray:
+        """Size (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
+        single = multiplier.shape[1] == 1
+        return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
+
+    def with_pivot(self, radius: float, friction: float) -> Joint:
+        """The joint with another radius [m] and friction of its pivot; itself if it has none."""
+        return self
+
+
+class Load(Part):
+    """Base class of loads.
+
+    In order to write a new load:
+
+    1. Describe its inputs as those of a joint (see `Joint`, 1).
+    2. `row` returns the coordinate on which it does its work: a unit load acts as the row's gradient.  If the
+       direction of the load makes the row's value no coordinate, override `has_coordinate`.
+    3. `amplitude` returns its size at values of that coordinate, or None if equilibrium has to give it.  For
+       a load with a field `magnitude` derive from `AppliedLoad` instead, which does that.
+    4. `shapes`, `label` and `one_way` are as those of a joint.
+    5. Add the class to `LOADS` and to `__all__` in `brakes/planar/__init__.py`, and write a test.
+    """
+
+    def row(self) -> Row:
+        """The coordinate on which it does its work."""
+        raise NotImplementedError
+
+    def rows(self) -> tuple[Row, ...]:
+        """The only row."""
+        return (self.row(),)
+
+    @property
+    def has_coordinate(self) -> bool:
+        """Whether the value of its row is a coordinate, which may drive a stroke."""
+        return True
+
+    def amplitude(self, coordinate: np.ndarray) -> np.ndarray | float | None:
+        """Its size [N, N m] at values (S,) of its coordinate [m, rad]; None if unknown."""
+        raise NotImplementedError
+
+    def with_magnitude(self, magnitude: float | None) -> Load:
+        """The same load of another magnitude [N, N m].
+
+        Raises
+        ------
+        ValueError
+            If its size is not free to choose.
+        """
+        raise ValueError(f"load {self.name!r} is a spring: name a force, a moment or a cable pair")
+
+    def shifted(self, distance: float) -> Load:
+        """The load with its point moved along its direction [m].
+
+        Raises
+        ------
+        ValueError
+            If it does not act on one point.
+        """
+        raise ValueError("the wear of a pad needs its load to be a force on its face")
+
+
+class AppliedLoad(Load):
+    """A load of a known magnitude [N, N m], or of an unknown one (None) that equilibrium gives."""
+
+    magnitude: float | None
+
+    def amplitude(self, coordinate: np.ndarray) -> float | None:
+        """Its magnitude."""
+        return self.magnitude
+
+    def with_magnitude(self, magnitude: float | None) -> Self:
+        """The same load of another magnitude [N, N m]."""
+        return replace(self, magnitude=magnitude)
