@@ -29,7 +29,7 @@ from brakes.answers.planar import (
     reactions_table,
     select_rows,
 )
-from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, 
+from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
 from brakes.config.mechanism import CaliperInput, MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
 from brakes.config.wording import in_range
@@ -122,7 +122,7 @@ class CaliperAnswer(PlanarAnswer):
         return (*self.run.warnings, *([locked] if locked else []))
 
     @cached_property
-    def stop(self) ->  | None:
+    def stop(self) -> StoppingDistance | None:
         """The stop, if the file has one: with the mean force of the pads at the end of the stroke."""
         if self.design.stop is None or self.refusals:
             return None
