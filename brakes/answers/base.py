@@ -1,4 +1,4 @@
-"""The pattern of every brake's answer, from which its command, its screen and its HTML report are made."""
+"""The pattern that every brake follows; its command, its screen and its HTML report are made from it."""
 
 from __future__ import annotations
 
@@ -92,9 +92,9 @@ class BrakeType(ABC, Generic[Design]):
         Tables on its form; "" for inputs outside any table.
     needs : tuple of str
         Tables, or inputs outside any, from which the answer follows.
-    swept : str
+    example_sweep : str
         Sweep with which its screen begins, such as "brake.friction=0.1:0.6:26".
-    results : str
+    sweep_results : str
         Results of a sweep if none are named, separated by commas.
     slider : Slider, optional
         What its figure follows.
@@ -107,8 +107,8 @@ class BrakeType(ABC, Generic[Design]):
     purpose: str
     sections: tuple[str, ...]
     needs: tuple[str, ...]
-    swept: str
-    results: str
+    example_sweep: str
+    sweep_results: str
     slider: Slider | None = None
     more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
 
@@ -145,7 +145,7 @@ class BrakeType(ABC, Generic[Design]):
 
     def default_results(self, design: Design) -> str:
         """Results of a sweep of a design if none are named."""
-        return self.results
+        return self.sweep_results
 
     def sweep(
         self,

@@ -202,8 +202,8 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
     sections = ("", "points", "run", "caliper", "stop")
     needs = ("title", "bodies", *PARTS, *sections[1:])
-    swept = "points.C.x=17:20:13 mm"
-    results = "work"
+    example_sweep = "points.C.x=17:20:13 mm"
+    sweep_results = "work"
     slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
     more = (("Free bodies", PlanarAnswer.free_bodies),)
 
@@ -267,8 +267,8 @@ class CaliperType(MechanismType):
     purpose = "A bicycle's caliper over its stroke: travels, forces, and the reaction of every joint."
     sections = ("", "run", "dimensions", "stop")
     needs = ("caliper", "title", "dimensions", "run", "stop")
-    swept = "dimensions.clearance=1:2:21 mm"
-    results = "finger_travel"
+    example_sweep = "dimensions.clearance=1:2:21 mm"
+    sweep_results = "finger_travel"
     slider = Slider("stroke", ("open", "closed"), step=0.1)
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:

@@ -135,8 +135,8 @@ class DrumType(ArrayBrakeType[DrumInput]):
     purpose = "A brake with shoes on fixed pins: torque, pressure, pin reactions, and when it locks itself."
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load")
-    swept = "brake.friction=0.1:0.6:26"
-    results = "torque,c_star,peak_pressure"
+    example_sweep = "brake.friction=0.1:0.6:26"
+    sweep_results = "torque,c_star,peak_pressure"
 
     def solve(self, design: DrumInput) -> DrumAnswer:
         """Forces in the brake."""

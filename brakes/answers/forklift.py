@@ -333,7 +333,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
     model = ForkliftInput
     sections = needs = ("truck", "stop", "brake", "levers", "forces")
-    swept = "stop.speed=10:30:21 km/h"
+    example_sweep = "stop.speed=10:30:21 km/h"
     stages: tuple[StageName, ...] = ()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:
@@ -346,7 +346,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
 
     def default_results(self, design: ForkliftInput) -> str:
         """The most important results of each stage."""
-        return ",".join(TYPES[name].results for name in self.stages or design.stages)
+        return ",".join(TYPES[name].sweep_results for name in self.stages or design.stages)
 
 
 class VehicleType(ForkliftType):
@@ -355,8 +355,8 @@ class VehicleType(ForkliftType):
     title = "Vehicle"
     purpose = "The truck reverses down a slope and brakes: stopping distance, and the torque of each brake."
     sections = needs = ("truck", "stop")
-    swept = "stop.speed=10:30:21 km/h"
-    results = "distance,torque_per_brake"
+    example_sweep = "stop.speed=10:30:21 km/h"
+    sweep_results = "distance,torque_per_brake"
     stages = ("vehicle",)
 
 
@@ -368,8 +368,8 @@ class KinematicsType(ForkliftType):
         "The shoes of a duo-servo brake: they turn onto the drum, then turn with it until a piston bottoms."
     )
     sections = needs = ("brake",)
-    swept = "brake.clearance=8:11:16 mm"
-    results = "drum_turn,left_travel,lining_penetration"
+    example_sweep = "brake.clearance=8:11:16 mm"
+    sweep_results = "drum_turn,left_travel,lining_penetration"
     slider = Slider("stage", ("at rest", "linings on the drum", "piston at its bottom"))
     stages = ("kinematics",)
 
@@ -383,8 +383,8 @@ class ForcesType(ForkliftType):
     )
     sections = ("forces", "levers")
     needs = ("truck", "stop", "brake", "levers", "forces")
-    swept = "forces.piston_force=9:13:17 kN"
-    results = "A,B,Q,P_L,lining_friction"
+    example_sweep = "forces.piston_force=9:13:17 kN"
+    sweep_results = "A,B,Q,P_L,lining_friction"
     stages = ("forces",)
 
 

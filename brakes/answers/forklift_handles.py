@@ -13,44 +13,45 @@ from beamdyn.common.app.documents import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_NEAR = 1e-7  # how near a point that is sought comes to where it is wanted [m], [rad]
-_ROUNDS = 30
-_FAR = 1.9  # end of the ground that is drawn, in wheelbases
-_REAR = 0.75  # height of the rear axle that is drawn, in radii of the front wheel
+_TOLERANCE = 1e-7  # of the place at rest of a moved point [m], [rad]
+_ITERATIONS = 30  # at most
+_GROUND = 1.9  # end of the drawn ground, in wheelbases
+_REAR_AXLE = 0.75  # its drawn height, in radii of the front wheel
 Values = Callable[[float, float], dict[str, float]]
 
 # A truck ------------------------------------------------------------------------------------------------
 
 
 def truck_handles(stop: Stop) -> list[Handle]:
-    """Centres of gravity, rear axle, front wheel and the slope itself; x down the slope, y off the ground."""
+    """Handles on the centres of gravity, the rear axle, the front wheel and the slope."""
     t, beta = stop.truck, float(stop.conditions.slope)
     L, r = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # of row vectors
 
-    def handle(label: str, at: Sequence[Any], values: Values) -> Handle:
+    def on_slope(label: str, at: Sequence[Any], values: Values) -> Handle:
+        """A handle at a place given along the slope and off the ground; its values are in these axes too."""
         place, back = _pair(np.array(at, dtype=float) @ turn), turn.T
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
-    end = _pair(np.array([_FAR * L, 0.0]) @ turn)
-    found = [
+    end = _pair(np.array([_GROUND * L, 0.0]) @ turn)
+    handles = [
         Handle("end of the slope", end, lambda x, y: {"stop.slope": float(np.arctan2(-y, x))}, step=0.05),
-        handle("rear axle", (L, _REAR * r), lambda x, y: {"truck.wheelbase": x}),
-        handle("top of the front wheel", (0, 2 * r), lambda x, y: {"truck.front_wheel_radius": y / 2}),
-        handle("centre of gravity with the load", (t.cg[0], t.cg[1] + r), partial(_empty_cg, stop)),
+        on_slope("rear axle", (L, _REAR_AXLE * r), lambda x, y: {"truck.wheelbase": x}),
+        on_slope("top of the front wheel", (0, 2 * r), lambda x, y: {"truck.front_wheel_radius": y / 2}),
+        on_slope("centre of gravity with the load", (t.cg[0], t.cg[1] + r), partial(_find_empty_cg, stop)),
     ]
     if float(t.load_mass):
         at = t.load_cg[0], t.load_cg[1] + r
-        found.append(handle("centre of gravity of the load", at, partial(_load_cg, r)))
-    return found
+        handles.append(on_slope("centre of gravity of the load", at, partial(_find_load_cg, r)))
+    return handles
 
 
-def _load_cg(r: float, x: float, y: float) -> dict[str, float]:
+def _find_load_cg(r: float, x: float, y: float) -> dict[str, float]:
     return {"truck.load_cg_x": x, "truck.load_cg_y": y - r}
 
 
-def _empty_cg(stop: Stop, x: float, y: float) -> dict[str, float]:
-    """That of the empty truck with which the whole has its centre of gravity at a place."""
+def _find_empty_cg(stop: Stop, x: float, y: float) -> dict[str, float]:
+    """Centre of gravity of the empty truck that puts the one of truck and load at (x, y)."""
     t = stop.truck
     m, ml = float(t.empty_mass), float(t.load_mass)
     whole = np.array([x, y - float(t.front_wheel_radius)])
@@ -62,75 +63,75 @@ def _empty_cg(stop: Stop, x: float, y: float) -> dict[str, float]:
 
 
 def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
-    """Pins, contact and piston face of the right shoe where it is on its way, and the drum."""
+    """Handles on the drum, and on pins, contact and piston face of the right shoe at a place of its motion."""
     g = motion.geometry
     tip, adjuster = (_drawn(motion, progress, getattr(g, name)) for name in ("tip", "adjuster"))
-    contact = _drawn(motion, progress, _contact(motion))
+    contact = _place_drawn(motion, progress, _contact_at_rest(motion))
     tilt, r = float(g.face_tilt), float(g.drum_radius)
     face = tip + 0.1 * r * np.array([np.sin(tilt), np.cos(tilt)])
     return [
         Handle("drum radius", (0.0, r), lambda x, y: {"brake.drum_radius": y}),
-        Handle("tip of the shoe", _pair(tip), partial(_pin, motion, progress, "tip")),
-        Handle("adjuster's pin", _pair(adjuster), partial(_pin, motion, progress, "adjuster")),
-        Handle("contact of the lining", _pair(contact), partial(_contact_at, motion, progress)),
-        Handle("tilt of the piston's face", _pair(face), partial(_tilt, tip)),
+        Handle("tip of the shoe", _pair(tip), partial(_find_pin, motion, progress, "tip")),
+        Handle("adjuster's pin", _pair(adjuster), partial(_find_pin, motion, progress, "adjuster")),
+        Handle("contact of the lining", _pair(contact), partial(_find_contact, motion, progress)),
+        Handle("tilt of the piston's face", _pair(face), partial(_find_tilt, tip)),
     ]
 
 
-def _drawn(motion: ShoeMotion, progress: float, point: object) -> np.ndarray:
-    """Where a point of the right shoe, given at rest, is drawn."""
+def _place_drawn(motion: ShoeMotion, progress: float, point: object) -> np.ndarray:
+    """Place at which a point of the right shoe, given at rest, is drawn."""
     return moved(np.array([point], dtype=float), motion.geometry, motion, progress, "right")[0]
 
 
-def _contact(motion: ShoeMotion) -> np.ndarray:
+def _contact_at_rest(motion: ShoeMotion) -> np.ndarray:
     g = motion.geometry
     radius, angle = float(g.drum_radius) - float(motion.clearance), float(g.contact_angle)
     return radius * np.array([np.cos(angle), np.sin(angle)])
 
 
-def _tilt(tip: np.ndarray, x: float, y: float) -> dict[str, float]:
+def _find_tilt(tip: np.ndarray, x: float, y: float) -> dict[str, float]:
     return {"brake.face_tilt": float(np.arctan2(x - tip[0], y - tip[1]))}
 
 
-def _pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float) -> dict[str, float]:
-    """Place at rest of a pin that is drawn at (x, y): it changes the way on which it is drawn."""
+def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float) -> dict[str, float]:
+    """Place at rest of a pin that is drawn at (x, y); it changes the motion, and so is found by iteration."""
     turn = max(progress - 1, 0) * float(motion.drum_turn) - min(progress, 1) * float(motion.seating_turn)
     back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])  # of row vectors
 
-    def miss(pin: np.ndarray) -> np.ndarray:
-        other = _other(motion.geometry, motion, **{name: _pair(pin)})
-        return (np.array([x, y]) - _drawn(other, progress, pin)) @ back
+    def residual(pin: np.ndarray) -> np.ndarray:
+        other = _move_changed(motion.geometry, motion, **{name: _pair(pin)})
+        return (np.array([x, y]) - _place_drawn(other, progress, pin)) @ back
 
-    pin = _sought(np.array(getattr(motion.geometry, name), dtype=float), miss)
+    pin = _iterate(np.array(getattr(motion.geometry, name), dtype=float), residual)
     return {f"brake.{name}_x": float(pin[0]), f"brake.{name}_y": float(pin[1])}
 
 
-def _contact_at(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Angle of the contact that is drawn in the direction of (x, y); at rest the clearance as well."""
+def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
+    """Angle of the contact that is drawn in the direction of (x, y); at rest the clearance too."""
 
-    def miss(angle: np.ndarray) -> np.ndarray:
-        other = _other(motion.geometry, motion, contact_angle=float(angle))
-        drawn = _drawn(other, progress, _contact(other))
+    def residual(angle: np.ndarray) -> np.ndarray:
+        other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
+        drawn = _place_drawn(other, progress, _contact_at_rest(other))
         return np.arctan2(y, x) - np.arctan2(drawn[1], drawn[0])
 
-    angle = {"brake.contact_angle": float(_sought(np.array(motion.geometry.contact_angle), miss))}
+    angle = {"brake.contact_angle": float(_iterate(np.array(motion.geometry.contact_angle), residual))}
     gap = float(motion.geometry.drum_radius) - float(np.hypot(x, y))
     return angle if progress else angle | {"brake.clearance": gap}
 
 
-def _other(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> ShoeMotion:
+def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> ShoeMotion:
     return dataclasses.replace(geometry, **changed).move_shoes(motion.clearance)  # pyright: ignore[reportArgumentType]
 
 
-def _sought(start: np.ndarray, miss: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Goes on by what it misses until that is nothing; a place of no brake is the answer as well."""
-    for _ in range(_ROUNDS):
+def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """Add the residual until it vanishes; stop where there is no such brake, which its fields then refuse."""
+    for _ in range(_ITERATIONS):
         try:
-            gap = miss(start)
+            step = residual(start)
         except ValueError:
             break
-        start = start + gap
-        if np.all(np.abs(gap) < _NEAR):
+        start = start + step
+        if np.all(np.abs(step) < _TOLERANCE):
             break
     return start
 

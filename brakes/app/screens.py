@@ -84,4 +84,4 @@ def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
     def run(tables: Mapping[str, Any], text: str, results: str) -> Sweep:
         return brake.sweep(tables, brake.name, [text], results, ("sweep", "results"))[0]
 
-    return Sweeps(names, brake.swept, brake.results, run)
+    return Sweeps(names, brake.example_sweep, brake.sweep_results, run)
