@@ -63,9 +63,9 @@ def _find_empty_cg(stop: Stop, x: float, y: float) -> dict[str, float]:
 
 
 def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
-    """Handles on the drum, and on pins, contact and piston face of the right shoe at a place of its motion."""
+    """Handles on the drum, and on pins, contact and piston face of the right shoe during its motion."""
     g = motion.geometry
-    tip, adjuster = (_drawn(motion, progress, getattr(g, name)) for name in ("tip", "adjuster"))
+    tip, adjuster = (_place_drawn(motion, progress, getattr(g, name)) for name in ("tip", "adjuster"))
     contact = _place_drawn(motion, progress, _contact_at_rest(motion))
     tilt, r = float(g.face_tilt), float(g.drum_radius)
     face = tip + 0.1 * r * np.array([np.sin(tilt), np.cos(tilt)])
