@@ -1,4 +1,4 @@
-"""Bicycle calipers: what they make of the force of a finger, over the stroke, with friction and wear."""
+"""Bicycle calipers: force and travel of the pads over the stroke, with friction and wear."""
 
 from brakes.calipers.caliper import Caliper
 from brakes.calipers.designs import (

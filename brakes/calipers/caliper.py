@@ -24,8 +24,8 @@ from brakes.planar.described import Described, check_inputs
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # N, a firm squeeze
-_NOISE = 1e-9  # part of the largest force that is rounding
-_CLOSED = 1e-12  # of the clearance: Newton's last step
+_NOISE = 1e-9  # rounding, over the largest force
+_CLOSED = 1e-12  # Newton's last step, over the travel
 
 Split = Annotated[
     Literal["equal force", "equal work"],
@@ -41,7 +41,7 @@ PivotRadius = Annotated[float, Described("number", "radius of the pivots", unit=
 
 
 class _Forces(NamedTuple):
-    """Forces at S positions: the worst equilibrium's verdict, and arrays by name."""
+    """Forces at S positions: arrays by name, and the equilibrium that has the worst status."""
 
     worst: Equilibrium
     warnings: tuple[str, ...]
@@ -100,7 +100,7 @@ class Caliper:
 
     @cached_property
     def free(self) -> Mechanism:
-        """The mechanism before the pads touch: with what centres it, and without tension."""
+        """The mechanism before the pads touch: with its centring joints and without tension."""
         held = replace(self.mechanism, joints=(*self.mechanism.joints, *self.centring))
         return _with_magnitudes(held, {self.cable: 0.0, **dict.fromkeys(self.pads, 0.0)})
 
@@ -116,13 +116,13 @@ class Caliper:
         travel, step = 0.0, np.inf
         for _ in range(30):
             motion = stroke(self.free, self.cable, [travel])
-            gone, ratio = self._pads(motion.travel).mean(), self._pads(motion.ratio).mean()
+            travelled, ratio = self._pads(motion.travel).mean(), self._pads(motion.ratio).mean()
             if ratio <= 0:
                 raise ValueError(
                     f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
                     f"{self.pads[1]!r} away from the rim, or the cable"
                 )
-            step = (self.clearance - gone) / ratio
+            step = (self.clearance - travelled) / ratio
             travel += step
             if abs(step) <= _CLOSED * travel:
                 break
@@ -191,8 +191,8 @@ class Caliper:
         tension = self.lever_ratio * positive("finger", finger, "N")
         right = None
         if not self.centring:  # then the split gives one of the two forces
-            found = float(self._forces(position, tension).pads[0, 0])
-            right = None if np.isnan(found) else found
+            force = float(self._forces(position, tension).pads[0, 0])
+            right = None if np.isnan(force) else force
         return solve(self._with(tension, right, None), position[0])
 
     def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
@@ -272,7 +272,7 @@ def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) 
 
 
 def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float) -> _Forces:
-    """The mean of two equilibria, of which the first has a share; or the only one."""
+    """The weighted mean of two equilibria, `share` the weight of the first; or the first alone."""
     b = a if b is None else b
     weight = np.broadcast_to(share, a.residual.shape)
 

@@ -1,4 +1,4 @@
-"""What is known of a caliper over its stroke, with friction, and as its pads wear."""
+"""Results of a caliper: over its stroke, with friction in the pivots, and with worn pads."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class CaliperStroke(Result):
     status, message : str
         Worst of the positions, as in `planar.Equilibrium`.
     warnings : tuple of str
-        Pads that would have to pull, toggle positions, answers that hang on the last digits.
+        Pads that would have to pull, and toggle positions.
     finger_force, tension : float
         Force of the finger on the hand lever and tension of the cable [N].
     lever_ratio : float
@@ -102,7 +102,7 @@ class CaliperStroke(Result):
 
 @dataclass(frozen=True)
 class PivotFriction(Result):
-    """What friction in the pivots takes, at one position.
+    """Efficiency of a caliper with friction in the pivots, at one position.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class PivotFriction(Result):
 
 @dataclass(frozen=True)
 class PadWear(Result):
-    """What the wear of both pads changes, the cable not readjusted; W thicknesses lost.
+    """Contact and advantage after both pads have worn by W thicknesses, the cable not readjusted.
 
     Parameters
     ----------

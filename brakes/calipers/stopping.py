@@ -10,7 +10,7 @@ import numpy as np
 from beamdyn.common.checks import not_negative, positive
 from beamdyn.common.results import Result
 
-_RTOL, _ATOL = 1e-12, 1e-12  # of the integration [m]: below any distance that is measured
+_RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
 
 
 @dataclass(frozen=True)
@@ -121,8 +121,8 @@ def _integrated(energy: float, factor: float, force: Callable[[float], float]) -
         pressing = force(float(s[0]))
         return np.array([1 / (factor * pressing) if pressing > 0 else np.nan])
 
-    found = solve_ivp(rate, (0.0, energy), np.zeros(1), method="DOP853", rtol=_RTOL, atol=_ATOL)
-    return float(found.y[0, -1]) if found.success else np.inf
+    solution = solve_ivp(rate, (0.0, energy), np.zeros(1), method="DOP853", rtol=_RTOL, atol=_ATOL)
+    return float(solution.y[0, -1]) if solution.success else np.inf
 
 
 def _result(distance: float, energy: float, speed: float) -> StoppingDistance:

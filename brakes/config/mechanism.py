@@ -86,7 +86,7 @@ class DirectionQuantity(Quantity):
     """A direction: two numbers, or an angle from x anticlockwise."""
 
     def parse(self, given: object) -> Any:
-        """A vector."""
+        """Its components."""
         if isinstance(given, str):
             angle = quantity(given, "rad")
             return math.cos(angle), math.sin(angle)
@@ -101,7 +101,7 @@ class TravelQuantity(Quantity):
     """A travel: a length, or an angle where the driver is a moment."""
 
     def convert(self, given: object) -> float:
-        """A length [m], or `Angle`."""
+        """A length [m], or an `Angle` [rad]."""
         try:
             return Angle(quantity(given, "rad"))
         except ValueError:
@@ -121,7 +121,7 @@ Point = Annotated[Coordinates, PointQuantity("m", meaning="point in the drawing"
 
 
 class RunInput(Section):
-    """[run]: what is asked of it."""
+    """[run]: the stroke, the finger's force, and what else is to be computed."""
 
     finger: Annotated[
         float, Quantity("N", symbol="P", meaning="force of the finger on the hand lever", above=0)
@@ -246,7 +246,9 @@ def _field_of(described: Described, default: object) -> tuple[Any, Any]:
 
 def _number(d: Described) -> Any:
     words: dict[str, Any] = {"symbol": d.symbol, "meaning": d.meaning, "remedy": d.remedy}
-    bounds = {"positive": {"above": 0.0}, "not negative": {"least": 0.0}}.get(d.bound or "", {})
+    bounds: dict[str, Any] = {"positive": {"above": 0.0}, "not negative": {"least": 0.0}}.get(
+        d.bound or "", {}
+    )
     return Annotated[float, Quantity(d.unit, **words, **bounds)]
 
 

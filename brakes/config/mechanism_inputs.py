@@ -1,4 +1,4 @@
-"""The inputs of calipers and mechanisms as forms and sweeps need them, and named designs as text."""
+"""Descriptions of the inputs of calipers and mechanisms for forms and sweeps; named designs as TOML."""
 
 from __future__ import annotations
 
@@ -10,15 +10,17 @@ from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
 from brakes.config.mechanism import CaliperInput, CompleteMechanismInput, PointQuantity, model_of_part, named
 from brakes.planar import JOINTS, LOADS, Part
+from brakes.planar.described import inputs_of
 from brakes.planar.points import Point as Coordinates
 
 
 def _keys(part: type[Part]) -> str:
-    """What its tables are, the keys that must be given, and those that may."""
-    fields = model_of_part(part).model_fields
-    required = [key for key, field in fields.items() if field.is_required()]
-    rest = [key for key in fields if key not in required]
-    return f"{part.label}: {'; '.join(', '.join(keys) for keys in (required, rest) if keys)}"
+    """The kind of part, and its required and optional keys, as help text."""
+    fields, keys = model_of_part(part).model_fields, {True: [], False: []}
+    for key, described in inputs_of(part).items():
+        otherwise = described.meaning.partition("; ")[2]  # such as "the ground if not given"
+        keys[fields[key].is_required()].append(f"{key} ({otherwise})" if otherwise else key)
+    return f"{part.label}: {'; '.join(', '.join(some) for some in (keys[True], keys[False]) if some)}"
 
 
 PARTS = {part.key(): _keys(part) for part in (*JOINTS, *LOADS)}
@@ -49,12 +51,12 @@ def _table(path: str) -> str:
     return path.partition(".")[0]
 
 
-def _input(path: str, kind: Any, asked: Quantity, required: bool = False) -> Input:
-    return Input(path, CompleteMechanismInput, kind, asked, (), required, None if required else [])
+def _input(path: str, kind: Any, description: Quantity, required: bool = False) -> Input:
+    return Input(path, CompleteMechanismInput, kind, description, (), required, None if required else [])
 
 
 def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
-    """Inputs of what tables describe."""
+    """Inputs of the caliper or mechanism that the tables of a file describe."""
     name, points = tables.get("caliper"), tables.get("points")
     if isinstance(name, str):
         return caliper_inputs(name)
@@ -62,7 +64,7 @@ def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
 
 
 def named_text(name: str) -> str:
-    """The file of a named caliper with all its dimensions."""
+    """TOML text of a named caliper with all its dimensions."""
     given = named(name)
     inputs = [entry for entry in caliper_inputs(name) if entry.path.startswith("dimensions.")]
     lines = [f"{entry.name} = {_shown(entry)}" for entry in inputs]

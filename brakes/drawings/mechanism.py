@@ -171,14 +171,14 @@ def draw_forces(equilibrium: Equilibrium, ax: Axes, scale: float | None = None, 
     for arrow in parts.outer_forces(equilibrium):
         aside = arrow.at[0] - (low[0] + high[0]) / 2  # from outside, where it would cross the middle
         inwards = arrow.reaction and abs(aside) > _ASIDE * math.dist(low, high) and arrow.force[0] * aside < 0
-        _arrow(ax, arrow.at, arrow.force, scale, REACTION if arrow.reaction else LOAD, "", inwards)
-    shown = {"tension": TENSION, "compression": COMPRESSION, "load": LOAD, "reaction": REACTION}
+        _draw_arrow(ax, arrow.at, arrow.force, scale, REACTION if arrow.reaction else LOAD, "", inwards)
+    colours = {"tension": TENSION, "compression": COMPRESSION, "load": LOAD, "reaction": REACTION}
     if key:
-        _key(ax, shown, scale)
+        _draw_key(ax, colours, scale)
     return ax
 
 
-def _arrow(
+def _draw_arrow(
     ax: Axes, at: np.ndarray, force: np.ndarray, scale: float, colour: str, name: str, inwards: bool = False
 ) -> None:
     """An arrow from the point, or to it if the force points inwards; none for a force of nearly 0 or nan."""
@@ -201,11 +201,11 @@ def _arrow(
     )
 
 
-def _key(ax: Axes, shown: dict[str, str], scale: float) -> None:
+def _draw_key(ax: Axes, colours: dict[str, str], scale: float) -> None:
     """Colours, and the scale of the arrows."""
     from matplotlib.lines import Line2D
 
-    handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in shown.items()]
+    handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in colours.items()]
     title = f"1 mm is {1 / (scale * _MM):.3g} N" if scale else None
     ax.legend(
         handles=handles, loc="best", fontsize="small", framealpha=0.8, title=title, title_fontsize="small"
@@ -259,12 +259,12 @@ def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) 
     couples = []
     for action in free_body(equilibrium, body):
         if not np.isfinite(action.at).all():
-            couples.append(_couple(action))
+            couples.append(_describe_couple(action))
             continue
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
         inwards = towards and action.name not in pulling  # a push comes from outside, a cable pulls away
         colour = LOAD if action.name in loads else REACTION
-        _arrow(ax, action.at, action.force, scale, colour, action.name, inwards)
+        _draw_arrow(ax, action.at, action.force, scale, colour, action.name, inwards)
         ax.plot(*(action.at * _MM), "o", color="white", markeredgecolor="0.1", markersize=5, zorder=6)
     ax.set_title("\n".join((body, *filter(None, couples))), fontsize="medium")
     _frame(ax)
@@ -280,7 +280,7 @@ def _frame(ax: Axes) -> None:
     ax.set_aspect("equal")
 
 
-def _couple(action: Action) -> str:
+def _describe_couple(action: Action) -> str:
     return f"{action.name}: couple {action.couple:.4g} N m" if abs(action.couple) > 1e-12 else ""
 
 

@@ -1,4 +1,4 @@
-"""What a picture of a mechanism shows: outlines of its bodies, two-force members, outer forces."""
+"""Geometry of the pictures of a mechanism: outlines of bodies, members, outer forces."""
 
 from __future__ import annotations
 

@@ -12,10 +12,10 @@ from brakes.planar.diagnosis import OutOfReachError
 from brakes.planar.linear import decompose
 from brakes.planar.system import System
 
-_SMALL_STEP = 1e-9  # Newton squares it: the next step would be below rounding
-_CLOSED = 1e-14  # gap over length that rounding leaves
+_SMALL_STEP = 1e-9  # convergence is quadratic: the next step would be below rounding
+_CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the mechanism
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
-_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # steps along the curve, in lengths of the mechanism
+_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # step sizes along the curve, over the length of the mechanism
 _NODES = 20_000
 
 
@@ -34,12 +34,12 @@ class Node(NamedTuple):
     regularity: float
 
     def reversed(self) -> Node:
-        """The same point of the curve run the other way."""
+        """The same node with the curve traversed in the opposite direction."""
         return Node(self.y, -self.tangent, self.value, -self.rate, -self.regularity)
 
 
 def node_at(system: System, y: np.ndarray, before: np.ndarray) -> Node:
-    """The node at y; its tangent is the least singular vector of the joints, in the sense of `before`."""
+    """The node at y; its tangent is the null vector of the joints, oriented along `before`."""
     rows = system.rows(y[None])
     joints, loads = rows.gradient[0, : system.constraints], list(system.loads.values())
     tangent = np.linalg.svd(joints)[2][-1]
@@ -49,7 +49,7 @@ def node_at(system: System, y: np.ndarray, before: np.ndarray) -> Node:
     return Node(y, tangent, rows.value[0, loads], rows.gradient[0, loads] @ tangent, regularity)
 
 
-def march(system: System, node: Node) -> Iterator[Node]:
+def follow(system: System, node: Node) -> Iterator[Node]:
     """Follow the curve by pseudo-arclength (tangent predictor, Newton, step halving), and yield its nodes."""
     step = _FIRST
     for _ in range(_NODES):
@@ -70,7 +70,7 @@ def _advance(system: System, node: Node, step: float) -> Node | None:
     """The node a step along the tangent further, or None if the step is too long."""
     ahead = node.y + step * node.tangent
     try:
-        y = close(system, ahead[None], node.tangent[None])[0]
+        y = close_joints(system, ahead[None], node.tangent[None])[0]
     except np.linalg.LinAlgError:
         return None
     following = node_at(system, y, node.tangent)
@@ -78,7 +78,7 @@ def _advance(system: System, node: Node, step: float) -> Node | None:
     return following if near else None
 
 
-def close(system: System, y: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+def close_joints(system: System, y: np.ndarray, tangent: np.ndarray) -> np.ndarray:
     """Close the joints of positions (S, 3 n), each within the plane normal to its tangent (S, 3 n)."""
     return newton(system, y, lambda v, g, moved: (((moved - y) * tangent).sum(axis=1), tangent))
 
@@ -97,7 +97,7 @@ def newton(system: System, y: np.ndarray, equation: Equation) -> np.ndarray:
         rows = system.rows(y)
         residual, gradient = equation(rows.value[:, loads], rows.gradient[:, loads], y)
         residual = np.concatenate((rows.value[:, :m], residual[:, None]), axis=1)
-        if tries > 6 and np.abs(residual).max() < _CLOSED:  # slow: motions branch here
+        if tries > 6 and np.abs(residual).max() < _CLOSED:  # convergence is slow where motions branch
             return y
         step = _step(np.concatenate((rows.gradient[:, :m], gradient[:, None]), axis=1), residual, system)
         y = y - step
@@ -110,7 +110,7 @@ def newton(system: System, y: np.ndarray, equation: Equation) -> np.ndarray:
 
 
 def _step(gradient: np.ndarray, residual: np.ndarray, system: System) -> np.ndarray:
-    """Newton step: by elimination where the matrix is square and regular, else of least length."""
+    """Newton step: by elimination where the matrix is square and regular, else the step of least norm."""
     if gradient.shape[1] == gradient.shape[2]:
         try:
             return np.linalg.solve(gradient, residual[..., None])[..., 0]
@@ -119,14 +119,14 @@ def _step(gradient: np.ndarray, residual: np.ndarray, system: System) -> np.ndar
     return decompose(gradient, system.rounding).solve(residual)
 
 
-def zero(system: System, a: Node, b: Node, function: Callable[[Node], float]) -> Node:
-    """The node between two at which a function of opposite signs there vanishes (regula falsi, Illinois)."""
+def find_zero(system: System, a: Node, b: Node, function: Callable[[Node], float]) -> Node:
+    """The root between two nodes of a function with opposite signs at them (regula falsi, Illinois)."""
     low, high = 0.0, float((b.y - a.y) @ a.tangent)
     f_low, f_high, node = function(a), function(b), b
     for _ in range(60):
         middle = (low * f_high - high * f_low) / (f_high - f_low)
         try:
-            y = close(system, (a.y + middle * a.tangent)[None], a.tangent[None])[0]
+            y = close_joints(system, (a.y + middle * a.tangent)[None], a.tangent[None])[0]
         except np.linalg.LinAlgError:  # as near to a branch point as Newton's method gets
             break
         node = node_at(system, y, a.tangent)
@@ -138,43 +138,43 @@ def zero(system: System, a: Node, b: Node, function: Callable[[Node], float]) ->
     return node
 
 
-def at_values(system: System, nodes: list[Node], k: int, wanted: np.ndarray) -> np.ndarray:
+def solve_at_values(system: System, nodes: list[Node], k: int, target: np.ndarray) -> np.ndarray:
     """Coordinates (S, 3 n) at which coordinate k of the loads, growing along the nodes, has given values."""
     if len(nodes) == 1:
-        return np.tile(nodes[0].y, (len(wanted), 1))
+        return np.tile(nodes[0].y, (len(target), 1))
     value, slope = (np.array([getattr(node, key)[k] for node in nodes]) for key in ("value", "rate"))
-    piece = np.clip(np.searchsorted(value, wanted, side="right") - 1, 0, len(nodes) - 2)
-    chord = _chords(nodes)[piece]
-    ends = value[piece], value[piece + 1], slope[piece] * chord, slope[piece + 1] * chord
-    low, high = np.zeros(len(wanted)), np.ones(len(wanted))
+    segment = np.clip(np.searchsorted(value, target, side="right") - 1, 0, len(nodes) - 2)
+    chord = _chords(nodes)[segment]
+    ends = value[segment], value[segment + 1], slope[segment] * chord, slope[segment + 1] * chord
+    low, high = np.zeros(len(target)), np.ones(len(target))
     for _ in range(30):
         middle = (low + high) / 2
-        below = _cubic(middle, *ends) < wanted
+        below = _cubic(middle, *ends) < target
         low, high = np.where(below, middle, low), np.where(below, high, middle)
-    start, _ = _between(nodes, piece, low)
-    return newton(system, start, lambda v, g, _: (v[:, k] - wanted, g[:, k]))
+    start, _ = _between(nodes, segment, low)
+    return newton(system, start, lambda v, g, _: (v[:, k] - target, g[:, k]))
 
 
-def at_arc_lengths(system: System, nodes: list[Node], wanted: np.ndarray) -> np.ndarray:
+def solve_at_arc_lengths(system: System, nodes: list[Node], target: np.ndarray) -> np.ndarray:
     """Coordinates (S, 3 n) at given lengths along the curve from the first node."""
     half = np.array([_angle(a, b) / 2 for a, b in pairwise(nodes)])
     arc = np.concatenate(
         ([0.0], np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))
     )  # circles between the nodes
-    piece = np.clip(np.searchsorted(arc, wanted, side="right") - 1, 0, len(nodes) - 2)
-    return close(system, *_between(nodes, piece, (wanted - arc[piece]) / np.diff(arc)[piece]))
+    segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(nodes) - 2)
+    return close_joints(system, *_between(nodes, segment, (target - arc[segment]) / np.diff(arc)[segment]))
 
 
 def _chords(nodes: list[Node]) -> np.ndarray:
     return np.linalg.norm(np.diff([node.y for node in nodes], axis=0), axis=1)
 
 
-def _between(nodes: list[Node], piece: np.ndarray, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coordinates and tangents at parts of pieces between nodes, cubic and linear."""
+def _between(nodes: list[Node], segment: np.ndarray, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates and tangents at fractions of the segments between nodes: cubic and linear interpolation."""
     y, tangent = np.array([node.y for node in nodes]), np.array([node.tangent for node in nodes])
-    chord, x = _chords(nodes)[piece, None], part[:, None]
-    ends = y[piece], y[piece + 1], tangent[piece] * chord, tangent[piece + 1] * chord
-    along = (1 - x) * tangent[piece] + x * tangent[piece + 1]
+    chord, x = _chords(nodes)[segment, None], part[:, None]
+    ends = y[segment], y[segment + 1], tangent[segment] * chord, tangent[segment + 1] * chord
+    along = (1 - x) * tangent[segment] + x * tangent[segment + 1]
     return _cubic(x, *ends), along / np.linalg.norm(along, axis=1, keepdims=True)
 
 

@@ -62,7 +62,7 @@ def inputs_of(model: type) -> dict[str, Described]:
     """The described fields of a dataclass, in their order."""
     hints = get_type_hints(model, include_extras=True)
     described = {key: _description(hint) for key, hint in hints.items()}
-    return {key: found for key, found in described.items() if found is not None}
+    return {key: entry for key, entry in described.items() if entry is not None}
 
 
 def check_inputs(core: object, prefix: str = "") -> None:

@@ -1,4 +1,4 @@
-"""Words for what is loose, undetermined, or out of reach."""
+"""Sentences that say what is loose, undetermined or out of reach."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from brakes.planar.system import System
 
-_STILL = 1e-8  # part of a motion that counts as rounding
+_STILL = 1e-8  # relative motion that counts as rounding
 
 
 class AssemblyError(ValueError):
@@ -37,10 +37,10 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
     for name, twist, moves in zip(system.bodies, twists, moving_bodies(motions), strict=False):
         if moves:
             _join(groups, name, twist)
-    return ", ".join(f"{listed(names)} {_motion(system, names, twist)}" for names, twist in groups)
+    return ", ".join(f"{join_names(names)} {_motion(system, names, twist)}" for names, twist in groups)
 
 
-def refuse_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
+def explain_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
     """Why a mechanism whose free motions are (3 n, k), k other than 1, has no stroke."""
     k = free.shape[1]
     if not k:
@@ -51,20 +51,20 @@ def refuse_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
     )
 
 
-def unheld(system: System, y: np.ndarray, motions: np.ndarray) -> str:
+def describe_loose(system: System, y: np.ndarray, motions: np.ndarray) -> str:
     """What is loose, and the remedy."""
     return f"{describe(system, y, motions)}; add a joint, or give a load that moves it an unknown amplitude"
 
 
-def self_stress(names: tuple[str, ...]) -> str:
+def describe_self_stress(names: tuple[str, ...]) -> str:
     """What equilibrium does not determine, and the remedy."""
     return (
-        f"statically indeterminate: equilibrium alone does not give {listed(names)}; "
+        f"statically indeterminate: equilibrium alone does not give {join_names(names)}; "
         "remove a joint among them, or give a load of unknown amplitude its magnitude"
     )
 
 
-def listed(names: Iterable[str]) -> str:
+def join_names(names: Iterable[str]) -> str:
     """Names as a list in a sentence."""
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last

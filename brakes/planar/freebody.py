@@ -52,18 +52,18 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     size = np.atleast_2d(equilibrium.multiplier)[index]
     system = mechanism.system
 
-    def actions(name: str, row: Row, size: float) -> list[Action]:
+    def act(name: str, row: Row, size: float) -> list[Action]:
         return [Action(name, *effect) for effect in row.effects(size, place, body)]
 
-    found = []
+    actions = []
     for joint in mechanism.joints:
         parts = zip(joint.rows(), size[system.joints[joint.name]], strict=True)
-        found += _sum(joint.name, [action for row, s in parts for action in actions(joint.name, row, s)])
+        actions += _sum(joint.name, [action for row, s in parts for action in act(joint.name, row, s)])
     for load in mechanism.loads:
-        found += actions(load.name, load.row(), size[system.loads[load.name]])
+        actions += act(load.name, load.row(), size[system.loads[load.name]])
     for name, (_, law) in mechanism.friction.items():
-        found += actions(f"friction of {name}", law.row, size[system.friction[name]])
-    return tuple(found)
+        actions += act(f"friction of {name}", law.row, size[system.friction[name]])
+    return tuple(actions)
 
 
 def _sum(name: str, actions: list[Action]) -> list[Action]:

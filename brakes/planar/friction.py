@@ -9,13 +9,13 @@ import numpy as np
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position
-from brakes.planar.statics import Balance, Equilibrium, balance_of, forces_on_bodies, result_of, solve
+from brakes.planar.statics import Balance, Equilibrium, balance_at, collect, forces_on_bodies, solve
 from brakes.planar.system import System
 
-_RISE = (0.25, 0.5, 0.75, 1.0)  # friction is raised to its full size in steps
-_SETTLED = 1e-9  # part of the forces that Newton's last step may have; its inverse is beyond any real force
+_RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
+_SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as self-locking
 _TINY = np.finfo(float).tiny
-_STILL = 1e-9  # sliding velocity, over the largest, that counts as none
+_STILL = 1e-9  # velocity, per unit motion, that counts as zero
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def solve_with_friction(
             f"friction needs mobility 1 and a determined equilibrium; here the mobility is "
             f"{np.max(without.mobility)}, and {without.message}"
         )
-    balance = balance_of(mechanism, position)
+    balance = balance_at(mechanism, position)
     sliding = _sliding(mechanism.system, balance, driver)
     squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
     return FrictionalEquilibrium(squeeze, release, without)
@@ -83,24 +83,24 @@ def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
     rate = times(gradient, motion)
     driven = rate[:, [system.loads[driver]]]
-    own = rate[:, list(system.friction.values())]
+    slip = rate[:, list(system.friction.values())]
     if (np.abs(driven) < _STILL).any():
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
-    return np.where(np.abs(own) > _STILL, np.sign(own * driven), 0.0)
+    return np.where(np.abs(slip) > _STILL, np.sign(slip * driven), 0.0)
 
 
 def _branch(
     mechanism: Mechanism, position: Position, balance: Balance, without: Equilibrium, sliding: np.ndarray
 ) -> Equilibrium:
-    """Equilibrium with friction against given sliding signs."""
+    """Equilibrium with friction that opposes sliding of the given signs."""
     system = mechanism.system
     start = np.atleast_2d(without.multiplier / system.unit)
     multiplier, locked = _newton(system, balance, start, sliding)
     loads = [row for row in balance.unknown if row >= system.constraints]
     locked |= (multiplier[:, loads] * start[:, loads] < 0).any(axis=1)
-    multiplier[locked] = start[locked]  # any finite numbers: they are not shown
+    multiplier[locked] = start[locked]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = result_of(mechanism, position, balance, forces, multiplier, locked)
+    result = collect(mechanism, position, balance, forces, multiplier, locked)
     if not locked.any():
         return result
     names = " and ".join(map(repr, system.friction))
@@ -141,9 +141,9 @@ def _friction(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Set the friction rows; residual of equilibrium and its derivative by the unknowns."""
     slope = balance.matrix.copy()
-    for k, (row, own) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
-        size = np.linalg.norm(multiplier[:, own], axis=1, keepdims=True)
+    for k, (row, normal) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
+        size = np.linalg.norm(multiplier[:, normal], axis=1, keepdims=True)
         multiplier[:, row] = law[:, k] * size[:, 0]
-        direction = law[:, [k]] * multiplier[:, own] / np.maximum(size, _TINY)
-        slope[:, :, own] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
+        direction = law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY)
+        slope[:, :, normal] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
     return forces_on_bodies(balance, multiplier), slope

@@ -8,13 +8,19 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamdyn.common.checks import count, positive, real_array
-from brakes.planar.curve import Node, at_arc_lengths, at_values, march, node_at, zero
-from brakes.planar.diagnosis import AssemblyError, OutOfReachError, listed, moving_bodies, refuse_mobility
+from brakes.planar.curve import Node, find_zero, follow, node_at, solve_at_arc_lengths, solve_at_values
+from brakes.planar.diagnosis import (
+    AssemblyError,
+    OutOfReachError,
+    explain_mobility,
+    join_names,
+    moving_bodies,
+)
 from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.system import System
 
-_CLOSED = 1e-11  # gap over length at which joints count as closed
+_CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism
 
 
 @dataclass(frozen=True)
@@ -79,7 +85,7 @@ class Stroke:
 
 
 def assemble(mechanism: Mechanism) -> Position:
-    """Bring the joints together, by the least motion from the drawing (Newton, with shortened steps).
+    """Bring the joints together, by the smallest motion from the drawing (damped Newton method).
 
     Raises
     ------
@@ -113,7 +119,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     """Positions at which a driver has given values.
 
     The curve of positions is followed from the assembled one by arc length (tangent predictor, Newton, step
-    halving); the values are then found on it all at once, to rounding.
+    halving); the positions of all values are then solved at once, to rounding.
 
     Parameters
     ----------
@@ -141,22 +147,22 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     if not mechanism.load(driver).has_coordinate:
         raise ValueError(f"driver {driver!r} follows its body and has no coordinate: drive another load")
     system, start, k = _start(mechanism, driver)
-    wanted = real_array("values", values) / _units(system)[k]
-    if not wanted.size:
+    target = real_array("values", values) / _units(system)[k]
+    if not target.size:
         raise ValueError("values is empty: give at least one value of the driver")
-    up = _reach(system, start, k, wanted.max(initial=0.0), driver)
-    down = _reach(system, start.reversed(), k, wanted.min(initial=0.0), driver)
+    up = _reach(system, start, k, target.max(initial=0.0), driver)
+    down = _reach(system, start.reversed(), k, target.min(initial=0.0), driver)
     nodes = [node.reversed() for node in reversed(down[1:])] + up
     try:
-        y = at_values(system, nodes, k, wanted + start.value[k])
+        y = solve_at_values(system, nodes, k, target + start.value[k])
     except np.linalg.LinAlgError:
         raise OutOfReachError(
             f"no position is found at one of the values of {driver!r}: it turns back or motions branch "
             "there; end the stroke before it, or follow the motion with trace"
         ) from None
-    if len(nodes) > 1:  # the march ends past the values
-        span = start.value[k] + np.array((min(0.0, wanted.min()), max(0.0, wanted.max())))
-        low, high = at_values(system, nodes, k, span)
+    if len(nodes) > 1:  # the curve followed ends past the values
+        span = start.value[k] + np.array((min(0.0, target.min()), max(0.0, target.max())))
+        low, high = solve_at_values(system, nodes, k, span)
         nodes[0], nodes[-1] = node_at(system, low, nodes[0].tangent), node_at(system, high, nodes[-1].tangent)
     return _finish(mechanism, driver, start, nodes, y)
 
@@ -183,12 +189,12 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     system, start, _ = _start(mechanism, driver)
     s = np.linspace(0.0, positive("length", length, "m") / system.length, count("points", points, 2))
     nodes, chords = [start], 0.0
-    for node in march(system, start):
+    for node in follow(system, start):
         chords += float(np.linalg.norm(node.y - nodes[-1].y))
         nodes.append(node)
         if chords > s[-1]:
             break
-    y = at_arc_lengths(system, nodes, s)
+    y = solve_at_arc_lengths(system, nodes, s)
     nodes[-1] = node_at(system, y[-1], nodes[-1].tangent)
     return _finish(mechanism, driver, start, nodes, y)
 
@@ -202,7 +208,7 @@ def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
     constraints = decompose(system.rows(y).gradient[:, : system.constraints], system.rounding)
     free = constraints.null()
     if free.shape[1] != 1:
-        raise ValueError(refuse_mobility(system, y, free))
+        raise ValueError(explain_mobility(system, y, free))
     node = node_at(system, y[0], free[:, 0])
     if abs(node.rate[k]) < 1e-9:
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
@@ -212,9 +218,9 @@ def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
 def _reach(system: System, start: Node, k: int, value: float, driver: str) -> list[Node]:
     """Nodes from the first to where coordinate k has moved by a value."""
     nodes, target, sense = [start], start.value[k] + value, np.sign(value)
-    for node in march(system, start) if value else ():
+    for node in follow(system, start) if value else ():
         if node.rate[k] * sense <= 0:
-            turning = zero(system, nodes[-1], node, lambda n: n.rate[k])
+            turning = find_zero(system, nodes[-1], node, lambda n: n.rate[k])
             if (target - turning.value[k]) * sense > 0:
                 raise OutOfReachError(
                     _turns_back(system, driver, value, turning.value[k] - start.value[k], k)
@@ -257,13 +263,13 @@ def _finish(mechanism: Mechanism, driver: str, start: Node, nodes: list[Node], y
 
 def _toggles(mechanism: Mechanism, nodes: list[Node], start: Node, k: int) -> tuple[Toggle, ...]:
     """Positions between the nodes at which a load's coordinate reverses, or motions branch."""
-    system, found = mechanism.system, []
+    system, toggles = mechanism.system, []
     for j, load in enumerate(system.loads):
         for node in _zeros(system, nodes, lambda n, j=j: n.rate[j]):
-            found.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, load))
+            toggles.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, load))
     for node in _zeros(system, nodes, lambda n: n.regularity):
-        found.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, None))
-    return tuple(found)
+        toggles.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, None))
+    return tuple(toggles)
 
 
 def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float]) -> list[Node]:
@@ -271,7 +277,7 @@ def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float])
     f = np.array([function(node) for node in nodes])
     noise = 1e-9 * np.abs(f).max()
     crossed = np.flatnonzero((f[:-1] * f[1:] < 0) & (np.abs(np.diff(f)) > noise))
-    return [zero(system, nodes[i], nodes[i + 1], function) for i in crossed]
+    return [find_zero(system, nodes[i], nodes[i + 1], function) for i in crossed]
 
 
 def _toggle(mechanism: Mechanism, node: Node, moved: float, k: int, load: str | None) -> Toggle:
@@ -283,7 +289,7 @@ def _toggle(mechanism: Mechanism, node: Node, moved: float, k: int, load: str | 
     moving = moving_bodies(node.tangent[:, None])
     still = tuple(name for name, moves in zip(mechanism.bodies, moving, strict=True) if not moves)
     message = f"toggle position of {load!r} at driver value {value:g}: its motion reverses"
-    message += f"; {listed(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
+    message += f"; {join_names(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
     return Toggle(load, value, position, still, message)
 
 

@@ -1,4 +1,4 @@
-"""Rank, null spaces and least solutions of many small matrices at once, by singular values."""
+"""Rank, null spaces and least-squares solutions of many small matrices at once, by singular values."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-RANK_TOLERANCE = 1e-7  # part of the largest below which a singular value is 0; a toggle is met to 1e-8
+RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0; toggle positions are solved to 1e-8
 
 
 class Decomposition(NamedTuple):
     """Singular values of matrices (S, m, n): u (S, m, m), s (S, min(m, n)), vt (S, n, n), ranks (S,).
 
-    `kept` and `dropped` (S,) are the smallest singular value that counts and the largest that does not, over
-    the largest of all: the further apart, the surer the rank.
+    `kept` and `dropped` (S,) are the smallest singular value within the rank and the largest beyond it, over
+    the largest of all: the wider the gap, the surer the rank.
     """
 
     u: np.ndarray
@@ -37,7 +37,7 @@ class Decomposition(NamedTuple):
         return np.where(outside[:, :, None], 0.0, self.vt)
 
     def solve(self, b: np.ndarray) -> np.ndarray:
-        """Least solution of least length, b of shape (S, m)."""
+        """Least-squares solution of least norm, b of shape (S, m)."""
         k = self.s.shape[1]
         keep = np.arange(k) < self.rank[:, None]
         inverse = np.divide(1.0, self.s, out=np.zeros_like(self.s), where=keep)

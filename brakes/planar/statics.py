@@ -7,15 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from brakes.planar.diagnosis import names_of_moving, self_stress, unheld
+from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_of_moving
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import Decomposition, decompose, times
 from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.system import Rows, System
 
-_BALANCED = 1e-9  # part of the forces that may be left over
+_BALANCED = 1e-9  # largest residual of equilibrium, over the largest force
 _UNDETERMINED = 1e-7  # share in a self-stress from which a reaction counts as undetermined
-_WEAK = 1e-5  # singular value below which the answer hangs on the last digits of the drawing
+_WEAK = 1e-5  # singular value below which the result is ill-conditioned in the coordinates
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Equilibrium:
         Its size: tension of a bar or cable, push of a contact, couple of a rotation lock on the body named
         first [N m], component of a slot's force to the left of its direction; of a pin the absolute value.
     amplitudes : dict of ndarray
-        Magnitude of each load, given or found [N, N m].
+        Magnitude of each load, known or solved for [N, N m].
     friction : dict of ndarray
         Friction couple [N m] or force [N] of each joint that has some, on the body named first.
     mobility, indeterminacy, uncontrolled : ndarray of int
@@ -53,10 +53,10 @@ class Equilibrium:
     residual : ndarray
         Largest force or moment left over on a body, over the largest force.
     kept, dropped : ndarray
-        Smallest singular value that counts and largest that does not, over the largest: how sure the
-        ranks are.
+        Smallest singular value above the rank tolerance and largest below it, over the largest of all: the
+        wider the gap, the surer the rank.
     warnings : tuple of str
-        Contacts that pull, cables that push, answers that hang on the last digits of the drawing.
+        Contacts that pull, cables that push, and ill-conditioned positions.
     multiplier : ndarray, shape (..., R)
         Size of every row of joints, loads and friction [N, N m].
     """
@@ -121,14 +121,14 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
         If no position is given and the joints cannot be brought together.
     """
     position = assemble(mechanism) if position is None else position.of(mechanism)
-    balance = balance_of(mechanism, position)
+    balance = balance_at(mechanism, position)
     forces = decompose(balance.matrix, mechanism.system.rounding)
     multiplier = balance.given.copy()
     multiplier[:, balance.unknown] = forces.solve(-forces_on_bodies(balance, balance.given))
-    return result_of(mechanism, position, balance, forces, multiplier)
+    return collect(mechanism, position, balance, forces, multiplier)
 
 
-def balance_of(mechanism: Mechanism, position: Position) -> Balance:
+def balance_at(mechanism: Mechanism, position: Position) -> Balance:
     """The terms of equilibrium at positions."""
     system = mechanism.system
     rows = system.rows(position.batch)
@@ -149,7 +149,7 @@ def forces_on_bodies(balance: Balance, multiplier: np.ndarray) -> np.ndarray:
     return times(balance.rows.gradient.swapaxes(1, 2), multiplier)
 
 
-def result_of(
+def collect(
     mechanism: Mechanism,
     position: Position,
     balance: Balance,
@@ -157,7 +157,7 @@ def result_of(
     multiplier: np.ndarray,
     locked: np.ndarray | bool = False,
 ) -> Equilibrium:
-    """The result for multipliers (S, R) of all rows, in scaled units, without those that are locked (S,)."""
+    """Collect the result from the scaled multipliers (S, R) of all rows; nan at `locked` positions (S,)."""
     system = mechanism.system
     constraints = decompose(balance.rows.gradient[:, : system.constraints], system.rounding)
     scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
@@ -203,10 +203,12 @@ def _verdict(
 ) -> tuple[str, str]:
     """Status and message."""
     if unbalanced:
-        return "no equilibrium", f"the loads are not in balance: {unheld(system, y, loose)}"
-    words = [self_stress(undetermined)] if undetermined else []
+        return "no equilibrium", f"the loads are not in balance: {describe_loose(system, y, loose)}"
+    words = [describe_self_stress(undetermined)] if undetermined else []
     if loose.shape[1]:
-        words.append(f"the loads are in balance, but nothing keeps them so: {unheld(system, y, loose)}")
+        words.append(
+            f"the loads are in balance, but nothing keeps them so: {describe_loose(system, y, loose)}"
+        )
     status = "undetermined" if undetermined else "loose" if words else "determined"
     return status, "; ".join(words) or "every reaction and amplitude is determined"
 
@@ -245,19 +247,19 @@ def _forces(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> tuple[d
 
 
 def _warnings(mechanism: Mechanism, sizes: dict[str, np.ndarray], forces: Decomposition) -> tuple[str, ...]:
-    """Contacts that pull, cables that push, and equilibrium that is nearly lost."""
+    """Warnings of contacts that pull, cables that push, and ill-conditioned positions."""
     least = {name: float(np.fmin.reduce(size)) for name, size in sizes.items()}
     largest = max((float(np.fmax.reduce(np.abs(size))) for size in sizes.values()), default=0.0)
-    found = []
+    warnings = []
     for part in mechanism.parts:
         way, size = part.one_way, least[part.name]
         if way is not None and size < -_BALANCED * largest:
-            found.append(
+            warnings.append(
                 f"{way.noun} {part.name!r} would have to {way.cannot} with {-size:.6g} N: {way.remedy}"
             )
     if (weak := forces.kept.min()) < _WEAK:
-        found.append(
+        warnings.append(
             f"reactions hang on the last digits of the drawing (smallest singular value {weak:.1g}): "
             "the position is close to a toggle position or to indeterminacy"
         )
-    return tuple(found)
+    return tuple(warnings)

@@ -96,7 +96,8 @@ class System:
 
     def rows(self, y: np.ndarray) -> Rows:
         """Values and gradients at coordinates y of shape (S, 3 n)."""
-        pose = self._pose(y)
+        centre, angle = self._pose(y)
+        pose = Pose(centre, angle, np.exp(1j * angle))
         value = np.repeat(self.constant[:, None], len(y), axis=1)
         force = np.zeros((len(value), len(self.bodies), len(y)), complex)
         couple = np.zeros(force.shape)
@@ -108,22 +109,21 @@ class System:
 
     def place(self, y: np.ndarray, body: str, at: Point) -> np.ndarray:
         """Where a point of a body is [m], shape (S, 2)."""
-        pose, k = self._pose(y), self.bodies[body]
+        (centre, angle), k = self._pose(y), self.bodies[body]
         arm = (complex(*at) - self.origin) / self.length - self.centre[k]
         # The displacement is added to the drawing, so that a point far from (0, 0) keeps its digits.
-        moved = (pose.centre[k] - self.centre[k] + arm * (pose.spin[k] - 1)) * self.length
+        moved = (centre[k] - self.centre[k] + arm * (np.exp(1j * angle[k]) - 1)) * self.length
         return np.array(at) + np.stack((moved.real, moved.imag), axis=-1)
 
     def angle(self, y: np.ndarray, body: str) -> np.ndarray:
         """Angle of a body [rad], shape (S,)."""
-        return self._pose(y).angle[self.bodies[body]]
+        return self._pose(y)[1][self.bodies[body]]
 
-    def _pose(self, y: np.ndarray) -> Pose:
-        """Where all bodies and the ground are."""
+    def _pose(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Centres (complex) and angles of all bodies and the ground, each (n + 1, S)."""
         moved = np.zeros((len(self.bodies), 3, len(y)))
         moved[:-1] = y.T.reshape(-1, 3, len(y))
-        angle = moved[:, 2] / self.radius[:, None]
-        return Pose(self.centre[:, None] + moved[:, 0] + 1j * moved[:, 1], angle, np.exp(1j * angle))
+        return self.centre[:, None] + moved[:, 0] + 1j * moved[:, 1], moved[:, 2] / self.radius[:, None]
 
 
 def build(
