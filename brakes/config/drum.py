@@ -116,7 +116,7 @@ class ShoeInput(CoreSection):
 
 
 class SecondShoeInput(Section):
-    """[second_shoe]: what differs on the second shoe; the rest is as in [shoe]."""
+    """[second_shoe]: the inputs in which the second shoe differs from [shoe]."""
 
     face_width: FaceWidth | None = None
     lining_start: LiningStart | None = None
@@ -125,15 +125,15 @@ class SecondShoeInput(Section):
     pivot_depth: PivotDepth | None = None
     force_arm: ForceArm | None = None
 
-    def over(self, first: ShoeInput) -> Shoe:
-        """The second shoe, which has what is not given here from the first."""
+    def completed_by(self, first: ShoeInput) -> Shoe:
+        """The second shoe: the inputs given here, the others as on the first."""
         given = {name: value for name, value in self if value is not None}
         with of_file({}):
             return ShoeInput.model_construct(**(dict(first) | given)).core
 
 
 class LoadInput(Section):
-    """[load]: what presses the shoes, or what the brake is to give. Exactly one."""
+    """[load]: the force on the shoes, or the torque or pressure that the brake is to give: exactly one."""
 
     force: Annotated[float, Quantity("N", symbol="P", meaning="force on each shoe", above=0)] | None = None
     cylinder_bore: (
@@ -170,14 +170,14 @@ class LoadInput(Section):
 
     @property
     def given(self) -> dict[str, Any]:
-        """The load as `brake_torque` takes it."""
+        """The load as an argument of `brake_torque`."""
         if self.line_pressure is not None:
             return {"force": wheel_cylinder_force(self.cylinder_bore, self.line_pressure)}
         return {name: value for name, value in self if value is not None}
 
 
 class DrumBrakeInput(Section):
-    """[brake]: how the shoes stand to the drum."""
+    """[brake]: which shoes lead, the direction of the drum, and the friction of the linings."""
 
     assembly: Annotated[
         Literal["simplex", "duplex", "single"],
@@ -215,12 +215,12 @@ class DrumInput(CoreSection):
 
     def _second(self) -> Shoe | None:
         try:
-            return self.second_shoe and self.second_shoe.over(self.shoe)
+            return self.second_shoe and self.second_shoe.completed_by(self.shoe)
         except ValueError as error:
             raise ValueError(f"second_shoe: {error}") from None
 
     def solve(self) -> BrakeResult:
-        """Forces in the brake.
+        """Compute the forces in the brake.
 
         Raises
         ------

@@ -158,10 +158,17 @@ class DuoServoInput(CoreSection):
         ),
     ]
     piston_bottom: Annotated[
-        float, Quantity("m", meaning="how far a piston can be pushed in from its place at rest", above=0)
+        float, Quantity("m", meaning="travel of a piston from rest to its bottom, inward", above=0)
     ]
     piston_stroke: (
-        Annotated[float, Quantity("m", meaning="how far a piston can come out; else not checked", above=0)]
+        Annotated[
+            float,
+            Quantity(
+                "m",
+                meaning="largest travel of a piston from rest, outward; if not given, not checked",
+                above=0,
+            ),
+        ]
         | None
     ) = None
     clearance: Annotated[
@@ -184,13 +191,13 @@ class DuoServoInput(CoreSection):
 
     @property
     def motion(self) -> ShoeMotion:
-        """Where the shoes go."""
+        """Motion of the shoes."""
         with of_file(_PINS):
             return self.core.move_shoes(self.clearance)
 
 
 class LeversInput(CoreSection):
-    """[levers]: arms about the drum's centre and directions, for the forces without a geometry."""
+    """[levers]: lever arms and directions of the forces, where no geometry of the brake is known."""
 
     drum_radius: Annotated[float, Quantity("m", symbol="r", meaning="inner radius of the drum", above=0)]
     a1: Annotated[float, Quantity("m", symbol="a1", meaning="arm of P_L, on the leading shoe", above=0)]
@@ -218,7 +225,7 @@ class LeversInput(CoreSection):
 
 
 class ForcesInput(Section):
-    """[forces]: what the forces in a brake follow from."""
+    """[forces]: the inputs of the forces in one brake."""
 
     piston_force: Annotated[
         float, Quantity("N", symbol="P_T", meaning="force of the piston on the trailing shoe", above=0)

@@ -1,4 +1,4 @@
-"""Pictures of drum brakes: free-body diagrams, pressure over the lining, shoe factors over friction."""
+"""Drawings of drum brakes: free-body diagrams, pressure over the lining, shoe factors over friction."""
 
 from __future__ import annotations
 
@@ -17,54 +17,54 @@ _P, _N, _T, _R = COLOURS[6], COLOURS[0], COLOURS[1], COLOURS[2]
 _FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
 
 
-def brake_figure(found: BrakeResult) -> Figure:
-    """Free-body diagram, pressure and factors of one case; of a locked brake the factors alone.
+def brake_figure(result: BrakeResult) -> Figure:
+    """Draw free-body diagram, pressure and shoe factors; of a locked brake the factors alone.
 
     Parameters
     ----------
-    found : BrakeResult
-        One case.
+    result : BrakeResult
+        A result of one case.
     """
-    if found.locked:
+    if result.locked:
         figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-        factors(figure.subplots(), found.brake, float(found.friction), found.reverse)
+        factors(figure.subplots(), result.brake, float(result.friction), result.reverse)
         return figure
     figure = Figure(figsize=(11.0, 7.0), layout="constrained")
     spaces = figure.add_gridspec(2, 2, width_ratios=(1.35, 1))
-    free_body(figure.add_subplot(spaces[:, 0]), found)
-    pressures(figure.add_subplot(spaces[0, 1]), found)
-    factors(figure.add_subplot(spaces[1, 1]), found.brake, float(found.friction), found.reverse)
+    free_body(figure.add_subplot(spaces[:, 0]), result)
+    pressures(figure.add_subplot(spaces[0, 1]), result)
+    factors(figure.add_subplot(spaces[1, 1]), result.brake, float(result.friction), result.reverse)
     return figure
 
 
-def free_body(ax: Axes, found: BrakeResult) -> Axes:
-    """The shoes in the drum with their forces, to one scale.
+def free_body(ax: Axes, result: BrakeResult) -> Axes:
+    """Draw the shoes in the drum with their forces to one scale; of one case.
 
-    The resultants N of the pressure and T of the friction are drawn where their lines of action cross:
+    The resultants N of the pressure and T of the friction act where their lines of action cross, which is
     outside the drum, at the effective arm from its centre.
     """
-    r = float(found.shoes[0].shoe.drum_radius)
-    largest = max(float(np.hypot(*v)) for s in found.shoes for v in (s.normal, s.tangential, s.pin_reaction))
-    largest = max(largest, float(found.force))
+    r = float(result.shoes[0].shoe.drum_radius)
+    largest = max(float(np.hypot(*v)) for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
+    largest = max(largest, float(result.force))
     arrows = ForceArrows(ax, 0.75 * r / largest)
     ax.add_patch(Circle((0, 0), r, fill=False, color="0.55", linewidth=1.4))
     ax.plot(0, 0, "+", color="0.4", markersize=9)
-    for i, shoe in enumerate(found.shoes):
-        _draw_shoe(arrows, shoe, _placement(found, i), f"{i + 1}")
-    _rotation(ax, r, found.reverse)
+    for i, shoe in enumerate(result.shoes):
+        _draw_shoe(arrows, shoe, _placement(result, i), f"{i + 1}")
+    _draw_rotation(ax, r, result.reverse)
     ax.update_datalim([(-1.05 * r, -1.05 * r), (1.05 * r, 1.05 * r)])
     finish_drawing(
-        ax, f"Forces on the shoes at {float(found.force):.4g} N; torque {float(found.torque):.5g} N m"
+        ax, f"Forces on the shoes at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
     )
     arrows.add_scale_bar(largest)
     return ax
 
 
-def _placement(found: BrakeResult, i: int) -> np.ndarray:
+def _placement(result: BrakeResult, i: int) -> np.ndarray:
     """Matrix from a shoe's own axes to the picture: the first on the right, the second on the left."""
     if i == 0:
         return np.eye(2)
-    same = found.brake.leading[0] == found.brake.leading[i]
+    same = result.brake.leading[0] == result.brake.leading[i]
     return np.diag((-1.0, -1.0)) if same else np.diag((-1.0, 1.0))
 
 
@@ -93,8 +93,8 @@ def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str
     ax.text(middle[0], middle[1], text, ha="center", va="center", fontsize=9)
 
 
-def _rotation(ax: Axes, r: float, reverse: bool) -> None:
-    """An arc with a head at the top of the drum: clockwise when forward."""
+def _draw_rotation(ax: Axes, r: float, reverse: bool) -> None:
+    """Draw the sense of rotation at the top of the drum: clockwise when forward."""
     ax.add_patch(Arc((0, 0), 2.16 * r, 2.16 * r, theta1=70, theta2=110, color="0.4", linewidth=1.5))
     end, sense = (np.radians(110.0), 1) if reverse else (np.radians(70.0), -1)
     at = 1.08 * r * np.array([np.cos(end), np.sin(end)])
@@ -104,9 +104,9 @@ def _rotation(ax: Axes, r: float, reverse: bool) -> None:
     ax.text(0, 1.12 * r, "drum", ha="center", va="bottom", color="0.4", fontsize=9)
 
 
-def pressures(ax: Axes, found: BrakeResult) -> Axes:
-    """Pressure over the linings; of one case."""
-    for i, shoe in enumerate(found.shoes):
+def pressures(ax: Axes, result: BrakeResult) -> Axes:
+    """Draw the pressure over the linings; of one case."""
+    for i, shoe in enumerate(result.shoes):
         a1, a2 = (float(a) for a in shoe.shoe.lining)
         alpha = np.linspace(a1, a2, 200)
         p = 1e-6 * shoe.pressure(alpha)
@@ -124,7 +124,7 @@ def pressures(ax: Axes, found: BrakeResult) -> Axes:
 
 
 def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Axes:
-    """C* of each shoe and of the brake over friction, with the friction at which it locks.
+    """Draw C* of each shoe and of the brake over friction, with the friction at which it locks.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
     friction : float, optional
         Friction to mark.
     reverse : bool
-        Direction of the drum.
+        Whether the drum turns backward.
     """
     limits = [
         float(np.min(shoe.locking_friction))
@@ -144,16 +144,16 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
     limit, first = min(limits), int(np.argmin(limits))
     top = 0.995 * limit if limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * (friction or 0))
     mu = np.linspace(1e-3, top, 400)
-    found = brake_torque(brake, friction=mu, force=1.0, reverse=reverse)
-    lines = [("brake", found.c_star, COLOURS[6], "-")] if len(found.shoes) > 1 else []
-    for i, shoe in enumerate(found.shoes):
+    result = brake_torque(brake, friction=mu, force=1.0, reverse=reverse)
+    lines = [("brake", result.c_star, COLOURS[6], "-")] if len(result.shoes) > 1 else []
+    for i, shoe in enumerate(result.shoes):
         word = "leading" if shoe.leading else "trailing"
         lines.append((f"{i + 1}: {word}", shoe.c_star, COLOURS[i], ("-", "--")[i % 2]))
     for label, values, colour, style in lines:
         ax.plot(mu, values, color=colour, linestyle=style, linewidth=1.8, label=label)
-    ceiling = _ceiling(found.c_star, mu, friction)
+    ceiling = _ceiling(result.c_star, mu, friction)
     ax.set_ylim(0, ceiling)
-    _marks(ax, limit, COLOURS[first], friction, ceiling)
+    _mark_friction(ax, limit, COLOURS[first], friction, ceiling)
     grid(ax)
     ax.set_xlim(left=0)
     ax.set_xlabel("friction of the linings")
@@ -164,13 +164,13 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
 
 
 def _ceiling(c_star: Numbers, mu: np.ndarray, friction: float | None) -> float:
-    """Top of the picture: C* grows without bound towards locking."""
+    """Upper limit of the C* axis, as C* grows without bound towards locking."""
     near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, c_star))
     return max(2.5 * near, 1.0)
 
 
-def _marks(ax: Axes, limit: float, colour: str, friction: float | None, ceiling: float) -> None:
-    """The friction of the case, and that at which a shoe, drawn in this colour, locks."""
+def _mark_friction(ax: Axes, limit: float, colour: str, friction: float | None, ceiling: float) -> None:
+    """Mark the friction of the case, and that at which the shoe drawn in this colour locks."""
     if friction:
         ax.axvline(friction, color="0.5", linewidth=1, linestyle=":")
         ax.text(friction, 0.02 * ceiling, f" {friction:g}", color="0.35", fontsize=9, va="bottom")

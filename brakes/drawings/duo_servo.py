@@ -1,4 +1,4 @@
-"""Pictures of a duo-servo brake: its parts on their way through both stages, and its shoes as free bodies."""
+"""Drawings of a duo-servo brake: its parts at any point of both stages, and its shoes as free bodies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PUSH, _NORMAL, _RUB = COLOURS[6], COLOURS[0], COLOURS[1]
 
 
 def positions(figure: Any, followed: Kinematics) -> None:
-    """The brake at rest, with the linings on the drum, and with the piston at its bottom."""
+    """Draw the brake at rest, with the linings on the drum, and with the piston at its bottom."""
     panels = figure.subplots(1, 3)
     titles = (
         f"at rest, clearance {1e3 * float(followed.clearance):.3g} mm",
@@ -32,7 +32,7 @@ def positions(figure: Any, followed: Kinematics) -> None:
 
 
 def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float) -> Axes:
-    """The brake on its way: 0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom.
+    """Draw the brake at a point of its motion.
 
     Parameters
     ----------
@@ -43,20 +43,21 @@ def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float)
     motion : ShoeMotion
         Its motion at a clearance.
     progress : float
-        From 0 to 2; between whole numbers the turn of that stage goes evenly.
+        0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom; in between, the fraction
+        of the stage's turn.
 
     Notes
     -----
-    The lining drawn is concentric at rest and reaches from pin to pin; where it is outside the drum, it is
-    drawn in red and thick: there it would touch first.
+    The lining drawn is concentric at rest and reaches from pin to pin. Where it is outside the drum, it would
+    touch first: there it is drawn thick and red.
     """
     r = float(geometry.drum_radius)
     ax.add_patch(Circle((0, 0), r, fill=False, color="0.45", linewidth=1.6))
     ax.plot(0, 0, "+", color="0.5", markersize=8)
     for side, colour in _SIDES.items():
-        _shoe(ax, geometry, motion, progress, side, colour)
-    _adjuster(ax, geometry, motion, progress)
-    _key(ax)
+        _draw_shoe(ax, geometry, motion, progress, side, colour)
+    _draw_adjuster(ax, geometry, motion, progress)
+    _add_legend(ax)
     ax.update_datalim([(-1.04 * r, -1.04 * r), (1.04 * r, 1.04 * r)])
     finish_drawing(ax, "")
     return ax
@@ -65,7 +66,7 @@ def duo_servo(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float)
 def moved(
     points: np.ndarray, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str
 ) -> np.ndarray:
-    """Where points of a shoe, given on the right side at rest, are on a side, shape (n, 2)."""
+    """Move points of a shoe from the right side at rest to a side at a point of the motion, shape (n, 2)."""
     first, second = min(progress, 1.0), max(progress - 1.0, 0.0)
     pin = np.array(geometry.adjuster, dtype=float)
     turned = pin + _turned(np.asarray(points) - pin, -first * float(motion.seating_turn))
@@ -75,7 +76,7 @@ def moved(
 
 
 def lining(geometry: DuoServo, motion: ShoeMotion) -> np.ndarray:
-    """Points of a lining that is concentric at rest and reaches from pin to pin, right side, shape (n, 2)."""
+    """Points [m] of the right lining at rest, concentric and reaching from pin to pin, shape (121, 2)."""
     (x, y), (ax, ay) = geometry.tip, geometry.adjuster
     angle = np.linspace(np.arctan2(float(ay), float(ax)), np.arctan2(float(y), float(x)), 121)
     radius = float(geometry.drum_radius) - float(motion.clearance)
@@ -87,7 +88,9 @@ def _turned(points: np.ndarray, angle: float) -> np.ndarray:
     return np.asarray(points) @ np.array([[c, s], [-s, c]])
 
 
-def _shoe(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str, colour: str) -> None:
+def _draw_shoe(
+    ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str, colour: str
+) -> None:
     place = (geometry, motion, progress, side)
     rim = moved(lining(geometry, motion), *place)
     ends = moved(np.array([geometry.adjuster, geometry.tip], dtype=float), *place)
@@ -100,11 +103,11 @@ def _shoe(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float, sid
     )
     ax.plot(*moved(contact, *place).T, "D", color=colour, markeredgecolor="white", markersize=7, zorder=6)
     ax.plot(*ends.T, "o", color="white", markeredgecolor="0.2", markersize=6, zorder=6)
-    _piston(ax, geometry, ends[1], side)
+    _draw_piston(ax, geometry, ends[1], side)
 
 
-def _piston(ax: Axes, geometry: DuoServo, tip: np.ndarray, side: str) -> None:
-    """Face through the tip, rod along x."""
+def _draw_piston(ax: Axes, geometry: DuoServo, tip: np.ndarray, side: str) -> None:
+    """Draw a piston: its face through the tip, its rod along x."""
     tilt, sign, r = float(geometry.face_tilt), (1 if side == "right" else -1), float(geometry.drum_radius)
     along = np.array([sign * np.sin(tilt), np.cos(tilt)]) * 0.1 * r
     face = np.array([tip - along, tip + along])
@@ -113,14 +116,14 @@ def _piston(ax: Axes, geometry: DuoServo, tip: np.ndarray, side: str) -> None:
     ax.plot(*rod.T, color="0.6", linewidth=5, zorder=2, solid_capstyle="butt")
 
 
-def _adjuster(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float) -> None:
+def _draw_adjuster(ax: Axes, geometry: DuoServo, motion: ShoeMotion, progress: float) -> None:
     pin = np.array([geometry.adjuster], dtype=float)
     ends = np.vstack([moved(pin, geometry, motion, progress, side) for side in _SIDES])
     ax.plot(*ends.T, color="0.35", linewidth=3.5, zorder=2)
 
 
-def _key(ax: Axes) -> None:
-    """What the colours are, in the middle of the drum, where nothing else is."""
+def _add_legend(ax: Axes) -> None:
+    """Add the legend in the middle of the drum, which is empty."""
     entries = [
         Line2D([], [], color=_SIDES["right"], linewidth=3, label="leading shoe's lining"),
         Line2D([], [], color=_SIDES["left"], linewidth=3, label="trailing shoe's lining"),
@@ -136,7 +139,7 @@ def _key(ax: Axes) -> None:
 
 
 def free_bodies(figure: Any, forces: InternalForces, followed: Kinematics | None = None) -> None:
-    """Both shoes apart, with the forces on them to one scale; of one case.
+    """Draw both shoes as free bodies, with the forces on them to one scale; of one case.
 
     Parameters
     ----------
@@ -145,7 +148,7 @@ def free_bodies(figure: Any, forces: InternalForces, followed: Kinematics | None
     forces : InternalForces
         The forces.
     followed : Kinematics, optional
-        The brake's motion, for the outlines of the shoes; without it lines of action alone are drawn.
+        The brake's motion, for the outlines of the shoes; without it only the forces are drawn.
     """
     left, right = figure.subplots(1, 2)
     largest = float(max(forces.A, forces.P_L, forces.C))
@@ -184,7 +187,7 @@ def _draw_free_body(arrows: ForceArrows, f: InternalForces, followed: Kinematics
 def _outline(
     f: InternalForces, followed: Kinematics | None, side: str
 ) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-    """Points of the shoe, where the piston pushes, and where the adjuster does."""
+    """Outline of the shoe if known, and the points [m] where the piston and the adjuster act."""
     if followed is not None:
         geometry, motion = followed.geometry, followed.geometry.move_shoes(followed.clearance)
         place = (geometry, motion, 2.0, side)

@@ -1,4 +1,4 @@
-"""Pictures of a forklift: on its slope, distance over speed and slope; forces in its brakes."""
+"""Drawings of a forklift on its slope, of its stopping distance, and of the forces in its brakes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WEIGHT, _NORMAL, _FRICTION = COLOURS[6], COLOURS[0], COLOURS[1]
 
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
-    """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
+    """Draw the truck, the brake's two stages and the free bodies of its shoes, as far as they are given."""
     held = forces is not None and forces.status == "equilibrium"
     heights = [4.2] * (stop is not None) + [3.6] * (followed is not None) + [5.2] * held
     figure = Figure(figsize=(10.0, max(4.0, sum(heights))), layout="constrained")
@@ -39,7 +39,7 @@ def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: Intern
 
 
 def truck(ax: Axes, stop: Stop) -> Axes:
-    """The truck on its slope with weight, axle loads and tyre friction, arrows to one scale; of one case."""
+    """Draw the truck on its slope with weight, axle loads and tyre friction to one scale; of one case."""
     t, beta = stop.truck, float(stop.conditions.slope)
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array(
@@ -48,7 +48,7 @@ def truck(ax: Axes, stop: Stop) -> Axes:
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.conditions.friction) * float(stop.front_load)
     arrows = ForceArrows(ax, 1.1 * L / weight)
-    _chassis(ax, stop, turn)
+    _draw_chassis(ax, stop, turn)
     cg = np.array([float(t.cg[0]), float(t.cg[1]) + r1])
     places = {
         "M g": (cg, np.array([np.sin(beta), -np.cos(beta)]) * weight, _WEIGHT),
@@ -74,8 +74,8 @@ def _title(stop: Stop) -> str:
     return f"{where}: {how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
 
 
-def _chassis(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
-    """Ground, wheels, body, mast and load; x down the slope, y off the ground."""
+def _draw_chassis(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
+    """Draw ground, wheels, body, mast and load; x down the slope, y up from the ground."""
     t = stop.truck
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     r2 = 0.75 * r1
@@ -95,10 +95,10 @@ def _chassis(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
         ax.add_patch(Polygon(np.array(shape) @ turn, facecolor=shade, edgecolor="0.55", zorder=1))
     for x, r in ((0.0, r1), (L, r2)):
         ax.add_patch(Circle(tuple(np.array([x, r]) @ turn), r, facecolor="0.75", edgecolor="0.35", zorder=3))
-    _load(ax, stop, turn)
+    _draw_load(ax, stop, turn)
 
 
-def _load(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
+def _draw_load(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
     t = stop.truck
     if not float(t.load_mass) or float(t.load_cg[0]) >= 0:
         return
@@ -127,7 +127,7 @@ def _load(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
 
 
 def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) -> Axes:
-    """Stopping distance over speed, one curve a slope; slopes on which it never stops are named.
+    """Draw the stopping distance over speed, a curve per slope, and name the slopes without a stop.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) 
 def forces_over(
     ax: Axes, x: np.ndarray, forces: InternalForces, label: str, marks: Sequence[Any] = ()
 ) -> Axes:
-    """The forces in a brake over anything.
+    """Draw the forces in a brake over one of its inputs.
 
     Parameters
     ----------

@@ -28,13 +28,13 @@ from beamdyn.common.results import Result
 from brakes.arrays import Numbers, positive, refuse, together
 from brakes.forklift.levers import Levers
 
-_STEPS = 200
-_ARMS_DIFFER = 1e-9
-_FRICTION_DIFFERS = 0.01
+_STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60
+_ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
+_FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction that is warned of
 
 
 class Geometry(Protocol):
-    """What has lever arms at a clearance: a `DuoServo`, or `Levers`, which take no clearance."""
+    """A brake with lever arms at a clearance: a `DuoServo`, or `Levers`, which take no clearance."""
 
     def find_levers(self, clearance: Any = None) -> Levers:
         """Find arms and directions at the end of the shoes' motion."""
@@ -47,14 +47,14 @@ class InternalForces(Result):
 
     Attributes
     ----------
-    A, B, C, D : ndarray
-        Sizes of the drum's normal and friction forces on the leading (A, B) and the trailing shoe [N].
     levers : Levers
         Arms and directions of the forces.
-    Q, P_L : ndarray
-        Force of the adjuster, and of the piston that the leading shoe pushes back [N].
     torque, piston_force : ndarray
         T of the brake [N m] and P_T on the trailing shoe [N].
+    A, B, C, D : ndarray
+        Sizes of the drum's normal and friction forces on the leading (A, B) and the trailing shoe [N].
+    Q, P_L : ndarray
+        Force of the adjuster, and of the piston that the leading shoe pushes back [N].
     A_vector, B_vector, C_vector, D_vector : ndarray, shape (..., 2)
         The drum's forces on the shoes [N].
     bolt_force : ndarray, shape (..., 2)

@@ -233,7 +233,7 @@ _SENTENCES = {
 
 
 def stop(truck: Truck, conditions: StopConditions) -> Stop:
-    """Stop of a truck that reverses down a slope.
+    """Compute the stop of a truck that reverses down a slope.
 
     Parameters
     ----------

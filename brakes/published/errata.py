@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Erratum:
-    """An error in a paper and its consequence: the number that follows from it, and the right one.
+    """An error in a paper and its consequence: the number that follows from it beside the right one.
 
     Attributes
     ----------
@@ -16,11 +16,11 @@ class Erratum:
     where, printed, right : str
         The place in the paper, what it has there, and what it should have.
     quantity, unit : str
-        What the two values are; an empty quantity where nothing follows from the error.
+        Name and unit of the two values; an empty quantity where nothing follows from the error.
     printed_value, right_value : float
         The number that follows from the error, and the right one.
     remark : str
-        What a reader should know besides.
+        A further remark on the consequence.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Erratum:
 
     @property
     def consequence(self) -> str:
-        """The two numbers in a sentence."""
+        """The consequence in a sentence."""
         if not self.quantity:
             return "none further on"
         unit, remark = (self.unit and f" {self.unit}"), (self.remark and f"; {self.remark}")

@@ -1,4 +1,8 @@
-"""The published numbers of brakes again: each beside ours, what the papers' errors cost, and pictures."""
+"""The published numbers on brakes, each beside ours, with the cost of the papers' errors, and pictures.
+
+The modules `*_as_printed` and `newton` have the papers' own, partly wrong, mechanics; the rest of `brakes`
+has only the right one.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +28,7 @@ class Verdict(Protocol):
 
 
 def report(screen: Console, folder: Path) -> Sequence[Verdict]:
-    """Print the papers' tables beside ours and draw the pictures.
+    """Print the papers' numbers beside ours and draw the pictures.
 
     Parameters
     ----------
@@ -56,7 +60,7 @@ def report(screen: Console, folder: Path) -> Sequence[Verdict]:
 
 
 def cells() -> list[Verdict]:
-    """All numbers of both papers on drum brakes."""
+    """Compare all numbers of both papers on drum brakes."""
     rows = [*drum.rows(), *(row for table in forklift.rows().values() for row in table)]
     return [cell for row in rows for cell in row.cells]
 
@@ -73,7 +77,7 @@ def _print_notes(screen: Console, notes: Iterable[str]) -> None:
 
 
 def _caliper(screen: Console, folder: Path) -> list[Verdict]:
-    """The part on bicycle calipers."""
+    """Print and draw the section on bicycle calipers."""
     compared: list[Verdict] = []
     page = load("eebrake")
     screen.rule()

@@ -1,4 +1,4 @@
-"""The numbers of the eeBrake's analysis beside those of its reconstruction."""
+"""Report on the eeBrake: the numbers of its published analysis beside those of our reconstruction."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CABLE = 3.5e-3  # m of cable that close the reconstruction's pads
 
 
 def sections() -> dict[str, list[Comparison]]:
-    """Comparisons by the titles of their tables."""
+    """Compare the numbers, by the titles of their tables."""
     return {
         "eeBrake, open: forces for a force of 1 on the right pad": _statics(),
         "eeBrake: travel, mechanical advantage, stop": _travel(),
@@ -55,7 +55,7 @@ def _travel() -> list[Comparison]:
     run = _stroke("equal force", _CABLE)
     mean = float(run.finger[-1] / run.pad_travel[-1].sum())
     force = mean * travel["finger_force"]
-    found = stop(given["mass"], given["speed"] / 3.6, force, given["friction"])
+    stopped = stop(given["mass"], given["speed"] / 3.6, force, given["friction"])
     error, finger = 1e-8 * mean, float(run.finger[-1])
     pad = float(run.pad_travel[-1].mean())
     return [
@@ -63,7 +63,7 @@ def _travel() -> list[Comparison]:
         Comparison("mean travel of a pad [mm]", PAGE, 1e3 * travel["pad"], 1e3 * pad, 1e-8, 2),
         Comparison("advantage, mean of the stroke", PAGE, travel["advantage"], mean, error, 1),
         Comparison("force of each pad [N]", PAGE, travel["pad_force"], force, 40 * error, 0),
-        Comparison("stop of 80 kg from 30 km/h [m]", "by hand", given["distance"], found.distance, 1e-6, 2),
+        Comparison("stop of 80 kg from 30 km/h [m]", "by hand", given["distance"], stopped.distance, 1e-6, 2),
     ]
 
 
@@ -84,7 +84,7 @@ def _stroke(split: str, travel: float) -> CaliperStroke:
 
 
 def notes() -> tuple[str, ...]:
-    """What the numbers mean."""
+    """Remarks below the tables."""
     open_, closed = _stroke("equal force", _CABLE).advantage[[0, -1], 0]
     ratio = _stroke("equal work", 0.0).force_symmetry[0]
     return (

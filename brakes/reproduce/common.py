@@ -1,4 +1,4 @@
-"""What the sections share: a printed number beside ours, rows of them, errata."""
+"""A printed number beside ours, rows of such cells, and tables of them and of errata."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Cell:
     Parameters
     ----------
     printed : str
-        As the paper prints it.
+        The number as the paper prints it.
     ours : float
-        By the paper's own way, in the unit printed.
+        The number computed by the paper's own way, in the unit printed.
     step : float
-        Unit of the last digit that counts.
+        Unit of the last significant digit printed.
     reason : str
-        Why the two are known to differ; empty where they should agree.
+        Why the two are known to differ; empty if they should agree.
     right : float, optional
-        By the corrected mechanics, in the unit printed.
+        The number by the right mechanics, in the unit printed.
     """
 
     printed: str
@@ -48,14 +48,14 @@ class Cell:
 
     @property
     def verdict(self) -> str:
-        """In words."""
+        """The comparison in words."""
         if self.agrees:
             return "agrees, which is unexpected" if self.reason else "agrees"
         return f"differs: {self.reason or 'unexpected'}"
 
     @property
     def texts(self) -> list[str]:
-        """Printed, ours with a digit more, and, if there is one, the right value with as many."""
+        """The printed number, then ours and, if there is one, the right one, each with a digit more."""
         decimals = max(0, 1 - round(math.log10(self.step)))
         shown = [self.printed, f"{self.ours:.{decimals}f}"]
         if self.right is None:
@@ -64,14 +64,14 @@ class Cell:
 
 
 def step(printed: str, digits: int | None = None) -> float:
-    """Unit of the last digit printed that counts.
+    """Unit of the last significant digit of a printed number.
 
     Parameters
     ----------
     printed : str
         The number.
     digits : int, optional
-        Significant digits, where the last zeros only pad.
+        Number of significant digits, where trailing zeros only pad.
     """
     if digits is not None:
         lead = len(printed.partition(".")[0].lstrip("-0"))
@@ -83,20 +83,20 @@ def step(printed: str, digits: int | None = None) -> float:
 
 @dataclass(frozen=True)
 class Row:
-    """A row of a printed table: the inputs that vary, as text, and the numbers found."""
+    """A row of a printed table: the inputs that vary, as text, and the compared numbers."""
 
     inputs: tuple[str, ...]
     cells: tuple[Cell, ...]
 
     @property
     def verdict(self) -> str:
-        """Of all its cells in words."""
+        """The comparison of all its cells in words."""
         different = [f"{c.printed} {c.verdict}" for c in self.cells if c.verdict != "agrees"]
         return "; ".join(different) or "agrees"
 
 
 def rows_table(title: str, inputs: Sequence[str], quantities: Sequence[str], rows: Sequence[Row]) -> Group:
-    """A printed table: for each quantity the number printed, ours by the paper's way, the right one."""
+    """Make a table with the printed number, ours by the paper's way, and the right one of each quantity."""
     heads: list[str] = [*inputs]
     for name, cell in zip(quantities, rows[0].cells, strict=True):
         heads += [name, "ours", "corrected"][: len(cell.texts)]
@@ -105,6 +105,6 @@ def rows_table(title: str, inputs: Sequence[str], quantities: Sequence[str], row
 
 
 def errata_table(title: str, errata: Iterable[Erratum]) -> Group:
-    """The table of a paper's errors."""
+    """Make the table of a paper's errors."""
     rows = ([e.where, e.printed, e.right, e.consequence] for e in errata)
     return table(title, ("where", "the paper has", "right", "what follows"), rows, (0, 1, 2, 3))

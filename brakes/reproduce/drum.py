@@ -1,4 +1,4 @@
-"""The drum brake of Vardanyan et al. (2019): Table 1, what is wrong in it, and the right one."""
+"""Report on the drum brake of Vardanyan et al. (2019): Table 1, the errors in it, and the right numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from beamdyn.common.curves import grid
 from beamdyn.common.edge.tables import table
 from beamdyn.common.pictures import COLOURS
 from brakes.drawings.drum import brake_figure
-from brakes.drum import BrakeResult, Shoe, brake_torque, simplex
+from brakes.drum import BrakeResult
 from brakes.published import load
 from brakes.reproduce import drum_as_printed as as_printed
 from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
@@ -21,17 +21,16 @@ _SYMBOLS = (
     "A pmax: width times radius times largest pressure; K, S, C: integrals of sin, sin^2, sin cos;\n"
     "n = c S - b C and d = r K - b S - c C: arms of the normal and of the friction forces about the pin"
 )
-_WIDTH = 0.05  # [m] the paper gives none; the torque does not depend on it
 
 
 def title() -> str:
-    """Paper and authors."""
+    """Title and authors of the paper."""
     paper = load("vardanyan_2019")
     return f"{paper['title']}\n{', '.join(paper['authors'])}, {paper['year']}"
 
 
 def introduction() -> str:
-    """What was computed."""
+    """What is computed, in one paragraph."""
     return (
         "Torques of two shoes in a drum over the arc of the lining. The printed equations (12) and (15) do "
         "not give the printed table: what does is an effective arm rho with another constant, and (15) with "
@@ -40,18 +39,18 @@ def introduction() -> str:
 
 
 def rows() -> list[Row]:
-    """Table 1, cell by cell."""
+    """Compare Table 1 cell by cell."""
     paper, ours = load("vardanyan_2019")["table_1"], as_printed.table_1()
     columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
-    found = []
+    compared = []
     for i, arc in enumerate(paper["arc"]["value"]):
         cells = (
             _cell(paper[name]["printed"][i], unit * float(getattr(ours, name)[i]))
             for name, unit in columns.items()
         )
-        found.append(Row((f"{arc}",), tuple(cells)))
-    found.append(Row(("largest MT2 - MT1",), (_cell(paper["difference"]["printed"], ours.difference),)))
-    return found
+        compared.append(Row((f"{arc}",), tuple(cells)))
+    compared.append(Row(("largest MT2 - MT1",), (_cell(paper["difference"]["printed"], ours.difference),)))
+    return compared
 
 
 def _cell(printed: str, ours: float) -> Cell:
@@ -59,7 +58,7 @@ def _cell(printed: str, ours: float) -> Cell:
 
 
 def tables() -> Iterator[Group]:
-    """Table 1, the corrected one, and the errata."""
+    """Make Table 1, the corrected table, and the table of errata."""
     *body, _ = rows()
     heads = ("rho", "MT1", "MT2")
     yield rows_table("Table 1: rho [mm], torques [N m], as printed", ("arc [deg]",), heads, body)
@@ -69,7 +68,7 @@ def tables() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """What the tables say to a brake engineer."""
+    """What follows for a brake engineer, a paragraph each."""
     printed, right = as_printed.table_1(), corrected()
     total = printed.first_torque + printed.second_torque
     short, long = (float(total[i] / right.torque[i]) for i in (0, -1))
@@ -85,26 +84,14 @@ def summary() -> Iterator[str]:
 
 
 def notes() -> Iterator[str]:
-    """What the tables do not say."""
+    """Remarks below the tables."""
     last = rows()[-1].cells[0]
     yield f"Largest MT2 - MT1: printed {last.printed}, ours {last.ours:.3f} N m; {last.verdict}."
 
 
 def corrected() -> BrakeResult:
-    """The paper's brake by the corrected mechanics, at the arcs of Table 1."""
-    given = {name: entry["value"] for name, entry in load("vardanyan_2019")["input"].items()}
-    start, arcs = np.radians(given["lining_start"]), as_printed.table_1().arc
-    first, second = (
-        Shoe(
-            1e-3 * given["drum_radius"],
-            _WIDTH,
-            (start, start + arcs),
-            (1e-3 * b, -1e-3 * given["pivot_depth"]),
-            1e-3 * given["force_arm"],
-        )
-        for b in given["pivot_offset"]
-    )
-    return brake_torque(simplex(first, second), friction=given["friction"], force=given["force"])
+    """Solve the paper's brake by the right mechanics, at the arcs of Table 1."""
+    return as_printed.corrected(as_printed.table_1().arc)
 
 
 def _corrected_table() -> Group:
@@ -126,22 +113,15 @@ def _corrected_table() -> Group:
 
 
 def pictures() -> dict[str, Figure]:
-    """Pictures by the names of their files."""
-    return {"drum_forces": brake_figure(_longest()), "drum_torque_over_arc": over_arc()}
-
-
-def _longest() -> BrakeResult:
-    """The case with the longest lining."""
-    found = corrected()
-    shoes = [
-        Shoe(s.drum_radius, s.face_width, (s.lining[0], float(s.lining[1][-1])), s.pivot, s.force_arm)
-        for s in found.brake.shoes
-    ]
-    return brake_torque(simplex(*shoes), friction=found.friction, force=float(np.max(found.force)))
+    """Draw the pictures, by the names of their files."""
+    return {
+        "drum_forces": brake_figure(as_printed.corrected(float(as_printed.table_1().arc[-1]))),
+        "drum_torque_over_arc": over_arc(),
+    }
 
 
 def over_arc() -> Figure:
-    """Torques over the arc, as printed and corrected."""
+    """Draw the torques over the arc, as printed and corrected."""
     printed, right = as_printed.table_1(), corrected()
     figure = Figure(figsize=(7.5, 4.8), layout="constrained")
     ax = figure.subplots()

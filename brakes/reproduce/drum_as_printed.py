@@ -1,8 +1,8 @@
-"""What the paper prints: its Table 1 from its own wrong expressions, and what each error costs.
+"""The drum paper's own numbers: its Table 1 from its wrong expressions, and what each of its errors costs.
 
-Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). The errata are described
-in ``brakes/published/vardanyan_2019.toml``; here are their numbers, for the paper's data at its longest
-arc, 80 degrees, unless said. For mechanics that holds use `brakes.drum.shoe_torque`.
+Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). Inputs and errata come from
+``brakes/published/vardanyan_2019.toml``; the consequences are those at the paper's longest arc, 80 degrees,
+unless stated otherwise. For the right mechanics use `brakes.drum.shoe_torque`.
 """
 
 from __future__ import annotations
@@ -12,13 +12,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brakes.drum import Shoe, brake_torque, shoe_torque, simplex
+from brakes.drum import BrakeResult, Shoe, brake_torque, shoe_torque, simplex
 from brakes.published import load
 from brakes.published.errata import Erratum
 
-_MU, _P, _A, _C, _B1, _B2 = 0.35, 1000.0, 0.115, 0.110, 0.020, 0.025  # -, N, m
-_R, _START = 0.138, np.radians(30.0)
-_WIDTH = 0.05  # [m] the paper gives none, and no number here depends on it
+_INPUT = {name: entry["value"] for name, entry in load("vardanyan_2019")["input"].items()}
+_MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining_start"])  # -, N, rad
+_R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))  # m
+_B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # m
+_WIDTH = 0.05  # [m] the paper gives none; only the pressure depends on it
+_LONGEST = np.radians(80.0)
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class Table1:
 
 
 def table_1(arc: np.ndarray | None = None) -> Table1:
-    """Table 1 as printed.
+    """Compute Table 1 as printed.
 
     Parameters
     ----------
@@ -55,18 +58,18 @@ def table_1(arc: np.ndarray | None = None) -> Table1:
 
 
 def table_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Effective arm [m] behind Table 1; (12) as printed gives 11.9 % less. 0.87 is cos 30 deg, rounded."""
+    """Effective arm [m] in Table 1, at arcs [rad]; 0.87 is cos 30 deg, rounded. (12) gives 11.9 % less."""
     return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
 
 
 def printed_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Effective arm [m] by (12) as printed."""
+    """Effective arm [m] by (12) as printed, at arcs [rad]."""
     span = (np.pi - 2 * _START + np.sin(_START)) / 2
     return _R * np.cos(_START) * (np.cos(_START) - np.cos(_START + np.asarray(arc))) / span
 
 
 def _torque(rho: np.ndarray | float, b: float) -> np.ndarray:
-    """(15), with b as in the table and not as printed; (16) with -b."""
+    """Torque [N m] by (15) with the sign of b that gives the table, not the printed one; by (16) with -b."""
     return _MU * _P * (_C + _A) * np.asarray(rho) / (_C + _MU * b - _MU * np.asarray(rho))
 
 
@@ -77,20 +80,21 @@ def errata() -> tuple[Erratum, ...]:
     )
 
 
+def corrected(arc: np.ndarray | float) -> BrakeResult:
+    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad]."""
+    return brake_torque(simplex(_shoe(_B1, arc), _shoe(_B2, arc)), friction=_MU, force=_P)
+
+
 # Consequences ---------------------------------------------------------------------------------------
 
 
-def _shoe(b: float, degrees: float = 80.0) -> Shoe:
-    return Shoe(_R, _WIDTH, (_START, _START + np.radians(degrees)), (b, -_C), _A)
+def _shoe(b: float, arc: np.ndarray | float = _LONGEST) -> Shoe:
+    return Shoe(_R, _WIDTH, (_START, _START + arc), (b, -_C), _A)
 
 
-def _right(b: float, leading: bool, degrees: float = 80.0) -> float:
-    return float(shoe_torque(_shoe(b, degrees), friction=_MU, force=_P, leading=leading).torque)
-
-
-def _sums(degrees: float = 80.0) -> tuple[float, float, float]:
-    """K, S, C of an arc from alpha1."""
-    a1, a2 = _START, _START + np.radians(degrees)
+def _integrals(arc: float = _LONGEST) -> tuple[float, float, float]:
+    """K, S, C: integrals of sin, sin^2 and sin cos over an arc from alpha1."""
+    a1, a2 = _START, _START + arc
     K = np.cos(a1) - np.cos(a2)
     S = (a2 - a1) / 2 - (np.sin(2 * a2) - np.sin(2 * a1)) / 4
     return K, S, (np.sin(a2) ** 2 - np.sin(a1) ** 2) / 2
@@ -101,22 +105,22 @@ def _entry(quantity: str, unit: str, printed: float, right: float) -> dict[str, 
 
 
 def _projections() -> dict:
-    K, S, _ = _sums()
+    K, S, _ = _integrals()
     return _entry("x component of the normal force over A pmax", "", K, S)
 
 
 def _mixed_shoes() -> dict:
-    _, S, C = _sums()
+    _, S, C = _integrals()
     return _entry("y component of the force on the leading shoe over A pmax", "", C + _MU * S, C - _MU * S)
 
 
 def _missing_half() -> dict:
-    _, _, C = _sums()
+    _, _, C = _integrals()
     return _entry("part of N from friction over A pmax", "", 2 * _MU * C, _MU * C)
 
 
 def _quarter() -> dict:
-    _, S, C = _sums()
+    _, S, C = _integrals()
     return _entry("T over A pmax, the other terms as printed", "", _MU * S + 2 * C, _MU * S + C)
 
 
@@ -127,18 +131,18 @@ def _double_angle() -> dict:
 
 
 def _ratio() -> dict:
-    _, S, C = _sums()
+    _, S, C = _integrals()
     return _entry("T / N of the components of a trailing shoe", "", _MU, (C + _MU * S) / (S - _MU * C))
 
 
 def _effective_arm() -> dict:
-    K, S, C = _sums()
+    K, S, C = _integrals()
     right = _R * K / np.hypot(S, C)
-    return _entry("effective arm", "mm", 1e3 * float(printed_arm(np.radians(80.0))), 1e3 * right)
+    return _entry("effective arm", "mm", 1e3 * float(printed_arm(_LONGEST)), 1e3 * right)
 
 
 def _bound() -> dict:
-    K, S, C = _sums(10.0)
+    K, S, C = _integrals(np.radians(10.0))
     printed = table_arm(np.radians(10.0)) / _R
     return _entry("effective arm over r at 10 deg", "", float(printed), K / np.hypot(S, C))
 
@@ -146,22 +150,24 @@ def _bound() -> dict:
 def _trend() -> dict:
     table = table_1()
     total = table.first_torque + table.second_torque
-    right = [_right(_B1, True, arc) + _right(_B2, False, arc) for arc in (10.0, 80.0)]
+    right = corrected(np.radians([10.0, 80.0])).torque
     return _entry("total torque at 80 deg over that at 10 deg", "", total[-1] / total[0], right[1] / right[0])
 
 
 def _sign() -> dict:
-    rho = table_arm(np.radians(80.0))
+    rho = table_arm(_LONGEST)
     return _entry("MT1 with the arm of the table", "N m", float(_torque(rho, -_B1)), float(_torque(rho, _B1)))
 
 
 def _second_shoe() -> dict:
-    rho = table_arm(np.radians(80.0))
-    return _entry("torque of the second shoe", "N m", float(_torque(rho, -_B2)), _right(_B2, False))
+    rho = table_arm(_LONGEST)
+    return _entry(
+        "torque of the second shoe", "N m", float(_torque(rho, -_B2)), corrected(_LONGEST).shoes[1].torque
+    )
 
 
 def _sum() -> dict:
-    rho = float(table_arm(np.radians(80.0)))
+    rho = float(table_arm(_LONGEST))
     near = _C + _MU * rho
     printed = 2 * _MU * _P * rho * (_C + _A) * near / (near**2 - (_MU * _B1) ** 2)
     brake = brake_torque(simplex(_shoe(_B1)), friction=_MU, force=_P)
@@ -169,7 +175,7 @@ def _sum() -> dict:
 
 
 def _self_locking() -> dict:
-    rho = float(table_arm(np.radians(80.0)))
+    rho = float(table_arm(_LONGEST))
     right = shoe_torque(_shoe(_B1), friction=_MU, force=_P).locking_friction
     return _entry("friction at self-locking, b = 20 mm", "", -_C / (rho - _B1), float(right))
 

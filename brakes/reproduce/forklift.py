@@ -1,4 +1,4 @@
-"""The forklift of Yoo et al. (1997): Tables 2-7, corrected mechanics, and what the paper's errors cost."""
+"""Report on the forklift of Yoo et al. (1997): Tables 2-7, the right numbers, and what the errors cost."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ _WAYS = ("as printed", "corrected")
 
 
 def title() -> str:
-    """Paper and authors."""
+    """Title and authors of the paper."""
     paper = load("yoo_1997")
     return f"{paper['title']}\n{', '.join(paper['authors'])}, {paper['journal']}, {paper['year']}"
 
 
 def introduction() -> str:
-    """What was computed."""
+    """What is computed, in one paragraph."""
     return (
         "A loaded truck reverses down a slope and stops with locked front wheels; one of its two front "
         'brakes is a duo-servo brake of 12.5 in. "ours" follows the paper (Tables 2-4 with an arm y_cg - r1 '
@@ -65,17 +65,17 @@ def introduction() -> str:
 
 
 def rows() -> dict[str, list[Row]]:
-    """Tables 2-7, cell by cell."""
+    """Compare Tables 2-7 cell by cell."""
     ours, right, paper = as_printed.tables(), as_printed.corrected_tables(), load("yoo_1997")
-    found = {name: _vehicle_rows(paper, name, ours, right) for name in _VEHICLE}
-    return found | {name: _force_rows(paper, name, ours) for name in _BRAKE}
+    compared = {name: _vehicle_rows(paper, name, ours, right) for name in _VEHICLE}
+    return compared | {name: _force_rows(paper, name, ours) for name in _BRAKE}
 
 
 def _vehicle_rows(paper: dict[str, Any], name: str, ours: dict, right: dict) -> list[Row]:
     (down, _), (across, _), quantities = _VEHICLE[name]
     data = paper[name]
     padded = data.get("padded", {"value": [], "digits": None})
-    found = []
+    compared = []
     for i, row in enumerate(data[down]["value"]):
         for j, column in enumerate(data[across]["value"]):
             cells = []
@@ -92,12 +92,12 @@ def _vehicle_rows(paper: dict[str, Any], name: str, ours: dict, right: dict) -> 
                         float(right[key][i, j]),
                     )
                 )
-            found.append(Row((f"{row:g}", f"{column:g}"), tuple(cells)))
-    return found
+            compared.append(Row((f"{row:g}", f"{column:g}"), tuple(cells)))
+    return compared
 
 
 def _reason(paper: dict[str, Any], name: str, quantity: str, printed: str) -> str:
-    """Why a cell is known to differ: it is the misfit that the published data name."""
+    """Why a cell is known to differ, if it is the misfit that the published data name."""
     known = paper["misfit"][0]
     there = known["where"].startswith(f"Table {name[-1]}, {quantity}") and known["printed"] == printed
     return "the one misfit (1)" if there else ""
@@ -105,25 +105,25 @@ def _reason(paper: dict[str, Any], name: str, quantity: str, printed: str) -> st
 
 def _force_rows(paper: dict[str, Any], name: str, ours: dict) -> list[Row]:
     data, (varied, _) = paper[name], _BRAKE[name]
-    found = []
+    compared = []
     for i, value in enumerate(data[varied]["value"]):
         cells = []
         for force in _FORCES:
             steps = data[force]["step"]
             size = steps[i] if isinstance(steps, list) else steps
             cells.append(Cell(data[force]["printed"][i], float(ours[name, force][i]), size))
-        found.append(Row((f"{value:g}",), tuple(cells)))
-    return found
+        compared.append(Row((f"{value:g}",), tuple(cells)))
+    return compared
 
 
 def tables() -> Iterator[Group]:
-    """Tables 2-7 and the errata."""
-    paper, found = load("yoo_1997"), rows()
+    """Make Tables 2-7 and the table of errata."""
+    paper, compared = load("yoo_1997"), rows()
     for name, ((_, down), (_, across), quantities) in _VEHICLE.items():
         heads = [_HEADS[q] for q in quantities]
-        yield rows_table(_title(paper, name, quantities), (down, across), heads, found[name])
+        yield rows_table(_title(paper, name, quantities), (down, across), heads, compared[name])
     for name, (_, head) in _BRAKE.items():
-        yield rows_table(_title(paper, name, ("forces [N]",)), (head,), _FORCES, found[name])
+        yield rows_table(_title(paper, name, ("forces [N]",)), (head,), _FORCES, compared[name])
     yield errata_table("What is wrong in the paper, and what follows at its base case", as_printed.errata())
 
 
@@ -133,7 +133,7 @@ def _title(paper: dict[str, Any], name: str, what: tuple[str, ...]) -> str:
 
 
 def summary() -> Iterator[str]:
-    """What the tables say to a brake engineer."""
+    """What follows for a brake engineer, a paragraph each."""
     printed, right = _base_stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)
@@ -146,7 +146,7 @@ def summary() -> Iterator[str]:
 
 
 def notes() -> Iterator[str]:
-    """What the tables do not say."""
+    """Remarks below the tables."""
     every = [cell for name in _VEHICLE for row in rows()[name] for cell in row.cells]
     misfit, agree = load("yoo_1997")["misfit"][0], sum(cell.agrees for cell in every)
     yield (
@@ -159,16 +159,16 @@ def notes() -> Iterator[str]:
     yield _on_newton(forces)
 
 
-def _on_friction(found: InternalForces) -> str:
+def _on_friction(forces: InternalForces) -> str:
     needed = stop(*as_printed.base_case()).torque_per_brake
-    right = internal_forces(found.levers, torque=needed, piston_force=_base("piston_force"))
+    right = internal_forces(forces.levers, torque=needed, piston_force=_base("piston_force"))
     return (
         "The friction of the lining is a result of the paper's equations, which it does not show: "
-        f"{float(found.lining_friction):.3g} at 11000 N m ({float(right.lining_friction):.3g} at the "
+        f"{float(forces.lining_friction):.3g} at 11000 N m ({float(right.lining_friction):.3g} at the "
         "corrected torque). With less, this piston force does not lock the wheels; the brake locks by "
-        f"itself at {float(found.locking_friction):.3g}. The leading shoe does "
-        f"{100 * float(found.leading_share):.0f} % of the work, C* = {float(found.c_star):.3g}, and the "
-        f"cylinder's bolts carry {float(np.hypot(*found.bolt_force)) / 1e3:.0f} kN."
+        f"itself at {float(forces.locking_friction):.3g}. The leading shoe does "
+        f"{100 * float(forces.leading_share):.0f} % of the work, C* = {float(forces.c_star):.3g}, and the "
+        f"cylinder's bolts carry {float(np.hypot(*forces.bolt_force)) / 1e3:.0f} kN."
     )
 
 
@@ -188,11 +188,11 @@ def _on_motion() -> str:
     )
 
 
-def _on_newton(found: InternalForces) -> str:
+def _on_newton(forces: InternalForces) -> str:
     case = {"torque": _base("torque"), "piston_force": _base("piston_force")}
-    scaled = newton_raphson(found.levers, **case)
-    plain = newton_raphson(found.levers, **case, scaled=False)
-    same = abs(scaled.unknowns[8] / float(found.Q) - 1) < 1e-9
+    scaled = newton_raphson(forces.levers, **case)
+    plain = newton_raphson(forces.levers, **case, scaled=False)
+    same = abs(scaled.unknowns[8] / float(forces.Q) - 1) < 1e-9
     return (
         f"The paper's Newton-Raphson on ten equations ends at {'the same' if same else 'other'} forces in "
         f"{scaled.iterations} steps from a good start; from most starts it does not. In SI units the "
@@ -202,13 +202,13 @@ def _on_newton(found: InternalForces) -> str:
 
 
 def _base_stops(**varied: Any) -> tuple[Stop, Stop]:
-    """The stop at the base case as printed and corrected, with some inputs varied."""
+    """Solve the stop at the base case, as printed and corrected, with some inputs varied."""
     case = as_printed.base_case(**varied)
     return as_printed.stop_as_printed(*case), stop(*case)
 
 
 def base_forces() -> InternalForces:
-    """Forces at the base case of Tables 5-7."""
+    """Solve the forces at the base case of Tables 5-7."""
     return internal_forces(
         BENDIX_12_5, **{name: _base(name) for name in ("torque", "piston_force", "clearance")}
     )
@@ -222,7 +222,7 @@ def _base(name: str) -> Any:
 
 
 def pictures() -> dict[str, Figure]:
-    """Pictures by the names of their files."""
+    """Draw the pictures, by the names of their files."""
     return {
         "forklift_truck": _truck(),
         "forklift_distance": _distance(),
@@ -267,7 +267,7 @@ def _shoes() -> Figure:
 
 
 def _over() -> Figure:
-    """Forces over torque, piston force and clearance, with the printed values as circles."""
+    """Draw the forces over torque, piston force and clearance, with the printed values as circles."""
     figure = Figure(figsize=(12.0, 4.6), layout="constrained")
     paper = load("yoo_1997")
     case = {name: _base(name) for name in ("torque", "piston_force", "clearance")}
@@ -284,7 +284,7 @@ def _over() -> Figure:
 
 
 def compare(outputs: Sequence[Output], corrected: object, printed: object) -> Figure:
-    """Results by the right mechanics and by the paper's, side by side as a table.
+    """Draw a table of results by the right mechanics beside those by the paper's.
 
     Parameters
     ----------

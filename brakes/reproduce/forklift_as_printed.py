@@ -55,24 +55,10 @@ _LIFTED = {
 
 
 def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
-    """Stop of a truck by the way that reproduces the paper's Tables 2-4.
+    """Compute a stop by the way that reproduces the paper's Tables 2-4.
 
-    Parameters
-    ----------
-    truck : Truck
-        The truck and its load.
-    conditions : StopConditions
-        Road, speed and timing.
-
-    Returns
-    -------
-    PrintedStop
-        The loads at rest, and the speed gained when coasting, are those of `stop`.
-
-    Raises
-    ------
-    ValueError
-        As for `stop`.
+    It has the parameters of `brakes.forklift.stop`, raises its errors, and takes from its result the axle
+    loads at rest and the speed gained when coasting.
     """
     right, c = stop(truck, conditions), conditions
     (x, y), r1, weight = truck.cg, truck.front_wheel_radius, truck.mass * c.gravity * np.cos(c.slope)
@@ -101,13 +87,13 @@ def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
 
 
 def printed_distance(acceleration: Numbers, c: StopConditions) -> Numbers:
-    """Stopping distance [m] by (19)-(24), from the acceleration at full brake force [m/s2], below 0."""
+    """Compute the stopping distance [m] by (19)-(24); the acceleration at full brake force [m/s2] is < 0."""
     V, A, t2 = c.speed, acceleration, c.rise_time
     return V * c.reaction_time + (A * t2**2 / 6 + V * t2) - V**2 / (2 * A)
 
 
 def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> ForkliftAnswer | None:
-    """Answer of a file's stages with the paper's stop; None where the stop has no part in them.
+    """Solve the stages of a file with the paper's stop in place of the right one.
 
     Parameters
     ----------
@@ -115,6 +101,11 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
         The file.
     stages : tuple of str
         Of "vehicle", "kinematics", "forces".
+
+    Returns
+    -------
+    ForkliftAnswer or None
+        None where the stop has no part in the stages.
 
     Raises
     ------
@@ -159,7 +150,7 @@ def corrected_tables() -> Tables:
 
 
 def base_case(**varied: Numbers) -> tuple[Truck, StopConditions]:
-    """The paper's base case.
+    """Truck and conditions of the paper's base case.
 
     Parameters
     ----------
@@ -182,7 +173,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
-    """Tables 2-4 by one of the two ways to compute a stop."""
+    """Compute Tables 2-4 by a way to compute a stop."""
     speeds, loads, trucks = (
         solve(*base_case(**{down: _column(name, down)[:, None], across: _column(name, across)}))
         for name, down, across in (
@@ -217,7 +208,7 @@ def _entry(quantity: str, unit: str, printed: Numbers, right: Numbers) -> dict[s
 
 
 def _torque_without_reaction() -> dict[str, Any]:
-    """By moments about the axle without the brake torque: the arm is y_cg."""
+    """With moments about the axle that leave out the brake torque: the arm is then y_cg."""
     right = stop(*base_case())
     t, mu = right.truck, right.conditions.friction
     y, r1 = t.cg[1], t.front_wheel_radius
