@@ -19,7 +19,7 @@ from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.results import Result
 from brakes.config.sweeps import numeric_inputs, with_arrays
 
-Design = TypeVar("Design", bound=BaseModel)
+FileModel = TypeVar("FileModel", bound=BaseModel)
 
 
 class Answer(Result, ABC):
@@ -58,7 +58,7 @@ class Answer(Result, ABC):
         return ()
 
 
-class BrakeType(ABC, Generic[Design]):
+class BrakeType(ABC, Generic[FileModel]):
     """A type of brake: what its TOML file says, and how it is answered.
 
     Command, screen and HTML report ask only this class and `Answer`. To add a type of brake ``name``:
@@ -113,15 +113,15 @@ class BrakeType(ABC, Generic[Design]):
     more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
 
     @abstractmethod
-    def read(self, tables: Mapping[str, Any], source: str) -> Design:
+    def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
         """Design that tables describe; raises `ConfigError` with all mistakes."""
 
     @abstractmethod
-    def solve(self, design: Design) -> Answer:
+    def solve(self, design: FileModel) -> Answer:
         """Answer to a design; raises ValueError for bad input, `NoAnswer` if nothing can be shown."""
 
     @abstractmethod
-    def outputs(self, design: Design) -> Sequence[Output]:
+    def outputs(self, design: FileModel) -> Sequence[Output]:
         """Numbers of the answer that can be named."""
 
     @abstractmethod
@@ -129,12 +129,12 @@ class BrakeType(ABC, Generic[Design]):
         """Inputs of the form, for tables as far as they are filled in."""
 
     @abstractmethod
-    def sweep_inputs(self, design: Design, tables: Mapping[str, Any]) -> Sequence[Input]:
+    def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
         """Numbers of a design that can be swept."""
 
     @abstractmethod
     def sweep_cases(
-        self, design: Design, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
+        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
     ) -> tuple[Sweep, Sequence[str]]:
         """Results over one or two inputs, and warnings."""
 
@@ -143,7 +143,7 @@ class BrakeType(ABC, Generic[Design]):
         text = read(name)
         return parse(text, name), text
 
-    def default_results(self, design: Design) -> str:
+    def default_results(self, design: FileModel) -> str:
         """Results of a sweep of a design if none are named."""
         return self.sweep_results
 
@@ -197,7 +197,7 @@ class BrakeType(ABC, Generic[Design]):
         return self.sweep_cases(design, tables, axes, wanted)
 
 
-class ArrayBrakeType(BrakeType[Design]):
+class ArrayBrakeType(BrakeType[FileModel]):
     """A type of brake whose mechanics takes arrays: a sweep is solved for all cases at once.
 
     Attributes
@@ -206,9 +206,9 @@ class ArrayBrakeType(BrakeType[Design]):
         Description of its file.
     """
 
-    model: type[Design]
+    model: type[FileModel]
 
-    def read(self, tables: Mapping[str, Any], source: str) -> Design:
+    def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
         """Design that tables describe."""
         return validated(self.model, tables, source)
 
@@ -216,12 +216,12 @@ class ArrayBrakeType(BrakeType[Design]):
         """Inputs of the form: those of the model."""
         return describe(self.model)
 
-    def sweep_inputs(self, design: Design, tables: Mapping[str, Any]) -> Sequence[Input]:
+    def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
         """Numbers in the tables that the design has."""
         return numeric_inputs(design)
 
     def sweep_cases(
-        self, design: Design, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
+        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
     ) -> tuple[Sweep, Sequence[str]]:
         """Results from one answer whose numbers are arrays."""
         answer = self.solve(with_arrays(design, axes))
@@ -230,11 +230,11 @@ class ArrayBrakeType(BrakeType[Design]):
         return made, (*answer.warnings, *answer.refusals)
 
 
-class TableBrakeType(BrakeType[Design]):
+class TableBrakeType(BrakeType[FileModel]):
     """A type of brake whose mechanics takes one design: a sweep is solved case by case."""
 
     def sweep_cases(
-        self, design: Design, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
+        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
     ) -> tuple[Sweep, Sequence[str]]:
         """Results case by case; not a number where there is no answer."""
         made = one_by_one(tables, axes, outputs, self._solve_determined)

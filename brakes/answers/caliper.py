@@ -54,9 +54,15 @@ _OUTPUTS = (
     Output("total_advantage", "both pads over finger", lambda a: a.run.total_advantage[-1]),
     Output("travel_symmetry", "velocity of the left pad over the right", lambda a: a.run.travel_symmetry[-1]),
     Output(
-        "squeeze", "part of the force past friction", lambda a: a.friction.squeeze if a.friction else np.nan
+        "squeeze",
+        "share of the pad force that friction leaves, squeezing",
+        lambda a: a.friction.squeeze if a.friction else np.nan,
     ),
-    Output("release", "tension left when let go", lambda a: a.friction.release if a.friction else np.nan),
+    Output(
+        "release",
+        "share of the cable tension that friction holds, releasing",
+        lambda a: a.friction.release if a.friction else np.nan,
+    ),
     Output("stopping_distance", "stopping distance", lambda a: a.stop.distance if a.stop else np.nan, "m"),
 )
 

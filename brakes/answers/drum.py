@@ -42,7 +42,7 @@ _SHOE = (
     Output("pin_y", "pin reaction, upward", lambda s: s.pin_reaction[..., 1], "N"),
     Output("effective_arm", "effective arm of the friction", lambda s: s.effective_arm, "mm", _MM),
     Output("locking_friction", "friction at self-locking", lambda s: s.locking_friction),
-    Output("closure", "moment left over / (P (a + c))", lambda s: s.closure),
+    Output("closure", "residual moment / (P (a + c))", lambda s: s.closure),
 )
 
 

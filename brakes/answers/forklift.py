@@ -96,7 +96,7 @@ _FORCES = (
     ),
     Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
     Output("bolts", "cylinder bolts, resultant", lambda f: _size(f.bolt_force), "N"),
-    Output("residual", "left over in the equations, over T/r", lambda f: f.residual),
+    Output("residual", "residual of the equations, over T/r", lambda f: f.residual),
 )
 
 

@@ -130,7 +130,7 @@ def _answer_sweep(
     brake: BrakeType[Any],
     tables: Mapping[str, Any],
     question: Question,
-    asked: tuple[str, tuple[str, ...], str | None],
+    request: tuple[str, tuple[str, ...], str | None],
     outputs: Outputs,
 ) -> None:
     from beamdyn.common.curves import sweep_figure
@@ -139,7 +139,7 @@ def _answer_sweep(
     from beamdyn.common.edge.tables import show
     from brakes.answers.tables import sweep_table
 
-    made, warnings = brake.sweep(tables, *asked)
+    made, warnings = brake.sweep(tables, *request)
     show(shown := [sweep_table(made)])
     report = Report(question, shown, warnings)
     write(made, outputs, sweep_csv(made), lambda: sweep_figure(made), report)

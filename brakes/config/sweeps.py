@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from beamdyn.common.edge.input_sweep import Axis
 from beamdyn.common.edge.inputs import Input, describe
 
-Design = TypeVar("Design", bound=BaseModel)
+FileModel = TypeVar("FileModel", bound=BaseModel)
 
 
 def numeric_inputs(design: BaseModel) -> list[Input]:
@@ -20,19 +20,19 @@ def numeric_inputs(design: BaseModel) -> list[Input]:
     return [entry for entry in there if entry.quantity.unit or entry.quantity.symbol]  # others are choices
 
 
-def with_arrays(design: Design, axes: Sequence[Axis]) -> Design:
+def with_arrays(design: FileModel, axes: Sequence[Axis]) -> FileModel:
     """A design with arrays in place of its inputs.
 
     Parameters
     ----------
-    design : Design
+    design : FileModel
         A validated design.
     axes : sequence of Axis
         One or two inputs; the values of the second become a column, shape (m, 1).
 
     Returns
     -------
-    Design
+    FileModel
         A copy that is not validated: the core checks the values.
     """
     for place, axis in enumerate(axes):
@@ -41,7 +41,7 @@ def with_arrays(design: Design, axes: Sequence[Axis]) -> Design:
     return design
 
 
-def _replace_input(model: Design, path: str, values: np.ndarray) -> Design:
+def _replace_input(model: FileModel, path: str, values: np.ndarray) -> FileModel:
     head, _, rest = path.partition(".")
     fields: dict[str, Any] = dict(model) | {
         head: _replace_input(getattr(model, head), rest, values) if rest else values
