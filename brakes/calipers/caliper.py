@@ -1,4 +1,4 @@
-"""A caliper: a mechanism that a cable closes and that two pads stop at the rim."""
+"""A caliper: a mechanism that a cable closes until its two pads press on the rim."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class Caliper:
     def __post_init__(self) -> None:
         check_inputs(self)
         for name in (self.cable, *self.pads):
-            self.mechanism.load(name).with_magnitude(None)
+            self.mechanism.load(name).with_magnitude(None)  # raises if it is a spring
         if len({self.cable, *self.pads}) < 3:
             raise ValueError(f"cable {self.cable!r} and pads {self.pads}: name three different loads")
 
@@ -129,7 +129,7 @@ class Caliper:
         return float(travel)
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
-        """Travel (S, 2) towards the rim: against the forces."""
+        """Travel of the pads (S, 2) towards the rim, against their forces."""
         return -np.stack([travel[name] for name in self.pads], axis=-1)
 
     # Forces -----------------------------------------------------------------------------------------
@@ -219,7 +219,7 @@ class Caliper:
     # What changes it --------------------------------------------------------------------------------
 
     def friction(self, coefficient: float, travel: float | None = None) -> PivotFriction:
-        """What friction in all pivots takes, at one travel of the cable [m]; that of contact if not given.
+        """Efficiency with friction in all pivots at a travel of the cable [m], that of contact if not given.
 
         The pads keep the forces that they have without friction; the tension is what friction changes.
         """
@@ -253,7 +253,7 @@ class Caliper:
         return replace(self, mechanism=replace(self.mechanism, loads=loads), clearance=self.clearance + lost)
 
     def wear(self, lost: Sequence[float] | np.ndarray) -> PadWear:
-        """Where the pads touch, and the advantage there, after they have lost thicknesses [m]."""
+        """Travel of contact and advantage there, for pads worn by several thicknesses (W,) [m]."""
         lost = real_array("lost", lost)
         worn = [self.worn(thickness) for thickness in lost]
         runs = [caliper.stroke([caliper.contact]) for caliper in worn]

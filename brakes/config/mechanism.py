@@ -136,7 +136,7 @@ class RunInput(Section):
 
 
 class CaliperStopInput(Section):
-    """[stop]: a vehicle stopped by this brake alone."""
+    """[stop]: the vehicle that this brake alone stops."""
 
     mass: Annotated[float, Quantity("kg", symbol="M", meaning="mass, wheels included", above=0)]
     speed: Annotated[float, Quantity("m/s", symbol="v", meaning="speed", least=0)]

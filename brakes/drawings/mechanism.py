@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 TENSION, COMPRESSION = COLOURS[0], COLOURS[1]
 LOAD, REACTION, BODY = "#000000", COLOURS[2], "#8a8f98"
 _MM = 1e3
-_LONGEST = 0.28  # arrow over the size of the mechanism
-_SHORTEST = 1e-6  # arrow that is drawn [mm]
-_ASIDE = 0.17  # distance from the middle over the size of the mechanism
+_LONGEST = 0.28  # longest arrow, over the size of the mechanism
+_SHORTEST = 1e-6  # shorter arrows are not drawn [mm]
+_ASIDE = 0.17  # distance from the middle, over the size, past which arrows may point inwards
 _FAINT = 0.35
 
 
@@ -44,7 +44,7 @@ def draw_mechanism(
     equilibrium : Equilibrium, optional
         Its forces: members in tension are blue, in compression vermilion.
     faint : bool
-        Draw it as a shadow.
+        Draw it pale and without labels, as a shadow.
     labels : bool
         Write the names of the bodies.
     """
@@ -93,7 +93,7 @@ def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool, **li
 
 
 def _write_along(ax: Axes, member: parts.Member) -> None:
-    """Name and force beside the last stretch of a member, in its direction."""
+    """Write name and force beside the last segment of a member, parallel to it."""
     size = f" {abs(member.force):.4g} N" if np.isfinite(member.force) else ""
     first, last = member.ends[-2:] * _MM
     turn = float(np.degrees(np.arctan2(last[1] - first[1], last[0] - first[0])))
@@ -118,7 +118,7 @@ def _draw_pin(ax: Axes, at: np.ndarray, grounded: bool, alpha: float) -> None:
 
 
 def _draw_faces(ax: Axes, position: Position, alpha: float) -> None:
-    """Short lines along slots and contact faces."""
+    """Draw short lines along slots and contact faces."""
     low, high = parts.extent(position)
     half = 0.06 * float(np.linalg.norm(high - low)) * _MM
     for _, shape, points in parts.shapes(position, "face"):
@@ -132,7 +132,7 @@ def _draw_faces(ax: Axes, position: Position, alpha: float) -> None:
 
 
 def force_scale(*equilibria: Equilibrium) -> float:
-    """Length of 1 N [m/N] at which the largest outer force is a fair part of the mechanism."""
+    """Arrow length per newton [m/N] that makes the longest arrow a fixed part of the mechanism."""
     largest, size = 0.0, 0.0
     for equilibrium in equilibria:
         low, high = parts.extent(equilibrium.position)
@@ -181,7 +181,7 @@ def draw_forces(equilibrium: Equilibrium, ax: Axes, scale: float | None = None, 
 def _draw_arrow(
     ax: Axes, at: np.ndarray, force: np.ndarray, scale: float, colour: str, name: str, inwards: bool = False
 ) -> None:
-    """An arrow from the point, or to it if the force points inwards; none for a force of nearly 0 or nan."""
+    """Draw an arrow from the point, or to it if `inwards`; none for a force of nearly 0 or nan."""
     size, reach = float(np.linalg.norm(force)), force * scale * _MM
     if not np.linalg.norm(reach) > _SHORTEST:
         return
@@ -202,7 +202,7 @@ def _draw_arrow(
 
 
 def _draw_key(ax: Axes, colours: dict[str, str], scale: float) -> None:
-    """Colours, and the scale of the arrows."""
+    """Draw the key: colours, and the scale of the arrows."""
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in colours.items()]
@@ -213,7 +213,7 @@ def _draw_key(ax: Axes, colours: dict[str, str], scale: float) -> None:
 
 
 def draw_open_and_closed(open_: Position, closed: Equilibrium, ax: Axes, key: bool = True) -> Axes:
-    """The open mechanism as a shadow under the closed one with its forces."""
+    """Draw the open mechanism as a shadow under the closed one with its forces."""
     draw_mechanism(open_, ax, faint=True)
     draw_mechanism(closed.position, ax, closed)
     draw_forces(closed, ax, key=key)
@@ -226,7 +226,7 @@ def draw_open_and_closed(open_: Position, closed: Equilibrium, ax: Axes, key: bo
 
 
 def free_body_diagrams(equilibrium: Equilibrium) -> Figure:
-    """A figure with one diagram a body: all that acts on it, forces at one scale.
+    """Draw the free-body diagram of every body in one figure, all forces at one scale.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ def free_body_diagrams(equilibrium: Equilibrium) -> Figure:
 
 
 def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) -> Axes:
-    """A body alone and all that acts on it: loads black, joints green; `scale` the length of 1 N [m/N]."""
+    """Draw the free-body diagram of a body: loads black, joints green; `scale` the length of 1 N [m/N]."""
     corners = parts.outline(equilibrium.position, body)
     _draw_body(ax, corners * _MM, 1.0)
     loads = {load.name for load in equilibrium.position.mechanism.loads}
@@ -272,7 +272,7 @@ def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) 
 
 
 def _frame(ax: Axes) -> None:
-    """A square around all that is drawn, with room for words beside it."""
+    """Set limits to a square around all that is drawn, with room for labels."""
     box = ax.dataLim
     half = max(1.2 * box.width, 0.7 * box.height)
     x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
@@ -302,7 +302,7 @@ def animate(
     force: bool = False,
     rate: float = 20.0,
 ) -> None:
-    """Write an animation of a mechanism, there and back.
+    """Write an animation of a mechanism that moves to the last position and back.
 
     Parameters
     ----------

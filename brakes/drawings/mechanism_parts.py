@@ -19,7 +19,7 @@ class Member(NamedTuple):
 
 
 class Arrow(NamedTuple):
-    """A force: name, where it acts (2,) [m], its components (2,) [N], and whether the ground gives it."""
+    """A force: name, where it acts (2,) [m], its components (2,) [N], and whether it is a reaction."""
 
     name: str
     at: np.ndarray
@@ -42,7 +42,7 @@ def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndar
 
 
 def outline(position: Position, body: str) -> np.ndarray:
-    """Corners of a body where it is now, in turn around their centre, (k, 2) [m]."""
+    """Corners of the convex hull of a body's points at a position, anticlockwise, (k, 2) [m]."""
     drawn = points_of(position.mechanism, body)
     now = np.array([position.point(body, at) for at in drawn]).reshape(-1, 2)
     return now if len(now) < 3 else _hull(now)
@@ -95,7 +95,7 @@ def cables(position: Position, equilibrium: Equilibrium | None = None) -> Iterat
 
 
 def _members(style: str, position: Position, equilibrium: Equilibrium | None) -> Iterator[Member]:
-    """Joints and loads of a style, with the size of their force."""
+    """Joints and loads drawn in a style, with the size of their force."""
     sizes = {} if equilibrium is None else equilibrium.magnitudes | equilibrium.amplitudes
     for name, _, points in shapes(position, style):
         yield Member(name, points, float(np.ravel(sizes.get(name, np.nan))[0]))
@@ -109,7 +109,7 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
 
 
 def outer_forces(equilibrium: Equilibrium) -> list[Arrow]:
-    """Loads on the bodies, and what the ground does to them."""
+    """Forces on the mechanism from outside: loads, and reactions of the ground."""
     mechanism = equilibrium.position.mechanism
     loads = {load.name for load in mechanism.loads}
     outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}

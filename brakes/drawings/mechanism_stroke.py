@@ -16,7 +16,7 @@ _STYLES = ("-", "--", "-.", ":")
 
 
 def plot_curves(x: np.ndarray, curves: Mapping[str, np.ndarray], ax: Axes, xlabel: str, ylabel: str) -> Axes:
-    """Curves with names over x; equal colours have different dashes."""
+    """Plot named curves over x; curves of one colour differ by their dashes."""
     for k, (name, y) in enumerate(curves.items()):
         colour, style = COLOURS[k % len(COLOURS)], _STYLES[(k // len(COLOURS) + k) % len(_STYLES)]
         ax.plot(x, y, style, color=colour, linewidth=1.9, label=name)
@@ -27,22 +27,22 @@ def plot_curves(x: np.ndarray, curves: Mapping[str, np.ndarray], ax: Axes, xlabe
 
 
 def plot_advantage(cable: np.ndarray, advantage: np.ndarray, ax: Axes) -> Axes:
-    """Force of each pad (S, 2) over that of the finger, over the travel of the cable (S,) [m]."""
+    """Plot the force of each pad (S, 2) over that of the finger, over the travel of the cable (S,) [m]."""
     return plot_curves(1e3 * cable, _sides(advantage), ax, "cable travel [mm]", "pad force / finger force")
 
 
 def plot_pad_ratio(cable: np.ndarray, ratio: np.ndarray, ax: Axes) -> Axes:
-    """Velocity of each pad (S, 2) over that of the cable, over its travel (S,) [m]."""
+    """Plot the velocity of each pad (S, 2) over that of the cable, over its travel (S,) [m]."""
     return plot_curves(1e3 * cable, _sides(ratio), ax, "cable travel [mm]", "pad travel / cable travel")
 
 
 def plot_reactions(cable: np.ndarray, magnitudes: Mapping[str, np.ndarray], ax: Axes) -> Axes:
-    """Sizes (S,) of the joints' forces [N] over the travel of the cable (S,) [m]; equal ones as one curve."""
+    """Plot the joints' forces (S,) [N] over the travel of the cable (S,) [m]; equal ones as one curve."""
     return plot_curves(1e3 * cable, _merged(magnitudes), ax, "cable travel [mm]", "force of the joint [N]")
 
 
 def _merged(curves: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Curves without those that are zero; the names of equal ones together."""
+    """Drop curves that are zero, and merge equal ones under their joined names."""
     noise = 1e-9 * max((float(np.nanmax(np.abs(y), initial=0.0)) for y in curves.values()), default=0.0)
     groups: list[tuple[list[str], np.ndarray]] = []
     for name, y in curves.items():

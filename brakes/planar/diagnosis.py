@@ -31,7 +31,7 @@ def names_of_moving(system: System, motions: np.ndarray) -> tuple[str, ...]:
 
 
 def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
-    """How bodies move in motions (3 n, k): those without relative motion together."""
+    """Describe motions (3 n, k) in words; bodies without relative motion are named together."""
     twists = _twists(system, y, motions)
     groups: list[tuple[list[str], np.ndarray]] = []
     for name, twist, moves in zip(system.bodies, twists, moving_bodies(motions), strict=False):
@@ -41,7 +41,7 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
 
 
 def explain_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
-    """Why a mechanism whose free motions are (3 n, k), k other than 1, has no stroke."""
+    """Explain why a mechanism with free motions (3 n, k), k other than 1, has no stroke."""
     k = free.shape[1]
     if not k:
         return "the mechanism does not move: mobility 0; a stroke needs 1: remove a joint"
@@ -52,12 +52,12 @@ def explain_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
 
 
 def describe_loose(system: System, y: np.ndarray, motions: np.ndarray) -> str:
-    """What is loose, and the remedy."""
+    """Describe what is loose, and the remedy."""
     return f"{describe(system, y, motions)}; add a joint, or give a load that moves it an unknown amplitude"
 
 
 def describe_self_stress(names: tuple[str, ...]) -> str:
-    """What equilibrium does not determine, and the remedy."""
+    """Say what equilibrium does not determine, and the remedy."""
     return (
         f"statically indeterminate: equilibrium alone does not give {join_names(names)}; "
         "remove a joint among them, or give a load of unknown amplitude its magnitude"
@@ -71,7 +71,7 @@ def join_names(names: Iterable[str]) -> str:
 
 
 def _twists(system: System, y: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """Velocity (complex) of each body's point at the origin, and its rate of turning: (n, 2, k) complex."""
+    """Twist of each body: velocity (complex) of its point at the origin, and angular velocity, (n, 2, k)."""
     parts = motions.reshape(len(motions) // 3, 3, motions.shape[1])
     pose = y.reshape(-1, 3)
     centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
@@ -89,7 +89,7 @@ def _join(groups: list[tuple[list[str], np.ndarray]], name: str, twist: np.ndarr
 
 
 def _motion(system: System, names: list[str], twist: np.ndarray) -> str:
-    """The motions (2, k) of a group in words: one has a centre or a direction."""
+    """Describe the motions (2, k) of a group; a single one has a centre or a direction."""
     real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
     left, size, _ = np.linalg.svd(real, full_matrices=False)
     ways = int((size > 1e-7 * size[0]).sum())

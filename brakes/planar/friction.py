@@ -9,7 +9,7 @@ import numpy as np
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position
-from brakes.planar.statics import Balance, Equilibrium, balance_at, collect, forces_on_bodies, solve
+from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, forces_on_bodies, solve
 from brakes.planar.system import System
 
 _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
@@ -100,7 +100,7 @@ def _branch(
     locked |= (multiplier[:, loads] * start[:, loads] < 0).any(axis=1)
     multiplier[locked] = start[locked]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = collect(mechanism, position, balance, forces, multiplier, locked)
+    result = collect_result(mechanism, position, balance, forces, multiplier, locked)
     if not locked.any():
         return result
     names = " and ".join(map(repr, system.friction))

@@ -273,7 +273,7 @@ def _toggles(mechanism: Mechanism, nodes: list[Node], start: Node, k: int) -> tu
 
 
 def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float]) -> list[Node]:
-    """Where a function of the nodes changes its sign."""
+    """Roots of a function of the nodes, one for each change of its sign."""
     f = np.array([function(node) for node in nodes])
     noise = 1e-9 * np.abs(f).max()
     crossed = np.flatnonzero((f[:-1] * f[1:] < 0) & (np.abs(np.diff(f)) > noise))

@@ -1,4 +1,4 @@
-"""Equilibrium of a mechanism: reactions and amplitudes, or what is loose and what is undetermined."""
+"""Equilibrium of a mechanism: reactions and amplitudes, or what is loose or undetermined."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.system import Rows, System
 
 _BALANCED = 1e-9  # largest residual of equilibrium, over the largest force
-_UNDETERMINED = 1e-7  # share in a self-stress from which a reaction counts as undetermined
+_UNDETERMINED = 1e-7  # component in a self-stress from which a reaction counts as undetermined
 _WEAK = 1e-5  # singular value below which the result is ill-conditioned in the coordinates
 
 
@@ -125,7 +125,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     forces = decompose(balance.matrix, mechanism.system.rounding)
     multiplier = balance.given.copy()
     multiplier[:, balance.unknown] = forces.solve(-forces_on_bodies(balance, balance.given))
-    return collect(mechanism, position, balance, forces, multiplier)
+    return collect_result(mechanism, position, balance, forces, multiplier)
 
 
 def balance_at(mechanism: Mechanism, position: Position) -> Balance:
@@ -149,7 +149,7 @@ def forces_on_bodies(balance: Balance, multiplier: np.ndarray) -> np.ndarray:
     return times(balance.rows.gradient.swapaxes(1, 2), multiplier)
 
 
-def collect(
+def collect_result(
     mechanism: Mechanism,
     position: Position,
     balance: Balance,

@@ -9,6 +9,7 @@ import pytest
 
 from brakes import calipers
 from brakes.planar import Bar, Spring
+from brakes.planar.described import inputs_of
 
 BUILT = {name: design().build() for name, design in calipers.NAMED.items()}
 SYMMETRIC = ("single-pivot", "centre-pull", "cantilever", "v-brake")
@@ -45,8 +46,9 @@ def test_symmetric_calipers_are_symmetric(name):
 def test_the_size_of_a_caliper_does_not_matter(name):
     """Twice the dimensions: the same advantage at twice the travel."""
     design = calipers.NAMED[name]
-    values = {f.name: getattr(design(), f.name) for f in dataclasses.fields(design)}
-    units = {f.name: f.metadata.get("unit") for f in dataclasses.fields(design)}
+    units = {key: described.unit for key, described in inputs_of(design).items()}
+    values = {key: getattr(design(), key) for key in units}
+    assert list(units) == [field.name for field in dataclasses.fields(design)]
     doubled = {
         k: tuple(2 * x for x in v) if isinstance(v, tuple) else 2 * v for k, v in values.items() if units[k]
     }
