@@ -1,7 +1,9 @@
-"""What the command `brakes caliper` finds, prints, writes and draws."""
+"""Bicycle calipers, named ones and those made of parts: what is shown of them and of plain mechanisms."""
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,109 +12,97 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from rich.console import Console, RenderableType
+from rich.console import RenderableType
 
+from beamdyn.common.app.documents import Slider
 from beamdyn.common.edge.config import ConfigError, parse, read
+from beamdyn.common.edge.input_sweep import Output, numbers
+from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
-from beamdyn.common.results import Result
-from brakes.answers.mechanism import MechanismAnswer, animate_stroke, reactions_table, some_rows, verdict
-from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction
-from brakes.config.mechanism import CaliperInput, MechanismInput
-from brakes.config.mechanism_inputs import named_text
+from brakes.answers.base import TableBrakeType
+from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
+from brakes.answers.planar import (
+    PlanarAnswer,
+    describe_statics,
+    joint_outputs,
+    reactions_table,
+    select_rows,
+)
+from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
+from brakes.config.mechanism import CaliperInput, MechanismInput, mechanism_from_dict
+from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
+from brakes.config.wording import in_range
 from brakes.drawings.caliper import caliper_figure
-from brakes.drawings.mechanism import free_body_diagrams
-from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
+from brakes.planar import AssemblyError, Mechanism, OutOfReachError, solve
 from brakes.planar.described import inputs_of
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
-
-
-def answer_to(given: CaliperInput | MechanismInput) -> Answer:
-    """The answer to a caliper or a mechanism.
-
-    Raises
-    ------
-    NoAnswer
-        If the mechanism cannot be assembled, does not reach the end of its stroke, or has not one motion.
-    """
-    core = given.core
-    try:
-        return CaliperAnswer.of(core, given) if isinstance(core, Caliper) else MechanismAnswer.of(core, given)
-    except (AssemblyError, OutOfReachError) as error:
-        raise NoAnswer(str(error)) from None
-    except ValueError as error:
-        if _mobility(core) != 1:
-            raise NoAnswer(str(error)) from None
-        raise
-
-
-def design_of(name_or_file: str) -> tuple[Mapping[str, Any], str]:
-    """Tables of a file, or of the caliper of a name, and their text.
-
-    Raises
-    ------
-    ConfigError
-        If there is no such name or file, or it is not TOML.
-    """
-    if name_or_file in NAMED:
-        return {"caliper": name_or_file}, named_text(name_or_file)
-    if not name_or_file or ("." not in name_or_file and not Path(name_or_file).exists()):
-        known = f"give a TOML file or one of {', '.join(NAMED)}"
-        raise ConfigError(name_or_file or "no mechanism", [f"there is no such caliper; {known}"])
-    text = read(name_or_file)
-    return parse(text, name_or_file), text
-
-
-def _mobility(core: Caliper | Mechanism) -> int:
-    return int(solve(core.free if isinstance(core, Caliper) else core).mobility)
-
-
-def write_names(screen: Console) -> None:
-    """Print the named calipers with their dimensions."""
-    for name, model in NAMED.items():
-        values = model()
-        rows = []
-        for key, described in inputs_of(model).items():
-            value = getattr(values, key)
-            rows.append((key, _length(value) if described.unit == "m" else f"{value}", described.meaning))
-        screen.print(table(f"{name}: {model.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2)))
-
-
-def _length(value: Any) -> str:
-    if isinstance(value, tuple):
-        return f"({value[0] * 1e3:.5g}, {value[1] * 1e3:.5g}) mm"
-    return f"{value * 1e3:.5g} mm"
-
-
-# Calipers -----------------------------------------------------------------------------------------
+_STROKE_HEADS = (
+    *("cable", "finger", "right pad", "left pad"),
+    *("right force", "left force", "both", "left/right"),
+)
+_MM = 1e-3
+_OUTPUTS = (
+    Output("finger_travel", "travel of the finger", lambda a: a.run.finger[-1], "mm", _MM),
+    Output("right_pad_travel", "travel of the right pad", lambda a: a.run.pad_travel[-1, 0], "mm", _MM),
+    Output("left_pad_travel", "travel of the left pad", lambda a: a.run.pad_travel[-1, 1], "mm", _MM),
+    Output("right_pad_force", "force of the right pad", lambda a: a.run.pad_force[-1, 0], "N"),
+    Output("left_pad_force", "force of the left pad", lambda a: a.run.pad_force[-1, 1], "N"),
+    Output("right_advantage", "right pad over finger", lambda a: a.run.advantage[-1, 0]),
+    Output("left_advantage", "left pad over finger", lambda a: a.run.advantage[-1, 1]),
+    Output("total_advantage", "both pads over finger", lambda a: a.run.total_advantage[-1]),
+    Output("travel_symmetry", "velocity of the left pad over the right", lambda a: a.run.travel_symmetry[-1]),
+    Output(
+        "squeeze",
+        "share of the pad force that friction leaves, squeezing",
+        lambda a: a.friction.squeeze if a.friction else np.nan,
+    ),
+    Output(
+        "release",
+        "share of the cable tension that friction holds, releasing",
+        lambda a: a.friction.release if a.friction else np.nan,
+    ),
+    Output("stopping_distance", "stopping distance", lambda a: a.stop.distance if a.stop else np.nan, "m"),
+)
 
 
 @dataclass(frozen=True)
-class CaliperAnswer(Result):
-    """A caliper over its stroke, where it closes, and with friction, wear and a stop if asked for."""
+class CaliperAnswer(PlanarAnswer):
+    """A caliper over its stroke, where it closes, and with friction, wear and a stop if the file has them.
+
+    Attributes
+    ----------
+    caliper : Caliper
+        The caliper.
+    run : CaliperStroke
+        Its stroke.
+    friction : PivotFriction, optional
+        What friction in the pivots takes at the end of the stroke.
+    wear : PadWear, optional
+        Where worn pads touch.
+    """
 
     caliper: Caliper
-    given: CaliperInput | MechanismInput
     run: CaliperStroke
-    closed: Equilibrium
     friction: PivotFriction | None
     wear: PadWear | None
 
     @classmethod
-    def of(cls, caliper: Caliper, given: CaliperInput | MechanismInput) -> CaliperAnswer:
-        """Solve."""
-        asked = given.run
-        run = caliper.stroke(asked.travel, asked.points, asked.finger)
+    def of(cls, caliper: Caliper, design: CaliperInput | MechanismInput) -> CaliperAnswer:
+        """Move the caliper over its stroke; friction and wear only where the forces are determined."""
+        given = design.run
+        run = caliper.stroke(given.travel, given.points, given.finger)
         end = float(run.cable[-1])
         determined = run.status == "determined" and bool((run.pad_force > 0).all())
         return cls(
+            design,
+            caliper.equilibrium(end, given.finger),
+            run.motion,
             caliper,
-            given,
             run,
-            caliper.equilibrium(end, asked.finger),
-            caliper.friction(asked.friction, end) if asked.friction and determined else None,
-            caliper.wear(asked.wear) if asked.wear and determined else None,
+            caliper.friction(given.friction, end) if given.friction and determined else None,
+            caliper.wear(given.wear) if given.wear and determined else None,
         )
 
     @property
@@ -132,62 +122,47 @@ class CaliperAnswer(Result):
         )
 
     @property
-    def warnings(self) -> tuple[str, ...]:
+    def warnings(self) -> Sequence[str]:
         """Warnings of the stroke and of friction."""
         locked = self.friction and self.friction.status != "determined" and self.friction.message
         return (*self.run.warnings, *([locked] if locked else []))
 
     @cached_property
-    def stop(self) -> Any:
-        """The stop, if it is asked for: with the mean force of the pads at the end of the stroke."""
-        if self.given.stop is None or self.status != "determined":
+    def stop(self) -> StoppingDistance | None:
+        """The stop, if the file has one: with the mean force of the pads at the end of the stroke."""
+        if self.design.stop is None or self.refusals:
             return None
-        return self.given.stop.with_force(float(self.run.pad_force[-1].mean()))
+        return self.design.stop.with_force(float(self.run.pad_force[-1].mean()))
 
     def tables(self) -> list[RenderableType]:
-        """Tables and sentences for people."""
+        """The lever, the stroke, the forces at its end, friction, wear and stop, and the diagnosis."""
         run = self.run
         return [
             f"{run.caliper}: {run.finger_force:g} N on the hand lever, lever ratio {run.lever_ratio:g}, "
             f"{run.tension:g} N in the cable",
-            table(_STROKE, *self._stroke_table()),
-            reactions_table(self.closed, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
+            table(_STROKE, _STROKE_HEADS, [self._stroke_row(k) for k in select_rows(len(run.cable))]),
+            reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
             *self._sentences(),
-            verdict(self.closed, run.message, run.virtual_work.max()),
+            describe_statics(self.equilibrium, run.message, run.virtual_work.max()),
         ]
 
-    def _stroke_table(self) -> tuple[Sequence[str], list[list[str]]]:
-        heads = (
-            "cable",
-            "finger",
-            "right pad",
-            "left pad",
-            "right force",
-            "left force",
-            "both",
-            "left/right",
-        )
-        run, rows = self.run, []
-        for k in some_rows(len(run.cable)):
-            lengths = (run.cable[k], run.finger[k], *run.pad_travel[k])
-            ratios = (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])
-            rows.append([f"{np.round(1e3 * v, 4) + 0.0:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios])
-        return heads, rows
+    def _stroke_row(self, k: int) -> list[str]:
+        run = self.run
+        lengths = (run.cable[k], run.finger[k], *run.pad_travel[k])
+        ratios = (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])
+        return [f"{np.round(1e3 * v, 4) + 0.0:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios]
 
     def _sentences(self) -> Iterator[str]:
         run = self.run
         mean = run.finger[-1] / run.pad_travel[-1].sum() if run.pad_travel[-1].sum() > 0 else np.nan
         yield f"Over the whole stroke the finger travels {mean:.4f} times as far as both pads together."
-        if self.friction is not None:
-            f = self.friction
+        if (f := self.friction) is not None:
             yield (
                 f"Pivots with friction {f.coefficient:g}: {100 * f.squeeze:.2f} % of the force arrives when "
                 f"squeezed; when let go the cable still has {100 * f.release:.2f} % of its tension."
             )
-        if self.wear is not None:
-            for lost, finger, (right, left) in zip(
-                self.wear.lost, self.wear.finger, self.wear.advantage, strict=True
-            ):
+        if (w := self.wear) is not None:
+            for lost, finger, (right, left) in zip(w.lost, w.finger, w.advantage, strict=True):
                 yield (
                     f"Pads worn by {1e3 * lost:g} mm touch at {1e3 * finger:.3f} mm of finger travel; "
                     f"pad/finger there {right:.4f} right, {left:.4f} left."
@@ -196,7 +171,7 @@ class CaliperAnswer(Result):
             yield f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
 
     def rows(self) -> Iterator[Sequence[object]]:
-        """Rows of the CSV file."""
+        """The stroke: travels, pads, reactions."""
         run, joints = self.run, list(self.run.reactions)
         yield (
             *("cable_m", "finger_m", "right_pad_m", "left_pad_m"),
@@ -212,17 +187,149 @@ class CaliperAnswer(Result):
         more = {"friction": self.friction, "wear": self.wear, "stop": self.stop}
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
 
-    def figure(self) -> Figure:
-        """Open and closed with forces, and the curves over the stroke."""
-        return caliper_figure(self.caliper, self.run, self.closed)
-
-    def free_bodies(self) -> Figure:
-        """A diagram of each body at the end of the stroke."""
-        return free_body_diagrams(self.closed)
-
-    def animate(self, path: Path, force: bool) -> None:
-        """Write the stroke as GIF."""
-        animate_stroke(self.run.motion, path, force)
+    def figure(self, place: float | None = None) -> Figure:
+        """Open, and at a part of the stroke from 0 to 1 with forces; curves over the stroke."""
+        run = self.run
+        if place is None or place >= 1:
+            return caliper_figure(self.caliper, run, self.equilibrium)
+        cable = float(np.interp(place, (0.0, 1.0), run.cable[[0, -1]]))
+        closed = self.caliper.equilibrium(cable, run.finger_force)
+        return caliper_figure(self.caliper, run, closed, cable)
 
 
-Answer = CaliperAnswer | MechanismAnswer
+# From file to answer ------------------------------------------------------------------------------------
+
+
+class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
+    """Mechanisms given part by part, and calipers by name."""
+
+    name = "mechanism"
+    title = "Mechanism"
+    purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
+    sections = ("", "points", "run", "caliper", "stop")
+    needs = ("title", "bodies", *PARTS, *sections[1:])
+    example_sweep = "points.C.x=17:20:13 mm"
+    sweep_results = "work"
+    slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
+    more = (("Free bodies", PlanarAnswer.free_bodies),)
+
+    def open(self, name: str) -> tuple[Mapping[str, Any], str]:
+        """Tables and text of a file, or of the caliper of a name."""
+        if name in NAMED:
+            return {"caliper": name}, named_text(name)
+        if not name or ("." not in name and not Path(name).exists()):
+            known = f"give a TOML file or one of {', '.join(NAMED)}"
+            raise ConfigError(name or "no mechanism", [f"there is no such caliper; {known}"])
+        text = read(name)
+        return parse(text, name), text
+
+    def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
+        """Caliper or mechanism that tables describe."""
+        texts = [
+            f"{part}: {_explain_list(tables[part])}" for part in PARTS if isinstance(tables.get(part), str)
+        ]
+        if texts:
+            raise ConfigError(source, texts)
+        return mechanism_from_dict(tables, source)
+
+    def solve(self, design: CaliperInput | MechanismInput) -> PlanarAnswer:
+        """Forces of a caliper over its stroke, or of a mechanism as drawn and over its stroke.
+
+        Raises
+        ------
+        NoAnswer
+            If it cannot be assembled, does not reach the end of its stroke, or has not one motion.
+        ValueError
+            If the numbers are out of range.
+        """
+        with in_range():
+            return _answer_to(design)
+
+    def outputs(self, design: CaliperInput | MechanismInput) -> Sequence[Output]:
+        """Numbers at the end of the stroke, and the largest force of each joint."""
+        core = design.core
+        if isinstance(core, Mechanism):
+            return mechanism_outputs(core)
+        return (*_OUTPUTS, *joint_outputs(core.mechanism, lambda answer: answer.run.magnitudes))
+
+    def default_results(self, design: CaliperInput | MechanismInput) -> str:
+        """The first output."""
+        return self.outputs(design)[0].name
+
+    def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
+        """Inputs of the named caliper, or of a mechanism with the points that there are."""
+        return inputs_of_tables(tables)
+
+    def sweep_inputs(self, design: CaliperInput | MechanismInput, tables: Mapping[str, Any]) -> list[Input]:
+        """Numbers, and x and y of points."""
+        return numbers(self.inputs(tables))
+
+
+class CaliperType(MechanismType):
+    """Calipers by name."""
+
+    name = "caliper"
+    title = "Caliper"
+    purpose = "A bicycle's caliper over its stroke: travels, forces, and the reaction of every joint."
+    sections = ("", "run", "dimensions", "stop")
+    needs = ("caliper", "title", "dimensions", "run", "stop")
+    example_sweep = "dimensions.clearance=1:2:21 mm"
+    sweep_results = "finger_travel"
+    slider = Slider("stroke", ("open", "closed"), step=0.1)
+
+    def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
+        """Caliper that tables describe; without a name the message says which names there are."""
+        return super().read({"caliper": ""} | dict(tables), source)
+
+    def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
+        """Inputs of the named caliper; those without dimensions where there is no such name."""
+        return super().inputs({"caliper": ""} | dict(tables))
+
+
+CALIPER, MECHANISM = CaliperType(), MechanismType()
+
+
+def names_table(name: str) -> RenderableType:
+    """Table of the dimensions of a named caliper with their usual values."""
+    design = NAMED[name]()
+    rows = [
+        (key, _show_dimension(getattr(design, key), entry.unit), entry.meaning)
+        for key, entry in inputs_of(NAMED[name]).items()
+    ]
+    return table(f"{name}: {design.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))
+
+
+def _show_dimension(value: Any, unit: str) -> str:
+    if unit != "m":
+        return str(value)
+    if isinstance(value, tuple):
+        return f"({value[0] * 1e3:.5g}, {value[1] * 1e3:.5g}) mm"
+    return f"{value * 1e3:.5g} mm"
+
+
+def _answer_to(design: CaliperInput | MechanismInput) -> PlanarAnswer:
+    core = design.core
+    try:
+        if isinstance(core, Caliper):
+            return CaliperAnswer.of(core, design)
+        return MechanismAnswer.of(core, design)
+    except (AssemblyError, OutOfReachError) as error:
+        raise NoAnswer(str(error)) from None
+    except ValueError as error:
+        if _mobility(core) != 1:
+            raise NoAnswer(str(error)) from None
+        raise
+
+
+def _mobility(core: Caliper | Mechanism) -> int:
+    return int(solve(core.free if isinstance(core, Caliper) else core).mobility)
+
+
+def _explain_list(text: str) -> str:
+    """Why a text is no list of parts."""
+    form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
+    try:
+        tomllib.loads(f"parts = {text}")
+    except (ValueError, RecursionError) as error:
+        return f"not valid TOML: {re.sub(r', column [0-9]+', '', str(error))}; {form}"
+    return form

@@ -1,9 +1,12 @@
 """The program ``brakes app``."""
 
-from beamdyn.common.app.documents import Program
-from brakes.app.caliper import CALIPER
-from brakes.app.drum import DRUM
-from brakes.app.forklift import FORKLIFT
-from brakes.app.mechanism import MECHANISM
+from importlib import import_module
 
-BRAKES = Program("brakes", "Brakes", (FORKLIFT, DRUM, CALIPER, MECHANISM))
+from beamdyn.common.app.documents import Program
+from brakes.answers import STANDARD
+from brakes.app.caliper import CALIPER, MECHANISM
+from brakes.app.forklift import FORKLIFT
+from brakes.app.screens import make_document
+
+_STANDARD = (make_document(import_module(f"brakes.answers.{name}").BRAKE) for name in STANDARD)
+BRAKES = Program("brakes", "Brakes", (FORKLIFT, *_STANDARD, CALIPER, MECHANISM))

@@ -1,12 +1,11 @@
 """The command ``brakes``.  What is heavy is imported by the commands that need it."""
 
-from brakes.cli import (  # noqa: F401  (they add their commands to the app)
-    caliper,
-    drum,
-    forklift,
-    interactive,
-    published,
-)
+from brakes.answers import STANDARD
+from brakes.cli import caliper, forklift, interactive, published  # noqa: F401  (they add their commands)
+from brakes.cli.answering import add_command
 from brakes.cli.program import app, main
 
 __all__ = ["app", "main"]
+
+for _name, _help in STANDARD.items():
+    add_command(app, _name, _help)

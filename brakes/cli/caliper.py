@@ -1,20 +1,15 @@
-"""The command for calipers and planar mechanisms."""
+"""The command on calipers and planar mechanisms."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write
-from beamdyn.common.edge.program import NoAnswer
-from brakes.cli.program import app, warn
-from brakes.cli.sweeps import Results, Sweeps, axes_of, show_sweep
-
-if TYPE_CHECKING:
-    from beamdyn.common.edge.input_sweep import Sweep
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
+from brakes.cli.answering import SweepResults, SweptInputs, run_command
+from brakes.cli.program import app
 
 
 @app.command
@@ -24,8 +19,8 @@ def caliper(
     *,
     free_bodies: Path | None = None,
     animation: Path | None = None,
-    sweep: Sweeps = (),
-    result: Results = None,
+    sweep: SweptInputs = (),
+    result: SweepResults = None,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -52,46 +47,16 @@ def caliper(
     outputs
         Files to write.
     """
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import console, show
+    from beamdyn.common.edge.tables import show
     from beamdyn.common.pictures import save_figure
-    from brakes.answers import caliper as caliper_answers
-    from brakes.config.mechanism import mechanism_from_dict
+    from brakes.answers.caliper import MECHANISM, names_table
+    from brakes.calipers import NAMED
 
     if list_:
-        caliper_answers.write_names(console())
+        show(names_table(name) for name in NAMED)
         return
-    outputs.check(**{"free-bodies": free_bodies, "animation": animation})
-    design, text = caliper_answers.design_of(mechanism)
-    asked = Question.of("brakes caliper", mechanism, text, sweep=sweep, result=result)
-    if sweep:
-        swept = _swept(design, mechanism, sweep, result)
-        show_sweep(swept, outputs, asked, swept.warnings)
-        warn(swept.warnings)
-        return
-    if result is not None:
-        raise ValueError("--result goes with --sweep: without one, all results are shown")
-    answer = caliper_answers.answer_to(mechanism_from_dict(design, mechanism))
-    refusal = [] if answer.status == "determined" else [answer.message]
-    show(tables := answer.tables())
-    more = [("Free bodies", answer.free_bodies)]
-    report = Report(asked, tables, [*refusal, *answer.warnings], more)
-    write(answer, outputs, answer.rows(), answer.figure, report)
-    if free_bodies is not None:
-        save_figure(answer.free_bodies(), free_bodies, outputs.force)
-    if animation is not None:
-        answer.animate(animation, outputs.force)
-    warn(answer.warnings)
-    if refusal:
-        raise NoAnswer(answer.message)
-
-
-def _swept(design: Mapping[str, Any], source: str, texts: Sweeps, names: Results) -> Sweep:
-    from beamdyn.common.edge.input_sweep import chosen, numbers, one_by_one, parse_axis
-    from brakes.answers.caliper_sweeps import outputs_of, solve
-    from brakes.config.mechanism_inputs import inputs_of_tables
-
-    known = outputs_of(design, source)
-    inputs = numbers(inputs_of_tables(design))
-    axes = axes_of(texts, lambda text: parse_axis(inputs, text))
-    return one_by_one(design, axes, chosen(known, names or known[0].name), solve)
+    further = {
+        "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
+        "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
+    }
+    run_command(MECHANISM, "caliper", mechanism, sweep, result, outputs, further)

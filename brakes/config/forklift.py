@@ -3,37 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from os import PathLike
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import model_validator
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from beamdyn.common.results import Result
-from brakes.config.wording import in_range, of_file
-from brakes.forklift import (
-    DuoServo,
-    InternalForces,
-    Kinematics,
-    Levers,
-    ShoeMotion,
-    Stop,
-    StopConditions,
-    Truck,
-    follow_shoes,
-    internal_forces,
-    stop,
-)
+from brakes.config.wording import of_file
+from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
 from brakes.forklift.vehicle import STANDARD_GRAVITY
 
 __all__ = [
     "STAGES",
-    "ForkliftAnswer",
     "ForkliftInput",
     "forklift_from_dict",
     "load_forklift",
@@ -55,7 +39,7 @@ def load_forklift(path: str | PathLike[str]) -> ForkliftInput:
     Returns
     -------
     ForkliftInput
-        Its ``solve()`` is the answer.
+        What the file describes; `brakes.answers.forklift.solve_stages` solves it.
 
     Raises
     ------
@@ -268,65 +252,6 @@ class ForcesInput(Section):
     ) = None
 
 
-_NEEDS = {
-    "vehicle": "[truck] and [stop]",
-    "kinematics": "[brake]",
-    "forces": "[forces], and [brake] or [levers]",
-}
-
-
-@dataclass(frozen=True)
-class ForkliftAnswer(Result):
-    """What the stages that were asked for found.
-
-    Attributes
-    ----------
-    stop : Stop, optional
-        The vehicle.
-    motion : ShoeMotion, optional
-        The kinematics.
-    forces : InternalForces, optional
-        The forces in one brake.
-    torque_from : str
-        Where the torque comes from: "the file", "the stop" or "the lining's friction".
-    kinematics : Kinematics, optional
-        The shoes' motion position by position, if `followed`.
-    """
-
-    stop: Stop | None
-    motion: ShoeMotion | None
-    forces: InternalForces | None
-    torque_from: str = ""
-    kinematics: Kinematics | None = None
-
-    def followed(self, positions: int = 21) -> ForkliftAnswer:
-        """The same with the shoes' motion position by position, if there is any; of one case."""
-        if self.motion is None:
-            return self
-        found = follow_shoes(self.motion.geometry, float(self.motion.clearance), positions)
-        return replace(self, kinematics=found)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
-        return super().to_dict() | {"kinematics": self.kinematics and self.kinematics.to_dict()}
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What to look at."""
-        interference = () if self.motion is None else self.motion.interference
-        return (*interference, *(() if self.forces is None else self.forces.warnings))
-
-    @property
-    def refusals(self) -> tuple[str, ...]:
-        """Why there is no stop, or no equilibrium: one sentence each, none if all is well."""
-        found = []
-        if self.stop is not None and not np.all(self.stop.stops):
-            found.append(self.stop.message)
-        if self.forces is not None and np.any(self.forces.status != "equilibrium"):
-            found.append(self.forces.message)
-        return tuple(found)
-
-
 class ForkliftInput(Section):
     """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted."""
 
@@ -361,65 +286,3 @@ class ForkliftInput(Section):
             "forces": self.forces is not None and (self.brake is not None or self.levers is not None),
         }
         return tuple(name for name in STAGES if there[name])
-
-    def solve(self, stages: tuple[StageName, ...] | None = None) -> ForkliftAnswer:
-        """What the stages find; those before them are computed where they are needed.
-
-        Parameters
-        ----------
-        stages : tuple of str, optional
-            Of "vehicle", "kinematics", "forces"; those whose tables are there if not given.
-
-        Raises
-        ------
-        ValueError
-            If a table is missing that a stage needs, or as for the functions of `brakes.forklift`.
-        """
-        wanted = self.stages if stages is None else stages
-        self._require(wanted)
-        with in_range():
-            return self._solve(wanted)
-
-    def _solve(self, wanted: tuple[StageName, ...]) -> ForkliftAnswer:
-        stopped = self._stopped() if "vehicle" in wanted or self._torque_of_stop else None
-        motion = None if self.brake is None or wanted == ("vehicle",) else self.brake.motion
-        forces = self._forces(stopped, motion) if "forces" in wanted else None
-        shown = stopped if "vehicle" in wanted else None
-        return ForkliftAnswer(
-            shown, motion if "kinematics" in wanted else None, forces, self._source if forces else ""
-        )
-
-    def _require(self, stages: tuple[StageName, ...]) -> None:
-        for name in stages:
-            if name not in self.stages:
-                raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
-
-    @property
-    def _torque_of_stop(self) -> bool:
-        return "vehicle" in self.stages and self.forces is not None and self.forces.torque is None
-
-    @property
-    def _source(self) -> str:
-        if self.forces is not None and self.forces.torque is not None:
-            return "the file"
-        return "the stop" if self._torque_of_stop else "the lining's friction"
-
-    def _stopped(self) -> Stop:
-        assert self.truck is not None and self.stop is not None
-        with of_file({}):
-            return stop(self.truck.core, self.stop.core)
-
-    def _forces(self, stopped: Stop | None, motion: ShoeMotion | None) -> InternalForces:
-        assert self.forces is not None
-        levers = motion.levers if motion is not None else self.levers and self.levers.core
-        torque = self.forces.torque
-        if torque is None and stopped is not None:
-            torque = stopped.torque_per_brake
-        assert levers is not None
-        with of_file({"friction = ": "lining_friction = "}):
-            return internal_forces(
-                levers,
-                piston_force=self.forces.piston_force,
-                torque=torque,
-                friction=self.forces.lining_friction,
-            )

@@ -1,4 +1,4 @@
-"""Sweeps of drum and forklift brakes, whose designs take arrays: all cases at once."""
+"""Designs whose numbers are swept all at once: arrays in place of inputs of a validated file."""
 
 from __future__ import annotations
 
@@ -8,57 +8,42 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import BaseModel
 
-from beamdyn.common.edge import input_sweep as sweeps
-from beamdyn.common.edge.input_sweep import Axis, Output, Sweep, chosen
+from beamdyn.common.edge.input_sweep import Axis
 from beamdyn.common.edge.inputs import Input, describe
 
-__all__ = ["Axis", "Output", "Sweep", "chosen", "parse_axis", "replaced", "sweep"]
-
-Design = TypeVar("Design", bound=BaseModel)
+FileModel = TypeVar("FileModel", bound=BaseModel)
 
 
-def parse_axis(design: BaseModel, text: str, option: str = "--sweep") -> Axis:
-    """An input of a design, in the tables that its file has, and its values; see `sweeps.parse_axis`."""
-    known = [i for i in describe(type(design)) if _number(i) and getattr(design, i.path.partition(".")[0])]
-    return sweeps.parse_axis(known, text, option)
+def numeric_inputs(design: BaseModel) -> list[Input]:
+    """Inputs of a design that are numbers, in the tables that its file has."""
+    there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
+    return [entry for entry in there if entry.quantity.unit or entry.quantity.symbol]  # others are choices
 
 
-def _number(entry: Input) -> bool:
-    """Whether an input is a number; others are choices."""
-    return bool(entry.quantity.unit or entry.quantity.symbol)
-
-
-def replaced(design: Design, axes: Sequence[Axis]) -> Design:
-    """A design with arrays in place of the inputs; with two axes the second is a column."""
-    for place, axis in enumerate(axes):
-        values = axis.values if place == 0 else axis.values[:, None]
-        design = _with(design, axis.input.path, values)
-    return design
-
-
-def _with(model: Design, path: str, values: np.ndarray) -> Design:
-    """A copy without validation: the core checks the values."""
-    head, _, rest = path.partition(".")
-    fields: dict[str, Any] = dict(model) | {
-        head: _with(getattr(model, head), rest, values) if rest else values
-    }
-    return type(model).model_construct(**fields)
-
-
-def sweep(axes: Sequence[Axis], outputs: Sequence[Output], answer: Any) -> Sweep:
-    """The results of a design with arrays.
+def with_arrays(design: FileModel, axes: Sequence[Axis]) -> FileModel:
+    """A design with arrays in place of its inputs.
 
     Parameters
     ----------
+    design : FileModel
+        A validated design.
     axes : sequence of Axis
-        One or two inputs.
-    outputs : sequence of Output
-        What is wanted.
-    answer : object
-        The result of `replaced` design.
+        One or two inputs; the values of the second become a column, shape (m, 1).
 
     Returns
     -------
-    Sweep
+    FileModel
+        A copy that is not validated: the core checks the values.
     """
-    return sweeps.sweep(axes, outputs, [output.shown(answer) for output in outputs])
+    for place, axis in enumerate(axes):
+        values = axis.values if place == 0 else axis.values[:, None]
+        design = _replace_input(design, axis.input.path, values)
+    return design
+
+
+def _replace_input(model: FileModel, path: str, values: np.ndarray) -> FileModel:
+    head, _, rest = path.partition(".")
+    fields: dict[str, Any] = dict(model) | {
+        head: _replace_input(getattr(model, head), rest, values) if rest else values
+    }
+    return type(model).model_construct(**fields)

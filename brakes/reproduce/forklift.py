@@ -11,7 +11,7 @@ from matplotlib.transforms import Bbox
 from rich.console import Group
 
 from beamdyn.common.edge.input_sweep import Output
-from brakes.answers.tables import number
+from brakes.answers.tables import list_outputs
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.drawings.forklift import distances, forces_over, truck
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, follow_shoes, internal_forces, stop
@@ -296,9 +296,9 @@ def compare(outputs: Sequence[Output], corrected: object, printed: object) -> Fi
     figure = Figure(figsize=(9.0, 0.3 * (len(outputs) + 1)), layout="constrained")
     ax = figure.subplots()
     ax.set_axis_off()
-    rows = [[o.words, number(o.shown(corrected)), number(o.shown(printed)), o.unit] for o in outputs]
     made = ax.table(
-        rows, colLabels=["", "corrected", "as printed", "unit"], colWidths=[0.55, 0.17, 0.17, 0.11],
+        list_outputs(outputs, [corrected, printed]), colLabels=["", "corrected", "as printed", "unit"],
+        colWidths=[0.55, 0.17, 0.17, 0.11],
         cellLoc="right", bbox=Bbox.unit(), edges="horizontal",
     )  # fmt: skip
     made.auto_set_font_size(False)

@@ -20,8 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from brakes.answers.forklift import ForkliftAnswer, solve_stages
 from brakes.arrays import Numbers
-from brakes.config.forklift import ForkliftAnswer, ForkliftInput, StageName
+from brakes.config.forklift import ForkliftInput, StageName
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, StopConditions, Truck, internal_forces, stop
 from brakes.published import load
 from brakes.published.errata import Erratum
@@ -109,9 +110,9 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
     Raises
     ------
     ValueError
-        As for `ForkliftInput.solve`.
+        As for `brakes.answers.forklift.solve_stages`.
     """
-    answer = design.solve(stages)
+    answer = solve_stages(design, stages)
     if answer.stop is None and answer.torque_from != "the stop":
         return None
     assert design.truck is not None and design.stop is not None
@@ -119,8 +120,8 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
     if answer.torque_from == "the stop":
         assert design.forces is not None
         forces = design.forces.model_copy(update={"torque": float(printed.torque_per_brake)})
-        with_torque = design.model_copy(update={"forces": forces}).solve(("forces",))
-        answer = replace(answer, forces=with_torque.forces)
+        with_torque = design.model_copy(update={"forces": forces})
+        answer = replace(answer, forces=solve_stages(with_torque, ("forces",)).forces)
     return replace(answer, stop=answer.stop and printed)
 
 

@@ -175,7 +175,7 @@ def test_sweep_gives_a_row_a_value():
     assert rows[0] == ["speed_km_per_h", "distance_m"]
     work.put("stop.speed", "15 km/h")
     work.solve(VEHICLE)
-    single = work.answered["Vehicle"].answer.corrected.stop.distance
+    single = work.answered["Vehicle"].answer.stop.distance
     assert rows[2] == pytest.approx([15.0, single], rel=1e-12)  # the same formula on an array
     assert svg(sweep_figure(found)).startswith("<?xml")
 
@@ -239,7 +239,7 @@ def test_empty_fields_are_not_in_the_file():
 def test_an_entry_cannot_add_a_key():
     work = Work(FORKLIFT)
     work.put("stop.friction", "0.7\ngravity = '1 m/s2'")
-    assert not work.solve(VEHICLE) or work.answered["Vehicle"].answer.corrected.stop.conditions.gravity > 9
+    assert not work.solve(VEHICLE) or work.answered["Vehicle"].answer.stop.conditions.gravity > 9
 
 
 @pytest.mark.parametrize(

@@ -13,12 +13,12 @@ from beamdyn.common.app.handles import sheet, told, written
 from beamdyn.common.app.session import Work
 from beamdyn.common.edge.rendering import address
 from brakes.app.caliper import CALIPER
-from brakes.app.drum import DRUM
 from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
 from brakes.app.program import BRAKES
 from brakes.calipers import NAMED
 
 SVG = "{http://www.w3.org/2000/svg}"
+DRUM = next(document for document in BRAKES.documents if document.name == "drum")
 CALIPERS = CALIPER.screens[0]
 WITHOUT = {"Internal forces"}
 

@@ -10,8 +10,7 @@ from beamdyn.common.app.entries import entries_of, tables_of, toml_of
 from beamdyn.common.app.session import Work
 from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.rendering import html, svg
-from brakes.app.caliper import CALIPER
-from brakes.app.mechanism import MECHANISM
+from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.program import BRAKES
 from brakes.cli import main
 from brakes.config.mechanism import parse_mechanism

@@ -12,9 +12,9 @@ from beamdyn.common.app.document_report import report_of
 from beamdyn.common.app.session import Work
 from beamdyn.common.edge.rendering import html
 from brakes.app.caliper import CALIPER
-from brakes.app.drum import DRUM
 from brakes.app.program import BRAKES
 
+DRUM = next(document for document in BRAKES.documents if document.name == "drum")
 DOCUMENTS = [*BRAKES.documents, *BEAMDYN.documents]
 
 

@@ -19,8 +19,7 @@ from beamdyn.common.app.sweep_panel import around
 from beamdyn.common.edge.input_sweep import numbers, sweep_csv
 from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
 from beamdyn.common.edge.rendering import csv_text
-from brakes.app.caliper import CALIPER
-from brakes.app.mechanism import MECHANISM
+from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.program import BRAKES
 from brakes.cli import main
 

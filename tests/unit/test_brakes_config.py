@@ -12,12 +12,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from beamdyn.common.edge import input_sweep
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
 from brakes import drum, forklift
+from brakes.answers.drum import BRAKE
+from brakes.answers.forklift import FORKLIFT as TYPE
+from brakes.answers.forklift import solve_stages
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
-from brakes.config.sweeps import Output, chosen, parse_axis, replaced, sweep
+from brakes.config.sweeps import numeric_inputs, with_arrays
 from brakes.config.wording import in_degrees
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
@@ -159,7 +164,7 @@ def test_a_torque_demanded_of_a_brake_that_locks_is_refused() -> None:
 
 
 def test_the_example_is_the_truck_of_the_paper() -> None:
-    found = load_forklift(EXAMPLES / "forklift.toml").solve()
+    found = solve_stages(load_forklift(EXAMPLES / "forklift.toml"))
     assert found.stop is not None and found.motion is not None and found.forces is not None
     assert found.stop.acceleration == pytest.approx(-1.5715, abs=5e-5)  # the facts
     assert found.motion.geometry == forklift.BENDIX_12_5
@@ -180,15 +185,15 @@ def test_the_papers_stop_has_no_part_where_the_torque_is_given() -> None:
 
 def test_a_torque_in_the_file_goes_before_that_of_the_stop() -> None:
     design = forklift_from_dict(changed(FORKLIFT, forces__torque="11 kN m"))
-    for found in (design.solve(), design.solve(("forces",))):
+    for found in (solve_stages(design), solve_stages(design, ("forces",))):
         assert found.forces is not None and found.forces.torque == 11000.0
         assert found.torque_from == "the file"
-    assert design.solve(("forces",)).stop is None  # not asked for
+    assert solve_stages(design, ("forces",)).stop is None  # not asked for
 
 
 def test_without_a_torque_it_follows_from_the_lining() -> None:
     data = {"brake": FORKLIFT["brake"], "forces": FORKLIFT["forces"] | {"lining_friction": 0.4}}
-    found = forklift_from_dict(data).solve()
+    found = solve_stages(forklift_from_dict(data))
     assert found.forces is not None and found.torque_from == "the lining's friction"
     assert found.forces.lining_friction == pytest.approx(0.4, rel=1e-12)
 
@@ -201,7 +206,7 @@ def test_each_stage_alone() -> None:
     for stages, tables in alone.items():
         design = forklift_from_dict({table: FORKLIFT[table] for table in tables})
         assert design.stages == stages
-        design.solve()
+        solve_stages(design)
     forces = {"piston_force": "11650 N", "torque": "11000 N m"}
     assert forklift_from_dict({"levers": LEVERS, "forces": forces}).stages == ("forces",)
 
@@ -245,13 +250,13 @@ def test_one_mistake_in_a_forklift(keys: dict[str, Any], parts: list[str]) -> No
 )
 def test_what_the_stages_refuse(keys: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        forklift_from_dict(changed(FORKLIFT, **keys)).solve()
+        solve_stages(forklift_from_dict(changed(FORKLIFT, **keys)))
 
 
 def test_a_stage_without_its_tables() -> None:
     design = forklift_from_dict({"brake": FORKLIFT["brake"]})
     with pytest.raises(ValueError, match=r"stage vehicle needs the tables \[truck\] and \[stop\]"):
-        design.solve(("vehicle",))
+        solve_stages(design, ("vehicle",))
 
 
 # Descriptions, words ------------------------------------------------------------------------------------
@@ -272,6 +277,11 @@ def test_angles_in_messages() -> None:
 
 
 # Sweeps -------------------------------------------------------------------------------------------------
+
+
+def parse_axis(design: Any, text: str) -> input_sweep.Axis:
+    return input_sweep.parse_axis(numeric_inputs(design), text)
+
 
 TORQUE = Output("torque", "torque", lambda r: r.torque, "N m")
 DISTANCE = Output("distance", "distance", lambda a: a.stop.distance, "m")
@@ -329,7 +339,7 @@ def test_an_ambiguous_key_names_its_candidates() -> None:
 def test_a_sweep_is_its_cases_one_by_one() -> None:
     design = drum_from_dict(DRUM)
     axes = [parse_axis(design, text) for text in ("lining_end=60:110:3 deg", "friction=0.2:0.5:2")]
-    found = sweep(axes, [TORQUE], replaced(design, axes).solve()).found[0]
+    found = TORQUE.shown(with_arrays(design, axes).solve())
     assert found.shape == (2, 3)
     for j, mu in enumerate((0.2, 0.5)):
         for i, end in enumerate((60, 85, 110)):
@@ -340,8 +350,8 @@ def test_a_sweep_is_its_cases_one_by_one() -> None:
 def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
-    answer = replaced(design, axes).solve()
-    found = sweep(axes, [DISTANCE], answer)
+    answer = solve_stages(with_arrays(design, axes))
+    found = input_sweep.sweep(axes, [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)
     assert found.to_dict()["inputs"] == ["truck.load_mass"]
@@ -357,7 +367,7 @@ def test_results_by_name() -> None:
 
 NUMBERS = ["0", "-1", "1e-300", "1e300", "1e308", "nan", "1", "45", "0.1", "1e6"]
 UNITS = ["m", "mm", "deg", "rad", "N", "N m", "kg", "km/h", "s", "Pa", "bar", ""]
-KEYS = [(build, data, t, k) for build, data in ((drum_from_dict, DRUM), (forklift_from_dict, FORKLIFT))
+KEYS = [(brake, data, t, k) for brake, data in ((BRAKE, DRUM), (TYPE, FORKLIFT))
         for t in data for k in data[t]]  # fmt: skip
 VALUES = st.one_of(
     st.builds(lambda n, u: f"{n} {u}".strip(), st.sampled_from(NUMBERS), st.sampled_from(UNITS)),
@@ -369,10 +379,10 @@ VALUES = st.one_of(
 @given(st.sampled_from(KEYS), VALUES)
 def test_any_value_anywhere_is_answered_or_refused(place, value: Any) -> None:
     """Without a warning of numpy, a crash, or an empty message."""
-    build, data, table, key = place
+    brake, data, table, key = place
     given_ = copy.deepcopy(data)
     given_[table][key] = value
     try:
-        build(given_).solve()
+        brake.solve(brake.read(given_, "any"))
     except ValueError as error:
         assert str(error)

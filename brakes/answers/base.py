@@ -1,0 +1,247 @@
+"""The pattern that every brake follows; its command, its screen and its HTML report are made from it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, ClassVar, Generic, TypeVar
+
+from matplotlib.figure import Figure
+from pydantic import BaseModel
+from rich.console import RenderableType
+
+from beamdyn.common.app.documents import Handle, Slider
+from beamdyn.common.edge import input_sweep
+from beamdyn.common.edge.config import parse, read, validated
+from beamdyn.common.edge.input_sweep import Axis, Output, Sweep, chosen, one_by_one, parse_axis
+from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.results import Result
+from brakes.config.sweeps import numeric_inputs, with_arrays
+
+FileModel = TypeVar("FileModel", bound=BaseModel)
+
+
+class Answer(Result, ABC):
+    """The answer to one design of a brake: a frozen dataclass of results; see `BrakeType`."""
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """What to look at although there is an answer: one sentence each."""
+        return ()
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """Why the model has no answer, such as a brake that locks: one sentence each, none if it has."""
+        return ()
+
+    @abstractmethod
+    def tables(self) -> list[RenderableType]:
+        """Tables and sentences, for the console, the screen and the HTML report."""
+
+    @abstractmethod
+    def rows(self) -> Iterable[Sequence[object]]:
+        """Rows of the CSV file, headings first."""
+
+    @abstractmethod
+    def figure(self, place: float | None = None) -> Figure:
+        """Draw it.
+
+        Parameters
+        ----------
+        place : float, optional
+            Place of the screen's slider; if not given, the picture of the command and the HTML report.
+        """
+
+    def handles(self, place: float) -> Sequence[Handle]:
+        """Points of the figure's first axes that can be moved there, with the slider at a place."""
+        return ()
+
+
+class BrakeType(ABC, Generic[FileModel]):
+    """A type of brake: what its TOML file says, and how it is answered.
+
+    Command, screen and HTML report ask only this class and `Answer`. To add a type of brake ``name``:
+
+    1. Its mechanics is a room of its own, ``brakes/name``, entered among the layers in ``pyproject.toml``:
+       SI floats or arrays in, a frozen `Result` out, no input or output.
+    2. ``brakes/config/name.py`` describes its file: a `Section` with a field for each table, which is a
+       `Section` itself; each number is described by a `Quantity`. The form, the inputs that can be swept
+       and the messages about mistakes follow from this description.
+    3. ``brakes/drawings/name.py`` draws the result.
+    4. ``brakes/answers/name.py`` derives from `Answer` and from `BrakeType`, sets the attributes below and
+       writes `solve` and `outputs`. Where the mechanics takes arrays derive from `ArrayBrakeType`, which
+       sweeps all cases at once, else from `TableBrakeType`, which sweeps them one by one. An instance
+       named ``BRAKE`` stands at the end of the module.
+    5. `solve` raises ValueError for bad input. A design without an answer is no exception: `solve` returns
+       an `Answer` whose `refusals` say why, so that its tables are still shown; a command then ends with
+       exit code 1. Only where nothing can be shown, `NoAnswer` is raised.
+    6. An `Output` takes its number, in SI, from the `Answer`; if the design has arrays, an array.
+    7. ``brakes/app/bases/name.toml`` is the example with which the screen opens.
+    8. A line in `brakes.answers.STANDARD` adds the command and the screen.
+
+    Attributes
+    ----------
+    name : str
+        Of its command and of its file without the suffix.
+    title : str
+        Of its screen.
+    purpose : str
+        What its screen is for, in a sentence.
+    sections : tuple of str
+        Tables on its form; "" for inputs outside any table.
+    needs : tuple of str
+        Tables, or inputs outside any, from which the answer follows.
+    example_sweep : str
+        Sweep with which its screen begins, such as "brake.friction=0.1:0.6:26".
+    sweep_results : str
+        Results of a sweep if none are named, separated by commas.
+    slider : Slider, optional
+        What its figure follows.
+    more : tuple of (title, callable)
+        Further drawings: answer in, figure out.
+    """
+
+    name: ClassVar[str]
+    title: str
+    purpose: str
+    sections: tuple[str, ...]
+    needs: tuple[str, ...]
+    example_sweep: str
+    sweep_results: str
+    slider: Slider | None = None
+    more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
+
+    @abstractmethod
+    def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
+        """Design that tables describe; raises `ConfigError` with all mistakes."""
+
+    @abstractmethod
+    def solve(self, design: FileModel) -> Answer:
+        """Answer to a design; raises ValueError for bad input, `NoAnswer` if nothing can be shown."""
+
+    @abstractmethod
+    def outputs(self, design: FileModel) -> Sequence[Output]:
+        """Numbers of the answer that can be named."""
+
+    @abstractmethod
+    def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
+        """Inputs of the form, for tables as far as they are filled in."""
+
+    @abstractmethod
+    def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
+        """Numbers of a design that can be swept."""
+
+    @abstractmethod
+    def sweep_cases(
+        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
+    ) -> tuple[Sweep, Sequence[str]]:
+        """Results over one or two inputs, and warnings."""
+
+    def open(self, name: str) -> tuple[Mapping[str, Any], str]:
+        """Tables and text of a file; raises `ConfigError` if it cannot be read or is not TOML."""
+        text = read(name)
+        return parse(text, name), text
+
+    def default_results(self, design: FileModel) -> str:
+        """Results of a sweep of a design if none are named."""
+        return self.sweep_results
+
+    def sweep(
+        self,
+        tables: Mapping[str, Any],
+        source: str,
+        texts: Sequence[str],
+        results: str | None = None,
+        options: tuple[str, str] = ("--sweep", "--result"),
+    ) -> tuple[Sweep, Sequence[str]]:
+        """Sweep one or two inputs.
+
+        Parameters
+        ----------
+        tables : mapping
+            Tables of the design's file.
+        source : str
+            Their origin, for messages.
+        texts : sequence of str
+            Inputs and their values, such as "stop.speed=10:30:9 km/h".
+        results : str, optional
+            Names of outputs, separated by commas.
+        options : pair of str
+            What inputs and results are called in messages.
+
+        Returns
+        -------
+        sweep : Sweep
+            The results.
+        warnings : sequence of str
+            Where there is no answer and why, and what else to look at.
+
+        Raises
+        ------
+        ValueError
+            If an input or a result is not known, or more than two inputs are given.
+        NoAnswer
+            If there is an answer nowhere.
+        """
+        design = self.read(tables, source)
+        wanted = chosen(
+            self.outputs(design), self.default_results(design) if results is None else results, options[1]
+        )
+        inputs = self.sweep_inputs(design, tables)
+        axes = [parse_axis(inputs, text, options[0]) for text in texts]
+        if len(axes) > 2 or len({axis.input.path for axis in axes}) < len(axes):
+            raise ValueError(
+                f"{options[0]} is given {len(axes)} times: give it once, or twice for two inputs"
+            )
+        return self.sweep_cases(design, tables, axes, wanted)
+
+
+class ArrayBrakeType(BrakeType[FileModel]):
+    """A type of brake whose mechanics takes arrays: a sweep is solved for all cases at once.
+
+    Attributes
+    ----------
+    model : type
+        Description of its file.
+    """
+
+    model: type[FileModel]
+
+    def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
+        """Design that tables describe."""
+        return validated(self.model, tables, source)
+
+    def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
+        """Inputs of the form: those of the model."""
+        return describe(self.model)
+
+    def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
+        """Numbers in the tables that the design has."""
+        return numeric_inputs(design)
+
+    def sweep_cases(
+        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
+    ) -> tuple[Sweep, Sequence[str]]:
+        """Results from one answer whose numbers are arrays."""
+        answer = self.solve(with_arrays(design, axes))
+        values = [output.shown(answer) for output in outputs]
+        made = input_sweep.sweep(axes, outputs, values, answer.refusals)
+        return made, (*answer.warnings, *answer.refusals)
+
+
+class TableBrakeType(BrakeType[FileModel]):
+    """A type of brake whose mechanics takes one design: a sweep is solved case by case."""
+
+    def sweep_cases(
+        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
+    ) -> tuple[Sweep, Sequence[str]]:
+        """Results case by case; not a number where there is no answer."""
+        made = one_by_one(tables, axes, outputs, self._solve_determined)
+        return made, made.warnings
+
+    def _solve_determined(self, tables: Mapping[str, Any]) -> Answer:
+        answer = self.solve(self.read(tables, self.name))
+        if answer.refusals:
+            raise NoAnswer("; ".join(answer.refusals))
+        return answer

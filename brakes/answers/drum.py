@@ -1,0 +1,150 @@
+"""Drum brakes with pivoted shoes: what is shown of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.console import RenderableType
+
+from beamdyn.common.app.documents import Handle
+from beamdyn.common.edge.input_sweep import Output
+from beamdyn.common.edge.tables import table
+from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_from
+from brakes.config.drum import DrumInput
+from brakes.drawings.drum import brake_figure
+from brakes.drum import BrakeResult
+
+_MM, _MPA = 1e-3, 1e6
+
+_WHOLE = (
+    Output("torque", "torque of the brake", lambda r: r.torque, "N m"),
+    Output("c_star", "brake factor C* = torque / (force radius)", lambda r: r.c_star),
+    Output("c_star_slope", "dC*/dmu", lambda r: r.c_star_slope),
+    Output("force", "force on each shoe", lambda r: r.force, "N"),
+    Output("peak_pressure", "largest pressure on a lining", lambda r: r.peak_pressure, "MPa", _MPA),
+    Output("locking_friction", "friction at self-locking", lambda r: r.locking_friction),
+    Output("margin", "margin to self-locking, 1 - mu / locking mu", lambda r: r.margin),
+)
+_SHOE = (
+    Output("torque", "torque", lambda s: s.torque, "N m"),
+    Output("c_star", "shoe factor C*", lambda s: s.c_star),
+    Output("c_star_slope", "dC*/dmu", lambda s: s.c_star_slope),
+    Output("peak_pressure", "largest pressure", lambda s: s.peak_pressure, "MPa", _MPA),
+    Output("normal", "resultant of the pressure N", lambda s: _size(s.normal), "N"),
+    Output("tangential", "resultant of the friction T", lambda s: _size(s.tangential), "N"),
+    Output("pin", "pin reaction R", lambda s: _size(s.pin_reaction), "N"),
+    Output("pin_x", "pin reaction, towards the shoe's side", lambda s: s.pin_reaction[..., 0], "N"),
+    Output("pin_y", "pin reaction, upward", lambda s: s.pin_reaction[..., 1], "N"),
+    Output("effective_arm", "effective arm of the friction", lambda s: s.effective_arm, "mm", _MM),
+    Output("locking_friction", "friction at self-locking", lambda s: s.locking_friction),
+    Output("closure", "residual moment / (P (a + c))", lambda s: s.closure),
+)
+
+
+def _outputs(shoes: int) -> tuple[Output, ...]:
+    """All numbers of a brake; those of a shoe end in its number."""
+    return take_from(lambda answer: answer.result, _WHOLE) + tuple(
+        Output(f"{o.name}_{i + 1}", f"{o.words}, shoe {i + 1}", o.of, o.unit, o.scale)
+        for i in range(shoes)
+        for o in take_from(lambda answer, i=i: answer.result.shoes[i], _SHOE)
+    )
+
+
+@dataclass(frozen=True)
+class DrumAnswer(Answer):
+    """Forces in a drum brake."""
+
+    result: BrakeResult
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """That the brake locks."""
+        return (self.result.message,) if np.any(self.result.locked) else ()
+
+    def tables(self) -> list[RenderableType]:
+        """The brake as a whole, and shoe by shoe."""
+        brake, shoes = self.result, self.result.shoes
+        direction = "reverse" if brake.reverse else "forward"
+        names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
+        return [
+            outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake),
+            table(
+                "Shoes (components: x to the shoe's side, y upward)",
+                ("", *names, "unit"),
+                list_outputs(_SHOE, shoes),
+                (0, len(names) + 1),
+            ),
+        ]
+
+    def rows(self) -> Iterable[Sequence[object]]:
+        """Names, values and units of all numbers."""
+        return outputs_csv(_outputs(len(self.result.shoes)), value=self)
+
+    def figure(self, place: float | None = None) -> Figure:
+        """Free bodies, pressures and factors."""
+        return brake_figure(self.result)
+
+    def handles(self, place: float) -> Sequence[Handle]:
+        """Lining, pin, force and drum of the first shoe; none of a locked brake, which is not drawn."""
+        if self.refusals:
+            return ()
+        shoe = self.result.shoes[0].shoe
+        r, force = float(shoe.drum_radius), float(shoe.force_arm)
+        pivot = float(shoe.pivot[0]), float(shoe.pivot[1])
+        start, end = (_on_rim(r, float(angle)) for angle in shoe.lining)
+        return (
+            Handle("drum radius", (0.0, r), lambda x, y: {"shoe.drum_radius": y}),
+            Handle("start of the lining", start, lambda x, y: {"shoe.lining_start": _from_bottom(x, y)}),
+            Handle("end of the lining", end, lambda x, y: {"shoe.lining_end": _from_bottom(x, y)}),
+            Handle("pin of the shoe", pivot, _pivot_at),
+            Handle("height of the force", (0.55 * r, force), lambda x, y: {"shoe.force_arm": y}),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings."""
+        return self.result.to_dict()
+
+
+def _size(vector: np.ndarray) -> np.ndarray:
+    return np.hypot(vector[..., 0], vector[..., 1])
+
+
+def _on_rim(r: float, angle: float) -> tuple[float, float]:
+    return float(r * np.sin(angle)), float(-r * np.cos(angle))
+
+
+def _from_bottom(x: float, y: float) -> float:
+    """Angle of a place from straight down [rad]."""
+    return float(np.arctan2(x, -y))
+
+
+def _pivot_at(x: float, y: float) -> dict[str, float]:
+    return {"shoe.pivot_offset": x, "shoe.pivot_depth": -y}
+
+
+class DrumType(ArrayBrakeType[DrumInput]):
+    """Drum brakes with pivoted shoes."""
+
+    name = "drum"
+    title = "Drum brake"
+    purpose = "A brake with shoes on fixed pins: torque, pressure, pin reactions, and when it locks itself."
+    model = DrumInput
+    sections = needs = ("brake", "shoe", "second_shoe", "load")
+    example_sweep = "brake.friction=0.1:0.6:26"
+    sweep_results = "torque,c_star,peak_pressure"
+
+    def solve(self, design: DrumInput) -> DrumAnswer:
+        """Forces in the brake."""
+        return DrumAnswer(design.solve())
+
+    def outputs(self, design: DrumInput) -> Sequence[Output]:
+        """Numbers of the brake and of its shoes."""
+        return _outputs(len(design.core.shoes))
+
+
+BRAKE = DrumType()

@@ -1,0 +1,396 @@
+"""A forklift's brakes: what is shown of the stop, of the shoes' motion and of the forces in one brake."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.console import RenderableType
+
+from beamdyn.common.app.documents import Handle, Slider
+from beamdyn.common.edge.input_sweep import Output
+from beamdyn.common.edge.tables import table
+from beamdyn.common.results import plain
+from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
+from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_from
+from brakes.arrays import Numbers
+from brakes.config.forklift import ForkliftInput, StageName
+from brakes.config.wording import in_range, of_file
+from brakes.drawings.duo_servo import duo_servo, free_bodies
+from brakes.drawings.forklift import answer_figure, truck
+from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
+
+_MM, _KN, _DEG = 1e-3, 1e3, pi / 180
+
+_VEHICLE = (
+    Output("distance", "stopping distance, from the driver's reaction", lambda s: s.distance, "m"),
+    Output("time", "time to rest", lambda s: s.time, "s"),
+    Output("acceleration", "acceleration, wheels locked", lambda s: s.acceleration, "m/s2"),
+    Output("torque_per_brake", "torque of one brake", lambda s: s.torque_per_brake, "N m"),
+    Output("reaction_distance", "distance in the reaction time", lambda s: s.reaction_distance, "m"),
+    Output("rise_distance", "distance while the force rises", lambda s: s.rise_distance, "m"),
+    Output("braking_distance", "distance with the full force", lambda s: s.braking_distance, "m"),
+    Output("speed_lost_in_rise", "speed lost while the force rises", lambda s: s.speed_lost_in_rise, "m/s"),
+    Output(
+        "speed_gained_coasting",
+        "speed a coasting truck would gain in reaction, not counted",
+        lambda s: s.speed_gained_coasting,
+        "m/s",
+    ),
+    Output("front_load", "front axle's load, sliding", lambda s: s.front_load, "kN", _KN),
+    Output("rear_load", "rear axle's load, sliding", lambda s: s.rear_load, "kN", _KN),
+    Output("standing_front_load", "front axle's load, at rest", lambda s: s.standing_front_load, "kN", _KN),
+    Output("standing_rear_load", "rear axle's load, at rest", lambda s: s.standing_rear_load, "kN", _KN),
+)
+
+_MOTION = (
+    Output("seating_turn", "stage 1: turn of each shoe", lambda m: m.seating_turn, "deg", _DEG),
+    Output("seating_travel", "stage 1: travel of each piston", lambda m: m.seating_travel, "mm", _MM),
+    Output("drum_turn", "stage 2: turn of drum and shoes", lambda m: m.drum_turn, "deg", _DEG),
+    Output("right_travel", "right piston at the end, outward", lambda m: m.right_travel, "mm", _MM),
+    Output("left_travel", "left piston at the end, outward", lambda m: m.left_travel, "mm", _MM),
+    Output("tip_gap", "least gap of the shoe's tip to the drum", lambda m: m.tip_gap, "mm", _MM),
+    Output(
+        "lining_penetration",
+        "a concentric lining enters the drum by",
+        lambda m: m.lining_penetration,
+        "mm",
+        _MM,
+    ),
+    Output("penetration_angle", "... at, up from the horizontal", lambda m: m.penetration_angle, "deg", _DEG),
+)
+
+_ARMS = (
+    Output("a1", "arm of P_L", lambda v: v.a1, "mm", _MM),
+    Output("a2", "arm of P_T", lambda v: v.a2, "mm", _MM),
+    Output("b", "arm of Q", lambda v: v.b1, "mm", _MM),
+    Output("alpha1", "angle of P_L", lambda v: v.alpha1, "deg", _DEG),
+    Output("alpha2", "angle of P_T", lambda v: v.alpha2, "deg", _DEG),
+    Output("gamma", "angle of Q", lambda v: v.gamma, "deg", _DEG),
+)
+
+_FORCES = (
+    Output("torque", "torque of the brake T", lambda f: f.torque, "N m"),
+    Output("piston_force", "piston on the trailing shoe P_T", lambda f: f.piston_force, "N"),
+    Output("A", "leading shoe: drum's normal force A", lambda f: f.A, "N"),
+    Output("B", "leading shoe: friction force B", lambda f: f.B, "N"),
+    Output("C", "trailing shoe: drum's normal force C", lambda f: f.C, "N"),
+    Output("D", "trailing shoe: friction force D", lambda f: f.D, "N"),
+    Output("Q", "adjuster Q", lambda f: f.Q, "N"),
+    Output("P_L", "leading shoe on its piston P_L", lambda f: f.P_L, "N"),
+    Output("lining_friction", "friction of the lining, B/A = D/C", lambda f: f.lining_friction),
+    Output("locking_friction", "friction at self-locking", lambda f: f.locking_friction),
+    Output("margin", "margin to self-locking", lambda f: f.margin),
+    Output("c_star", "brake factor C* = T / (P_T r)", lambda f: f.c_star),
+    Output("c_star_slope", "dC*/dmu", lambda f: f.c_star_slope),
+    Output("leading_share", "share of the leading shoe in the torque", lambda f: f.leading_share),
+    Output("trailing_share", "share of the trailing shoe", lambda f: f.trailing_share),
+    Output(
+        "bolt_x", "cylinder bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
+    ),
+    Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
+    Output("bolts", "cylinder bolts, resultant", lambda f: _size(f.bolt_force), "N"),
+    Output("residual", "residual of the equations, over T/r", lambda f: f.residual),
+)
+
+
+def stage_outputs(stages: Sequence[StageName]) -> tuple[Output, ...]:
+    """Numbers of the answers to stages."""
+    groups = {
+        "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
+        "kinematics": take_from(lambda answer: answer.motion, _MOTION),
+        "forces": take_from(lambda answer: answer.forces, _FORCES),
+    }
+    return tuple(output for stage in stages for output in groups[stage])
+
+
+def _size(vector: np.ndarray) -> np.ndarray:
+    return np.hypot(vector[..., 0], vector[..., 1])
+
+
+@dataclass(frozen=True)
+class ForkliftAnswer(Answer):
+    """Results of some stages of a forklift's brakes.
+
+    Attributes
+    ----------
+    design : ForkliftInput
+        The file.
+    stages : tuple of str
+        The stages that are shown.
+    stop : Stop, optional
+        The vehicle; only if it is shown.
+    motion : ShoeMotion, optional
+        The kinematics, also if only the forces are shown that follow from it.
+    forces : InternalForces, optional
+        The forces in one brake.
+    torque_from : str
+        Where the torque comes from: "the file", "the stop" or "the lining's friction".
+    """
+
+    design: ForkliftInput
+    stages: tuple[StageName, ...]
+    stop: Stop | None
+    motion: ShoeMotion | None
+    forces: InternalForces | None
+    torque_from: str = ""
+
+    @cached_property
+    def kinematics(self) -> Kinematics | None:
+        """The shoes' motion position by position, if there is any; of one case."""
+        return (
+            None if self.motion is None else follow_shoes(self.motion.geometry, float(self.motion.clearance))
+        )
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """Where a lining enters the drum, and the warnings of the forces."""
+        interference = () if self.motion is None else self.motion.interference
+        return (*interference, *(() if self.forces is None else self.forces.warnings))
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """That the truck does not stop, or that the brake locks or cannot give the torque."""
+        stop = [] if self.stop is None or np.all(self.stop.stops) else [self.stop.message]
+        unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
+        return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
+
+    def tables(self) -> list[RenderableType]:
+        """A table of the vehicle, two of the kinematics, one of the forces, as far as they are there."""
+        tables = [] if self.stop is None else [_stop_table(self.stop)]
+        if "kinematics" in self.stages and self.motion is not None and self.kinematics is not None:
+            tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
+            tables.append(_events_table(self.kinematics))
+        if self.forces is not None:
+            tables.append(_forces_table(self.forces, self.torque_from))
+        return tables
+
+    def rows(self) -> Iterable[Sequence[object]]:
+        """Names, values and units of all numbers."""
+        return outputs_csv(stage_outputs(self.stages), value=self)
+
+    def figure(self, place: float | None = None) -> Figure:
+        """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
+        if self.stages == ("vehicle",) and self.stop is not None:
+            return _draw_stop(self.stop)
+        if self.stages == ("kinematics",) and self.motion is not None and place is not None:
+            return _draw_motion(self.motion, place)
+        if self.stages == ("forces",) and self.forces is not None:
+            return _draw_forces(self.forces, self.kinematics)
+        return answer_figure(self.stop, self.kinematics, self.forces)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The answer as plain numbers, lists and strings."""
+        parts = {name: plain(getattr(self, name)) for name in ("stop", "motion", "forces", "torque_from")}
+        return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
+
+    def handles(self, place: float) -> Sequence[Handle]:
+        """Points of the truck, or of the brake, if one of them is what the figure shows."""
+        if self.stages == ("vehicle",) and self.stop is not None:
+            return truck_handles(self.stop)
+        if self.stages == ("kinematics",) and self.motion is not None:
+            return duo_servo_handles(self.motion, place)
+        return ()
+
+
+def _stop_table(stop: Stop) -> RenderableType:
+    rows = [["", str(stop.status), ""], *list_outputs(_VEHICLE, [stop])]
+    return table("Vehicle", ("", "value", "unit"), rows, (0, 2))
+
+
+def _events_table(followed: Kinematics) -> RenderableType:
+    stages = followed.right, followed.left, followed.drum
+    return table(
+        "Events (rank and smallest singular value: of the mechanism's constraints, least on the way)",
+        ("stage", "event", "rank", "smallest singular value"),
+        [
+            [
+                str(event.stage),
+                event.message,
+                f"{stage.rank.min()} of {stage.constraints}",
+                f"{stage.least_singular_value.min():.2g}",
+            ]
+            for event, stage in zip(followed.events, stages, strict=True)
+        ],
+        (0, 1),
+    )
+
+
+def _forces_table(forces: InternalForces, torque_from: str) -> RenderableType:
+    rows = [*list_outputs(_FORCES, [forces]), [], *list_outputs(_ARMS, [forces.levers])]
+    return table(
+        f"Forces in one brake; the torque is from {torque_from}", ("", "value", "unit"), rows, (0, 2)
+    )
+
+
+# Drawings of one stage ----------------------------------------------------------------------------------
+
+
+def _draw_stop(stop: Stop) -> Figure:
+    """The truck on its slope."""
+    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+    truck(figure.subplots(), stop)
+    return figure
+
+
+def _draw_motion(motion: ShoeMotion, progress: float) -> Figure:
+    """The brake at a place of its two stages, from 0 to 2."""
+    figure = Figure(figsize=(7.0, 6.2), layout="constrained")
+    ax = duo_servo(figure.subplots(), motion.geometry, motion, progress)
+    seated, turned = min(progress, 1.0), max(progress - 1.0, 0.0)
+    shoes, drum = np.degrees((seated * float(motion.seating_turn), turned * float(motion.drum_turn)))
+    ax.set_title(f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg", fontsize=11)
+    return figure
+
+
+def _draw_forces(forces: InternalForces, followed: Kinematics | None) -> Figure:
+    """Both shoes as free bodies; of a brake without equilibrium the reason."""
+    figure = Figure(figsize=(10.0, 5.4), layout="constrained")
+    if forces.status == "equilibrium":
+        free_bodies(figure, forces, followed)
+    else:
+        figure.text(0.5, 0.5, forces.message, ha="center", va="center", wrap=True)
+    return figure
+
+
+# From file to answer ------------------------------------------------------------------------------------
+
+
+_NEEDS = {
+    "vehicle": "[truck] and [stop]",
+    "kinematics": "[brake]",
+    "forces": "[forces], and [brake] or [levers]",
+}
+
+
+def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> ForkliftAnswer:
+    """Solve some stages of a forklift's brakes; those before them are computed where they are needed.
+
+    Parameters
+    ----------
+    design : ForkliftInput
+        The file.
+    stages : sequence of str
+        Of "vehicle", "kinematics", "forces"; those whose tables are in the file if none are named.
+
+    Raises
+    ------
+    ValueError
+        If a table is missing that a stage needs, or as for the functions of `brakes.forklift`.
+    """
+    shown = tuple(stages) or design.stages
+    for name in shown:
+        if name not in design.stages:
+            raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
+    given = design.forces and design.forces.torque
+    from_stop = "forces" in shown and given is None and "vehicle" in design.stages
+    with in_range():
+        stop = _stop(design) if from_stop or "vehicle" in shown else None
+        motion = design.brake.motion if design.brake and shown != ("vehicle",) else None
+        torque = stop.torque_per_brake if from_stop and stop is not None else given
+        forces = _forces(design, motion, torque) if "forces" in shown else None
+    source = "the stop" if from_stop else "the lining's friction" if given is None else "the file"
+    return ForkliftAnswer(
+        design, shown, stop if "vehicle" in shown else None, motion, forces, source if forces else ""
+    )
+
+
+def _stop(design: ForkliftInput) -> Stop:
+    assert design.truck is not None and design.stop is not None
+    with of_file({}):
+        return stop(design.truck.core, design.stop.core)
+
+
+def _forces(design: ForkliftInput, motion: ShoeMotion | None, torque: Numbers | None) -> InternalForces:
+    levers = motion.levers if motion is not None else design.levers and design.levers.core
+    assert design.forces is not None and levers is not None
+    with of_file({"friction = ": "lining_friction = "}):
+        return internal_forces(
+            levers,
+            piston_force=design.forces.piston_force,
+            torque=torque,
+            friction=design.forces.lining_friction,
+        )
+
+
+class ForkliftType(ArrayBrakeType[ForkliftInput]):
+    """A forklift's brakes: all stages whose tables are in the file.
+
+    Attributes
+    ----------
+    stages : tuple of str
+        Stages that are shown; those whose tables are in the file if none are named.
+    """
+
+    name = "forklift"
+    title = "Forklift"
+    purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
+    model = ForkliftInput
+    sections = needs = ("truck", "stop", "brake", "levers", "forces")
+    example_sweep = "stop.speed=10:30:21 km/h"
+    stages: tuple[StageName, ...] = ()
+
+    def solve(self, design: ForkliftInput) -> ForkliftAnswer:
+        """Results of the stages; see `solve_stages`."""
+        return solve_stages(design, self.stages)
+
+    def outputs(self, design: ForkliftInput) -> Sequence[Output]:
+        """Numbers of the stages."""
+        return stage_outputs(self.stages or design.stages)
+
+    def default_results(self, design: ForkliftInput) -> str:
+        """The most important results of each stage."""
+        return ",".join(TYPES[name].sweep_results for name in self.stages or design.stages)
+
+
+class VehicleType(ForkliftType):
+    """The truck's stop."""
+
+    title = "Vehicle"
+    purpose = "The truck reverses down a slope and brakes: stopping distance, and the torque of each brake."
+    sections = needs = ("truck", "stop")
+    example_sweep = "stop.speed=10:30:21 km/h"
+    sweep_results = "distance,torque_per_brake"
+    stages = ("vehicle",)
+
+
+class KinematicsType(ForkliftType):
+    """The motion of the shoes of one brake."""
+
+    title = "Kinematics"
+    purpose = (
+        "The shoes of a duo-servo brake: they turn onto the drum, then turn with it until a piston bottoms."
+    )
+    sections = needs = ("brake",)
+    example_sweep = "brake.clearance=8:11:16 mm"
+    sweep_results = "drum_turn,left_travel,lining_penetration"
+    slider = Slider("stage", ("at rest", "linings on the drum", "piston at its bottom"))
+    stages = ("kinematics",)
+
+
+class ForcesType(ForkliftType):
+    """The forces in one brake."""
+
+    title = "Internal forces"
+    purpose = (
+        "The force on every part of the brake, from the torque of the stop and the arms of the kinematics."
+    )
+    sections = ("forces", "levers")
+    needs = ("truck", "stop", "brake", "levers", "forces")
+    example_sweep = "forces.piston_force=9:13:17 kN"
+    sweep_results = "A,B,Q,P_L,lining_friction"
+    stages = ("forces",)
+
+
+FORKLIFT = ForkliftType()
+TYPES: dict[StageName, ForkliftType] = {
+    "vehicle": VehicleType(),
+    "kinematics": KinematicsType(),
+    "forces": ForcesType(),
+}

@@ -1,0 +1,87 @@
+"""Screens and documents made from types of brakes: they hold no knowledge of a brake of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from beamdyn.common.app.documents import Document, Screen, Sweeps
+from beamdyn.common.edge.config import parse
+from beamdyn.common.edge.input_sweep import Sweep
+from brakes.answers.base import BrakeType
+from brakes.app.bases import base
+
+
+def make_document(
+    brake: BrakeType[Any],
+    screens: tuple[Screen, ...] = (),
+    check: Callable[[str, str], object] | None = None,
+) -> Document:
+    """Make a document of a type of brake, which opens with the example of its name.
+
+    Parameters
+    ----------
+    brake : BrakeType
+        Its file is that of the document.
+    screens : tuple of Screen
+        Its screens; the one of the type if not given.
+    check : callable, optional
+        Takes text and name of a file and raises `ConfigError` for one that is not for this document; the
+        commands' check if not given.
+    """
+
+    def accept(text: str, source: str) -> object:
+        return brake.read(parse(text, source), source)
+
+    return Document(
+        brake.name,
+        base(brake.name),
+        lambda entries: brake.inputs(_nest(entries)),
+        check or accept,
+        screens or (make_screen(brake),),
+    )
+
+
+def _nest(entries: Mapping[str, str]) -> dict[str, Any]:
+    """Entries of a form, "table.key", as tables."""
+    tables: dict[str, Any] = {}
+    for path, text in entries.items():
+        table, dot, key = path.partition(".")
+        if dot:
+            tables.setdefault(table, {})[key] = text
+        else:
+            tables[table] = text
+    return tables
+
+
+def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]]) -> Screen:
+    """Make the screen of a type of brake; `more` are titles and drawings of answers that fold out on it."""
+    return Screen(
+        brake.title,
+        brake.purpose,
+        brake.sections,
+        brake.needs,
+        lambda tables: brake.solve(brake.read(tables, brake.name)),
+        lambda answer: answer.tables(),
+        lambda answer, place: answer.figure(place),
+        lambda answer: (*answer.refusals, *answer.warnings),
+        lambda answer: answer.rows(),
+        slider=brake.slider,
+        sweeps=make_sweeps(brake),
+        more=(*brake.more, *more),
+        handles=lambda answer, place: answer.handles(place),
+    )
+
+
+def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
+    """Make the sweeps of a type of brake: one input against any of its outputs."""
+
+    def names(tables: Mapping[str, Any]) -> list[str]:
+        return [output.name for output in brake.outputs(brake.read(tables, brake.name))]
+
+    def run(tables: Mapping[str, Any], text: str, results: str) -> Sweep:
+        return brake.sweep(tables, brake.name, [text], results, ("sweep", "results"))[0]
+
+    return Sweeps(names, brake.example_sweep, brake.sweep_results, run)

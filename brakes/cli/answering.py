@@ -1,0 +1,146 @@
+"""The body of every command on a brake: read, solve or sweep, print, write files, warn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import App, Parameter
+
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
+from beamdyn.common.edge.program import NoAnswer
+from brakes.cli.program import warn
+
+if TYPE_CHECKING:
+    from beamdyn.common.edge.html_report import Question
+    from brakes.answers.base import Answer, BrakeType
+
+BrakeFile = Annotated[Path, Parameter(name="BRAKE.toml")]
+SweptInputs = Annotated[tuple[str, ...], Parameter(name="--sweep", negative="", consume_multiple=False)]
+SweepResults = Annotated[str | None, Parameter(name="--result")]
+Files = Mapping[str, tuple[Path | None, Callable[["Answer", Path], object]]]
+
+
+def add_command(app: App, name: str, help: str) -> None:
+    """Give the command line a command on a type of brake that needs no options of its own.
+
+    Parameters
+    ----------
+    app : App
+        The command line.
+    name : str
+        Of the command and of the module in `brakes.answers`.
+    help : str
+        What it shows.
+    """
+
+    @app.command(name=name, help=help)
+    def answer_file(
+        file: BrakeFile,
+        /,
+        *,
+        sweep: SweptInputs = (),
+        result: SweepResults = None,
+        outputs: Outputs = NO_FILES,
+    ) -> None:
+        """Answer a file.
+
+        Parameters
+        ----------
+        file
+            The brake.
+        sweep
+            An input and its values: KEY=start:stop:count unit, e.g. "friction=0.1:0.6:11" or
+            "shoe.lining_end=50:120:15 deg"; twice for two inputs.
+        result
+            Results of a sweep, separated by commas, such as "torque,pin_1"; the file of --csv without a
+            sweep lists all names.
+        outputs
+            Files to write.
+        """
+        brake = import_module(f"brakes.answers.{name}").BRAKE
+        run_command(brake, name, str(file), sweep, result, outputs)
+
+
+def run_command(
+    brake: BrakeType[Any],
+    command: str,
+    file: str,
+    sweep: tuple[str, ...],
+    result: str | None,
+    outputs: Outputs,
+    further: Files | None = None,
+    **options: object,
+) -> None:
+    """Answer a file, print the answer and write the files asked for.
+
+    Parameters
+    ----------
+    brake : BrakeType
+        What the file describes.
+    command : str
+        Name of the command.
+    file : str
+        The file.
+    sweep, result
+        Inputs to sweep with their values, and names of the results.
+    outputs : Outputs
+        Files to write.
+    further : mapping, optional
+        Further options that name a file: the file, if given, and what writes it.
+    **options
+        Options of the command that the HTML report repeats.
+
+    Raises
+    ------
+    NoAnswer
+        If the model has no answer; what there is has been shown.
+    ValueError
+        For bad input.
+    """
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.tables import show
+
+    written = {option: path for option, (path, _) in (further or {}).items()}
+    outputs.check(**written)
+    tables, text = brake.open(file)
+    question = Question.of(f"brakes {command}", file, text, **options, sweep=sweep, result=result)
+    if sweep:
+        _answer_sweep(brake, tables, question, (file, sweep, result), outputs)
+        return
+    if result is not None:
+        raise ValueError("--result goes with --sweep: without one, all results are shown")
+    answer = brake.solve(brake.read(tables, file))
+    show(shown := answer.tables())
+    more = [(title, partial(draw, answer)) for title, draw in brake.more]
+    report = Report(question, shown, [*answer.refusals, *answer.warnings], more)
+    write(answer, outputs, answer.rows(), answer.figure, report)
+    for path, save in (further or {}).values():
+        if path is not None:
+            save(answer, path)
+    warn(answer.warnings)
+    if answer.refusals:
+        raise NoAnswer("; ".join(answer.refusals))
+
+
+def _answer_sweep(
+    brake: BrakeType[Any],
+    tables: Mapping[str, Any],
+    question: Question,
+    request: tuple[str, tuple[str, ...], str | None],
+    outputs: Outputs,
+) -> None:
+    from beamdyn.common.curves import sweep_figure
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.edge.input_sweep import sweep_csv
+    from beamdyn.common.edge.tables import show
+    from brakes.answers.tables import sweep_table
+
+    made, warnings = brake.sweep(tables, *request)
+    show(shown := [sweep_table(made)])
+    report = Report(question, shown, warnings)
+    write(made, outputs, sweep_csv(made), lambda: sweep_figure(made), report)
+    warn(warnings)
