@@ -106,7 +106,7 @@ def test_outside_linear_theory_is_said_in_the_table(run, edited):
     scene = edited(amplitude='velocity_amplitude = "10 m/s"', duration='duration = "0.2 s"')
     code, out, _ = run("simulate", scene, *QUICK)
     assert code == DONE
-    assert "outside linear theory" in out and "leave the road" in out
+    assert "outside linear theory" in out and "leaves the road" in out
 
 
 # resonances, steady -------------------------------------------------------------------------------
