@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from brakes.arrays import Numbers
+from beamdyn.common.array_checks import Numbers
 from brakes.forklift.duo_servo import BENDIX_12_5
 from brakes.forklift.forces import InternalForces, internal_forces
 from brakes.forklift.vehicle import Stop, Truck, stop

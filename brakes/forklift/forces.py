@@ -23,8 +23,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers, positive, together
+from beamdyn.common.checks import refuse
 from beamdyn.common.results import Result
-from brakes.arrays import Numbers, positive, refuse, together
 from brakes.forklift.levers import Levers
 from brakes.forklift.newton import ten_equations
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers, positive
 from beamdyn.common.results import Result
-from brakes.arrays import Numbers, positive
 from brakes.forklift.levers import Levers
 
 _DIVERGED = 1e30  # scaled residual past which an iteration is given up

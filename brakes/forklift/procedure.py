@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers
 from beamdyn.common.results import Result
-from brakes.arrays import Numbers
 from brakes.forklift.duo_servo import BENDIX_12_5, DuoServo, ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
 from brakes.forklift.vehicle import STANDARD_GRAVITY, Stop, Truck, stop

@@ -402,7 +402,7 @@ def test_past_the_end(motion):
         ([3, 4], [0, 1], ("begin at 3 s", "subtract 3 s")),
         ([0, 1], [0, 1, 2], ("2 times and 3 speeds", "as many")),
         ([0], [1], ("at least two",)),
-        ([0, math.nan], [0, 1], ("times contains nan", "finite")),
+        ([0, math.nan], [0, 1], ("times = nan", "finite")),
         ([0, 1], ["a", "b"], ("speeds", "give a sequence of numbers")),
     ],
 )
