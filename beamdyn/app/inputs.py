@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
+from beamdyn.common.edge.units import InvalidInput
 from beamdyn.config import (
     RectangularInput,
     RollingInput,
@@ -35,7 +36,7 @@ class Modes(Quantity):
         """The number."""
         value = super().convert(given)
         if value != int(value):
-            raise ValueError(f"{given}: give a whole number")
+            raise InvalidInput("", given, "give a whole number")
         return value
 
 

@@ -15,6 +15,7 @@ from beamdyn import critical_speed, frequency_locus, resonance_speeds, steady_re
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.app.sweeps import frequency_outputs, steady_outputs, sweeps_of
 from beamdyn.common.app.documents import Document, Drag, Program, Screen
+from beamdyn.common.edge.config import MissingValue
 from beamdyn.config import parse_scene
 from beamdyn.output.plots import mark_critical
 from beamdyn.result_tables import crossings_table, locus_table, steady_table
@@ -81,7 +82,7 @@ def solve_steady(tables: Mapping[str, Any]) -> SteadyResponse:
     """The steady response over speed."""
     scene, top, modes = read(tables)
     if scene.motion is None:
-        raise ValueError("motion.kind: missing; choose the motion that excites the beam")
+        raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
     return steady_response(scene, np.linspace(top / _SPEEDS, top, 2 * _SPEEDS), modes)
 
 

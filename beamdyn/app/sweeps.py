@@ -13,6 +13,8 @@ from beamdyn import critical_speed, natural_modes, resonance_speeds, steady_resp
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.common.app.documents import Sweeps
 from beamdyn.common.app.entries import entries_of
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import Output, Sweep, chosen, numbers, one_by_one, parse_axis
 from beamdyn.scene.scene import Scene
 
@@ -56,7 +58,7 @@ class Asked:
     def amplitudes(self, speeds: np.ndarray) -> np.ndarray:
         """Steady amplitudes [m]; nan where there is none."""
         if self.scene.motion is None:
-            raise ValueError("motion.kind: missing; choose the motion that excites the beam")
+            raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
         return steady_response(self.scene, speeds, self.modes).amplitude
 
     @cached_property
@@ -69,10 +71,9 @@ class Asked:
             If the beam is not damped: then the amplitude at a resonance has no bound.
         """
         if self.scene.damping_ratio == 0 and len(self.crossings):
-            raise ValueError(
-                "model.damping_ratio = 0: without damping the amplitude at a resonance has no bound; "
-                "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
-            )
+            bound = "without damping the amplitude at a resonance has no bound"
+            advice = "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
+            raise InvalidValue("model.damping_ratio", 0.0, bound, advice)
         speeds = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), self.crossings)
         for _ in range(_ROUNDS):
             best = self._largest(speeds)

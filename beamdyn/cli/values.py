@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
@@ -25,13 +26,13 @@ _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 
 def parse_quantity(option: str, text: str, unit: str) -> float:
-    """A number with its unit, in SI, or a ValueError that names the option."""
-    from beamdyn.common.edge.units import quantity
+    """A number with its unit, in SI; an InvalidInput names the option."""
+    from beamdyn.common.edge.units import InvalidInput, quantity
 
     try:
         return quantity(text, unit)
-    except ValueError as error:
-        raise ValueError(f"{option} = {error}") from None
+    except InvalidInput as error:
+        raise replace(error, field=option) from None
 
 
 def parse_positive(option: str, text: str, unit: str) -> float:

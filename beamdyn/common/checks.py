@@ -33,8 +33,8 @@ class InvalidValue(ValueError):
         The bound, where it is a number [unit].
     other : str
         Name of another argument that the message mentions.
-    cases : str
-        How many values of an array are refused, if more than one.
+    where : str
+        Said after the value: where it is refused, or in how many cases.
     """
 
     field: str
@@ -44,11 +44,11 @@ class InvalidValue(ValueError):
     unit: str = ""
     limit: float | None = None
     other: str = ""
-    cases: str = ""
+    where: str = ""
 
     def __str__(self) -> str:
         name, remedy = self.field and f"{self.field} = ", self.remedy and f"; {self.remedy}"
-        return f"{name}{self.shown}{self.cases}: {self._filled(self.bound + remedy)}"
+        return f"{name}{self.shown}{self.where}: {self._filled(self.bound + remedy)}"
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))

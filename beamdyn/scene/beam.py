@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.checks import kind, not_negative, positive, real
+from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, distinct
 
 
@@ -96,10 +96,9 @@ class Beam:
         if self.tip is not None:
             kind("tip", self.tip, TipMass)
         if self.tip is not None and self.length + self.tip.offset < 0:
-            raise ValueError(
-                f"tip.offset = {self.tip.offset:g} m puts the body behind the root of a beam of "
-                f"length {self.length:g} m; give an offset above {-self.length:g} m"
-            )
+            bound = f"it puts the body behind the root of a beam of length {self.length:g} m"
+            remedy = "give an offset above {limit}"
+            raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
 
     @classmethod
     def rectangular(
@@ -218,13 +217,9 @@ def _check_section(length: float, width: Profile, thickness: Profile) -> None:
     edges = np.union1d(width.breakpoints, thickness.breakpoints)
     xi = np.union1d(np.linspace(0, 1, 257), [*(edges[:-1] + 1e-12), *(edges[1:] - 1e-12)])
     b, h = width(xi), thickness(xi)
-    if h.max() > length:
-        raise ValueError(
-            f"thickness = {h.max():g} m exceeds length = {length:g} m; are the two swapped, or the units?"
-        )
-    if (h > b).any():
-        k = int((h > b).argmax())
-        raise ValueError(
-            f"thickness = {h[k]:g} m exceeds width = {b[k]:g} m: the beam bends in the direction of its "
-            "thickness; swap the two, or use Beam.from_stiffness for a section that is meant so"
-        )
+    bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
+    refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)
+    bound = "it exceeds width = {limit}, but the beam bends in the direction of its thickness"
+    advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
+    k = int((h > b).argmax())
+    refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])

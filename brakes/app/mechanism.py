@@ -55,9 +55,9 @@ def solve(tables: Mapping[str, Any]) -> Answer:
     NoAnswer
         If it cannot be assembled or does not reach the end of its stroke.
     """
-    mistakes = [f"{part}: {_why(tables[part])}" for part in PARTS if isinstance(tables.get(part), str)]
-    if mistakes:
-        raise ConfigError("mechanism", mistakes)
+    parts = [part for part in PARTS if isinstance(tables.get(part), str)]
+    if parts:
+        raise ConfigError("mechanism", [f"{part}: {_why(tables[part])}" for part in parts], parts)
     return caliper.solve(tables)
 
 

@@ -458,7 +458,7 @@ class ForkliftInput(Section):
         if torque is None and stopped is not None:
             torque = stopped.torque_per_brake
         assert levers is not None
-        with of_file({"friction = ": "lining_friction = "}):
+        with of_file({"friction": "lining_friction"}):
             return internal_forces(
                 levers,
                 piston_force=self.forces.piston_force,

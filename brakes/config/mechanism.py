@@ -11,9 +11,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model
 
-from beamdyn.common.edge.config import CoreSection, parse, read, validated
+from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from beamdyn.common.edge.units import quantity, show
+from beamdyn.common.edge.units import InvalidInput, quantity, show
 from brakes import planar
 from brakes.calipers import NAMED, Caliper, Design, Stop, stop
 from brakes.planar import GROUND, Mechanism
@@ -77,7 +77,7 @@ class PointQuantity(Quantity):
     def parse(self, given: object) -> Any:
         """Its coordinates [m]."""
         if isinstance(given, str):
-            raise ValueError(f'{show(given)}: no such point in [points]; name one, or give ["1 mm", "2 mm"]')
+            raise InvalidInput("", given, "no such point in [points]", 'name one, or give ["1 mm", "2 mm"]')
         return tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
 
 
@@ -109,7 +109,7 @@ class TravelQuantity(Quantity):
 
 def _two(given: object, example: str) -> list[Any]:
     if not isinstance(given, list) or len(given) != 2:
-        raise ValueError(f"{show(given)}: give two values, e.g. {example}")
+        raise InvalidInput("", given, f"give two values, e.g. {example}")
     return given
 
 
@@ -422,16 +422,17 @@ class MechanismInput(CoreSection):
         run = self.run
         if run.driver is None:
             if run.travel is not None and self.caliper is None:
-                raise ValueError("run.driver: missing; name the load that drives the stroke")
+                raise MissingValue("run.driver", None, "name the load that drives the stroke")
             return
         if run.driver not in loads:
-            raise ValueError(f"run.driver = {show(run.driver)}: no such load; name one of {', '.join(loads)}")
+            raise InvalidInput("run.driver", run.driver, "no such load", f"name one of {', '.join(loads)}")
         if run.travel is None:
-            raise ValueError("run.travel: missing; give the travel of the driver")
+            raise MissingValue("run.travel", None, "give the travel of the driver")
         turns = run.driver in [moment.name for moment in self.moment]
         if turns != isinstance(run.travel, Turned):
             wanted = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
-            raise ValueError(f"run.travel: the driver {show(run.driver)} moves by {wanted}")
+            bound, unit = f"the driver {show(run.driver)} moves by {wanted}", "m" if turns else "rad"
+            raise InvalidInput("run.travel", float(run.travel), bound, unit=unit)
 
 
 def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:

@@ -232,4 +232,4 @@ def test_another_unit_is_the_same_quantity(text, unit, target, expected):
 
 
 def test_mistake_about_no_field_is_kept():
-    assert by_field(["model: something is wrong"], FORKLIFT.inputs({})) == {"": ["model: something is wrong"]}
+    assert by_field(ValueError("something is wrong"), FORKLIFT.inputs({})) == {"": ["something is wrong"]}

@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, get_args, get_origin
 
+from beamdyn.common.edge.config import ConfigError, path_of
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import quantity
 
@@ -132,22 +133,21 @@ def toml_value(value: Any) -> str:
     return repr(value)
 
 
-def by_field(mistakes: Sequence[str], inputs: Sequence[Input]) -> dict[str, list[str]]:
-    """Sentences by the path of the field that each is about; "" for those about no single field."""
-    paths = sorted((entry.path for entry in inputs), key=len, reverse=True)
+def by_field(error: Exception, inputs: Sequence[Input]) -> dict[str, list[str]]:
+    """What an error says, by the path of the field that each sentence is about; "" for no single field."""
+    paths = [entry.path for entry in inputs]
+    if not isinstance(error, ConfigError):
+        return {path_of(error, paths): [str(error)]}
     found: dict[str, list[str]] = {}
-    for sentence in mistakes:
-        found.setdefault(_field(sentence, paths), []).append(sentence)
+    for sentence, place in zip(error.mistakes, error.paths, strict=True):
+        found.setdefault(_field(place, paths), []).append(sentence)
     return found
 
 
-def _field(sentence: str, paths: Sequence[str]) -> str:
-    """The field of a mistake: by its path, by table and name ("shoe: alpha = ..."), by a name alone."""
-    said = re.sub(r"^([\w.]+): (\w+) = ", r"\1.\2 = ", sentence.removeprefix("model: "))
-    found = next((path for path in paths if re.match(rf"{re.escape(path)}(\[|\.| =|:)", said)), "")
-    name = re.match(r"(\w+) = ", said)
-    named = [path for path in paths if name and path.rpartition(".")[2] == name[1]]
-    return found or (named[0] if len(named) == 1 else "")
+def _field(place: str, paths: Sequence[str]) -> str:
+    """The field in which a place lies, which may be a key within an input."""
+    around = [path for path in paths if f"{place}.".startswith(f"{path}.")]
+    return max(around, key=len, default="")
 
 
 def units_for(unit: str) -> tuple[str, ...]:

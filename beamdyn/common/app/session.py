@@ -7,7 +7,6 @@ from typing import Any
 
 from beamdyn.common.app.documents import Document, Screen
 from beamdyn.common.app.entries import Entries, by_field, tables_of, toml_of
-from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 
@@ -82,10 +81,8 @@ class Work:
         self.mistakes[screen.name] = {}
         try:
             answer = screen.solve(tables_of(entries, inputs, screen.needs))
-        except ConfigError as error:
-            self.mistakes[screen.name] = by_field(error.mistakes, inputs)
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            self.mistakes[screen.name] = by_field([str(error)], inputs)
+            self.mistakes[screen.name] = by_field(error, inputs)
         else:
             self.answered[screen.name] = Answered(answer, entries)
             return True

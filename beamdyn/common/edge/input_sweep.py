@@ -12,6 +12,7 @@ import numpy as np
 
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.results import Result
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -184,8 +185,8 @@ def _in_si(entry: Input, number: str, unit: str, said: str) -> float:
     given = f"{number} {unit}".strip() if asked.unit or unit else float(number)
     try:
         return asked.within_bounds(given, asked.convert(given))
-    except ValueError as error:
-        raise ValueError(f"{said}: {entry.path} = {error}") from None
+    except InvalidInput as error:
+        raise ValueError(f"{said}: {replace(error, field=entry.path)}") from None
 
 
 def _find(inputs: Sequence[Input], key: str, said: str) -> Input:

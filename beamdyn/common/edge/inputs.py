@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.common.checks import real
-from beamdyn.common.edge.units import quantity, show
+from beamdyn.common.edge.units import InvalidInput, quantity
 
 
 class Section(BaseModel):
@@ -68,8 +68,8 @@ class Quantity:
 
         Raises
         ------
-        ValueError
-            If it is not such a quantity or out of bounds; the message begins with what was given.
+        InvalidInput
+            If it is not such a quantity or out of bounds; its field is empty.
         """
         return self.within_bounds(given, self.convert(given))
 
@@ -85,8 +85,7 @@ class Quantity:
             or (self.least is not None and value < self.least)
             or (self.most is not None and value > self.most)
         ):
-            unit, remedy = self.unit and f" {self.unit}", self.remedy and f"; {self.remedy}"
-            raise ValueError(f"{show(given)}: it must be {self.bounds}{unit}{remedy}")
+            raise InvalidInput("", given, f"it must be {self.bounds} {self.unit}".rstrip(), self.remedy)
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -185,4 +184,4 @@ def _plain(given: object) -> float:
             return real("", given)
     except (ValueError, OverflowError):
         pass
-    raise ValueError(f"{show(given)}: give a finite number, without a unit or quotes")
+    raise InvalidInput("", given, "give a finite number, without a unit or quotes")

@@ -7,17 +7,16 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import positive, real, real_array
+from beamdyn.common.checks import InvalidValue, one_of, positive, real, real_array, refuse
 from beamdyn.scene.motion.base import (
     Motion,
     MotionSample,
     Turning,
     as_breakpoints,
-    check_choice,
     keep,
     within,
 )
@@ -101,7 +100,7 @@ class SpinUp(Rotation):
     law: Law = "smooth"
 
     def __post_init__(self) -> None:
-        check_choice("law", self.law, Law)
+        one_of("law", self.law, get_args(Law))
         remedy = "for a constant speed from the start give SteadyRotation(speed)"
         duration = positive("duration", self.duration, "s", remedy)
         keep(self, speed=real("speed", self.speed, "rad/s"), duration=duration)
@@ -191,7 +190,7 @@ class SampledRotation(Rotation):
     interpolation: Interpolation = "cubic"
 
     def __post_init__(self) -> None:
-        check_choice("interpolation", self.interpolation, Interpolation)
+        one_of("interpolation", self.interpolation, get_args(Interpolation))
         times, speeds = _table(self.times, self.speeds)
         keep(self, times=tuple(times.tolist()), speeds=tuple(speeds.tolist()))
 
@@ -244,12 +243,16 @@ def _table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray,
     t, v = real_array("times", times), real_array("speeds", speeds)
     if len(t) != len(v) or len(t) < 2:
         raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
-    late = np.diff(t) <= 0
-    if late.any():
-        k = int(late.argmax())
-        raise ValueError(f"times: {t[k]:g} is followed by {t[k + 1]:g} s; sort the table, drop repeats")
-    if t[0] != 0:
-        raise ValueError(f"times begin at {t[0]:g} s; a motion begins at t = 0: subtract {t[0]:g} s from all")
+    refuse(
+        np.diff(t) <= 0,
+        "times",
+        t[1:],
+        "s",
+        "it follows {limit}",
+        "sort the table, drop repeats",
+        limit=t[:-1],
+    )
+    refuse(t[0] != 0, "times", t[0], "s", "a motion begins at t = 0", f"subtract {t[0]:g} s from all")
     return t, v
 
 
@@ -294,7 +297,7 @@ class RotationFunction(Rotation):
     def __post_init__(self) -> None:
         for name in ("angle", "speed", "acceleration"):
             if not callable(getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)!r}: give a function of the time")
+                raise InvalidValue(name, getattr(self, name), "give a function of the time")
         t_end, scale = positive("t_end", self.t_end, "s"), real("scale", self.scale)
         keep(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
         check_consistent(self, t_end)
