@@ -22,8 +22,8 @@ _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the larges
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A scene, and what is asked of it; each answer is found when it is wanted.
+class SweepCase:
+    """A case of a sweep: a scene, and how far and with how many modes; answers are computed when wanted.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
     def run(tables: Mapping[str, Any], text: str, names: str) -> Sweep:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
         wanted = chosen(outputs(_modes(tables)), names, "results")
-        return one_by_one(tables, [axis], wanted, lambda design: Asked(*read(design)))
+        return one_by_one(tables, [axis], wanted, lambda design: SweepCase(*read(design)))
 
     return Sweeps(partial(_names, outputs), example, results, run)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse
+from beamdyn.common.described import Described
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, distinct
 
 
@@ -35,11 +37,27 @@ class TipMass:
         If a value is negative or not finite, or no body has these three moments of inertia.
     """
 
-    mass: float
-    offset: float = 0.0
-    inertia: float = 0.0
-    transverse_inertia: float | None = None
-    axial_inertia: float = 0.0
+    mass: Annotated[float, Described("kg", symbol="m_t", meaning="mass", least=0)]
+    offset: Annotated[
+        float,
+        Described("m", symbol="e", meaning="distance of its centre of gravity beyond the end of the beam"),
+    ] = 0.0
+    inertia: Annotated[
+        float,
+        Described("kg m2", symbol="J_n", meaning="moment of inertia about the axis of bending", least=0),
+    ] = 0.0
+    transverse_inertia: Annotated[
+        float | None,
+        Described(
+            "kg m2",
+            symbol="J_e",
+            meaning="moment of inertia about the direction of bending; else inertia",
+            least=0,
+        ),
+    ] = None
+    axial_inertia: Annotated[
+        float, Described("kg m2", symbol="J_1", meaning="moment of inertia about the beam axis", least=0)
+    ] = 0.0
 
     def __post_init__(self) -> None:
         not_negative("tip.mass", self.mass, "kg")

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 from beamdyn.common.checks import InvalidValue, angle, kind, not_negative, real, refuse
+from beamdyn.common.described import Described
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
+
+_ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
 
 @dataclass(frozen=True)
@@ -30,9 +35,35 @@ class Mount:
         If the radius is negative or an angle exceeds one turn.
     """
 
-    radius: float = 0.0
-    setting_angle: float = 0.0
-    bending_angle: float = 0.0
+    radius: Annotated[
+        float,
+        Described(
+            "m",
+            symbol="r",
+            meaning="distance of the root from the axis of rotation",
+            least=0,
+            required=True,
+            remedy='for a beam that points outward give setting_angle = "180 deg"',
+        ),
+    ] = 0.0
+    setting_angle: Annotated[
+        float,
+        Described(
+            "rad",
+            symbol="phi",
+            meaning="direction of the beam: 0 inward, 90 deg tangential, 180 deg outward",
+            **_ONE_TURN,
+        ),
+    ] = 0.0
+    bending_angle: Annotated[
+        float,
+        Described(
+            "rad",
+            symbol="psi",
+            meaning="angle between the direction of bending and the plane of rotation",
+            **_ONE_TURN,
+        ),
+    ] = 0.0
 
     def __post_init__(self) -> None:
         not_negative(

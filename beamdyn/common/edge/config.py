@@ -158,7 +158,9 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any) -> tupl
         return str(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
         field = f"{place}.{key.removeprefix(path).lstrip('.')}".lstrip(".")
-        return str(InvalidInput(**vars(reason) | {"field": field})), key
+        kind = InvalidInput if type(reason) is InvalidValue else type(reason)
+        said: dict[str, Any] = vars(reason) | {"field": field}
+        return str(kind(**said)), key
     return f"{place or 'model'}: {reason}", path
 
 

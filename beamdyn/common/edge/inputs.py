@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import KW_ONLY, dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.common.checks import real
+from beamdyn.common.described import Described
 from beamdyn.common.edge.units import InvalidInput, quantity
 
 
@@ -21,47 +22,12 @@ class Section(BaseModel):
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """Description of a number, for `Annotated[float, Quantity("m", symbol="L", meaning="length")]`.
+class Quantity(Described):
+    """A number of a file, for ``Annotated[float, Quantity("m", symbol="L", meaning="length")]``.
 
-    A pydantic model then takes it as text with a unit ("50 mm") and holds the value in SI.
-
-    Parameters
-    ----------
-    unit : str
-        SI unit; "" for a plain number, which is given bare.
-    symbol : str
-        Symbol in formulas.
-    meaning : str
-        What it is, for people: a phrase without a full stop.
-    above, below : float, optional
-        Bounds that the value must not reach [unit].
-    least, most : float, optional
-        Smallest and largest value [unit].
-    remedy : str
-        What to do about a value out of bounds.
+    A pydantic model takes it as text with a unit ("50 mm"), or bare where its unit is "", and holds the
+    value in SI.
     """
-
-    unit: str = ""
-    _: KW_ONLY
-    symbol: str = ""
-    meaning: str = ""
-    above: float | None = None
-    below: float | None = None
-    least: float | None = None
-    most: float | None = None
-    remedy: str = ""
-
-    @property
-    def bounds(self) -> str:
-        """Bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
-        words = {
-            "greater than": self.above,
-            "at least": self.least,
-            "below": self.below,
-            "at most": self.most,
-        }
-        return ", ".join(f"{word} {bound:g}" for word, bound in words.items() if bound is not None)
 
     def parse(self, given: object) -> float:
         """The value in SI of what was given.
@@ -136,7 +102,12 @@ class Input:
         return f"{q.meaning}{unit}{bounds}"
 
 
-def describe(model: type[BaseModel], prefix: str = "") -> list[Input]:
+Choice = Callable[[str, Sequence[type[BaseModel]]], Sequence[type[BaseModel]]]
+
+
+def describe(
+    model: type[BaseModel], prefix: str = "", choose: Choice = lambda _, models: models
+) -> list[Input]:
     """All inputs of a model and of the models within it, in their order.
 
     Parameters
@@ -145,24 +116,27 @@ def describe(model: type[BaseModel], prefix: str = "") -> list[Input]:
         Its fields are quantities, plain types with a `description`, or further models.
     prefix : str
         Put before each path.
+    choose : callable
+        Where a table has alternatives (two kinds of beam), its path and the models of all in, those to
+        describe out.
 
     Returns
     -------
     list of Input
-        Where a field has alternatives (two kinds of beam), the inputs of all.
     """
     return [
-        found
+        entry
         for name, field in model.model_fields.items()
-        for found in _describe(model, prefix + name, field)
+        for entry in _describe(model, prefix + name, field, choose)
     ]
 
 
-def _describe(section: type[BaseModel], path: str, field: FieldInfo) -> list[Input]:
+def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Choice) -> list[Input]:
     parts = [*_parts(field.annotation), *field.metadata]
     models = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
     if models:
-        return [found for model in models for found in describe(model, path + ".")]
+        chosen = choose(path, models) if len(models) > 1 else models
+        return [entry for model in chosen for entry in describe(model, path + ".", choose)]
     described = next((p for p in parts if isinstance(p, Quantity)), Quantity(meaning=field.description or ""))
     choices = next((get_args(p) for p in parts if get_origin(p) is Literal), ())
     required = field.is_required()

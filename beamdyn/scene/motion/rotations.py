@@ -7,11 +7,12 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, one_of, positive, real, real_array, refuse
+from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import (
     Motion,
     MotionSample,
@@ -49,7 +50,7 @@ class SteadyRotation(Rotation):
         Speed [rad/s].
     """
 
-    speed: float
+    speed: Annotated[float, Described("rad/s", symbol="omega", meaning="angular speed of the carrier")]
 
     def __post_init__(self) -> None:
         keep(self, speed=real("speed", self.speed, "rad/s"))
@@ -95,9 +96,9 @@ class SpinUp(Rotation):
         If the duration is not positive or there is no such law.
     """
 
-    speed: float
-    duration: float
-    law: Law = "smooth"
+    speed: Annotated[float, Described("rad/s", symbol="omega_s", meaning="angular speed of the carrier")]
+    duration: Annotated[float, Described("s", symbol="T", meaning="time that the spin-up takes", above=0)]
+    law: Annotated[Law, Described(meaning="law of the spin-up")] = "smooth"
 
     def __post_init__(self) -> None:
         one_of("law", self.law, get_args(Law))
@@ -185,9 +186,11 @@ class SampledRotation(Rotation):
         If the times do not ascend from 0, or there are not as many speeds as times.
     """
 
-    times: Sequence[float]
-    speeds: Sequence[float]
-    interpolation: Interpolation = "cubic"
+    times: Sequence[Annotated[float, Described("s", symbol="t", meaning="times of the table, from 0")]]
+    speeds: Sequence[Annotated[float, Described("rad/s", symbol="omega", meaning="speeds at these times")]]
+    interpolation: Annotated[
+        Interpolation, Described(meaning="cubic spline, or cubics that do not overshoot")
+    ] = "cubic"
 
     def __post_init__(self) -> None:
         one_of("interpolation", self.interpolation, get_args(Interpolation))
