@@ -10,7 +10,8 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.tables import supported, table
+from beamdyn.common.digits import supported
+from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
     from beamdyn.spectrum.critical import SettingAngleLimits

@@ -14,7 +14,7 @@ from rich.console import RenderableType
 from beamdyn import critical_speed, frequency_locus, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.app.sweeps import frequency_outputs, steady_outputs, sweeps_of
-from beamdyn.common.app.documents import Document, Drag, Program, Screen
+from beamdyn.common.app.screens import Document, Drag, Program, Screen
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.config import parse_scene
 from beamdyn.output.plots import mark_critical

@@ -11,11 +11,11 @@ import numpy as np
 
 from beamdyn import critical_speed, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
-from beamdyn.common.app.documents import Sweeps
-from beamdyn.common.app.entries import entries_of
+from beamdyn.common.app.form_entries import entries_of
+from beamdyn.common.app.screens import Sweeps
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.input_sweep import Output, Sweep, chosen, numbers, one_by_one, parse_axis
+from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, numbers, one_by_one, parse_axis
 from beamdyn.scene.scene import Scene
 
 _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the largest, how often these close in
@@ -122,7 +122,7 @@ def steady_outputs(_: int) -> list[Output]:
 def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
     """The sweeps of a screen whose outputs follow from the number of modes."""
 
-    def run(tables: Mapping[str, Any], text: str, names: str) -> Sweep:
+    def run(tables: Mapping[str, Any], text: str, names: str) -> InputSweep:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
         wanted = chosen(outputs(_modes(tables)), names, "results")
         return one_by_one(tables, [axis], wanted, lambda design: SweepCase(*read(design)))

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Discretization = Literal["ritz", "fem"]
+BasisSize = int | Literal["auto"]
 
 _MOST_SPEEDS = 100_000
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")

@@ -20,8 +20,8 @@ def sweep_figure(found: Any) -> Figure:
 
     Parameters
     ----------
-    found : Sweep
-        See `beamdyn.common.edge.input_sweep.Sweep`.
+    found : InputSweep
+        See `beamdyn.common.edge.input_sweep.InputSweep`.
 
     Returns
     -------

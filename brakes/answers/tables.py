@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import Group
 
-from beamdyn.common.edge.input_sweep import Output, Sweep, columns, sweep_rows
+from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
 from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
@@ -205,7 +205,7 @@ def forces_table(answers: Sequence[ForkliftAnswer], heads: Sequence[str]) -> Gro
 # Sweeps -------------------------------------------------------------------------------------------------
 
 
-def sweep_table(found: Sweep) -> Group:
+def sweep_table(found: InputSweep) -> Group:
     """The table of a sweep: some of its rows, if there are many."""
     rows = [*sweep_rows(found)]
     shown = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), _SHOWN)).round().astype(int))

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.app.documents import Document, Screen, Slider, Sweeps
+from beamdyn.common.app.screens import Document, Screen, Slider, Sweeps
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.input_sweep import Sweep, chosen, numbers, one_by_one, parse_axis
+from beamdyn.common.edge.input_sweep import InputSweep, chosen, numbers, one_by_one, parse_axis
 from beamdyn.common.edge.inputs import Input
 from brakes.answers import caliper_sweeps
 from brakes.answers.caliper import Answer, CaliperAnswer, answer_to
@@ -88,7 +88,7 @@ def notes(found: Answer) -> Sequence[str]:
     return (*refused, *found.warnings)
 
 
-def run_sweep(tables: Mapping[str, Any], text: str, results: str) -> Sweep:
+def run_sweep(tables: Mapping[str, Any], text: str, results: str) -> InputSweep:
     """A sweep of one input of a caliper or mechanism."""
     axis = parse_axis(numbers(inputs_of_tables(tables)), text, "sweep")
     wanted = chosen(caliper_sweeps.outputs_of(tables), results, "results")

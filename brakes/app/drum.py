@@ -8,13 +8,13 @@ from typing import Any
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.documents import Document, Screen, Sweeps
+from beamdyn.common.app.screens import Document, Screen, Sweeps
 from beamdyn.common.edge.inputs import describe
 from brakes.answers.tables import drum_outputs, drum_tables, outputs_csv
 from brakes.app.bases import base
 from brakes.app.handles import of_drum
 from brakes.config.drum import DrumInput, drum_from_dict, parse_drum
-from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
+from brakes.config.sweeps import InputSweep, chosen, parse_axis, replaced, sweep
 from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult
 
@@ -39,7 +39,7 @@ def notes(found: BrakeResult) -> Sequence[str]:
     return (found.message,) if found.locked else ()
 
 
-def run_sweep(tables: Mapping[str, Any], text: str, results: str) -> Sweep:
+def run_sweep(tables: Mapping[str, Any], text: str, results: str) -> InputSweep:
     """A sweep of one input."""
     design = drum_from_dict(tables)
     axes = [parse_axis(design, text, "sweep")]

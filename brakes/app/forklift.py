@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.documents import Document, Handle, Screen, Slider, Sweeps
+from beamdyn.common.app.screens import Document, Handle, Screen, Slider, Sweeps
 from beamdyn.common.edge.inputs import describe
 from brakes.answers.tables import (
     forces_table,
@@ -29,7 +29,7 @@ from brakes.config.forklift import (
     forklift_from_dict,
     parse_forklift,
 )
-from brakes.config.sweeps import Sweep, chosen, parse_axis, replaced, sweep
+from brakes.config.sweeps import InputSweep, chosen, parse_axis, replaced, sweep
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import truck
 
@@ -141,7 +141,7 @@ def kinematics_handles(found: Both, progress: float) -> Sequence[Handle]:
 # Sweeps -------------------------------------------------------------------------------------------------
 
 
-def run_sweep(stage: StageName, tables: Mapping[str, Any], text: str, results: str) -> Sweep:
+def run_sweep(stage: StageName, tables: Mapping[str, Any], text: str, results: str) -> InputSweep:
     """A sweep of one input."""
     design = forklift_from_dict(tables)
     axes = [parse_axis(design, text, "sweep")]

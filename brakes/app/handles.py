@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.app.documents import Handle
+from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.inputs import describe
 from brakes.config.mechanism import CaliperInput
 from brakes.drawings.duo_servo import moved

@@ -10,7 +10,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from beamdyn.common.app.documents import Document, Handle, Screen, Slider
+from beamdyn.common.app.screens import Document, Handle, Screen, Slider
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show

@@ -1,6 +1,6 @@
 """The program ``brakes app``."""
 
-from beamdyn.common.app.documents import Program
+from beamdyn.common.app.screens import Program
 from brakes.app.caliper import CALIPER
 from brakes.app.drum import DRUM
 from brakes.app.forklift import FORKLIFT

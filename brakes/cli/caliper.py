@@ -14,7 +14,7 @@ from brakes.cli.program import app, warn
 from brakes.cli.sweeps import Results, Sweeps, axes_of, show_sweep
 
 if TYPE_CHECKING:
-    from beamdyn.common.edge.input_sweep import Sweep
+    from beamdyn.common.edge.input_sweep import InputSweep
 
 
 @app.command
@@ -86,7 +86,7 @@ def caliper(
         raise NoAnswer(answer.message)
 
 
-def _swept(design: Mapping[str, Any], source: str, texts: Sweeps, names: Results) -> Sweep:
+def _swept(design: Mapping[str, Any], source: str, texts: Sweeps, names: Results) -> InputSweep:
     from beamdyn.common.edge.input_sweep import chosen, numbers, one_by_one, parse_axis
     from brakes.answers.caliper_sweeps import outputs_of, solve
     from brakes.config.mechanism_inputs import inputs_of_tables

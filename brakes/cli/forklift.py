@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from beamdyn.common.edge.html_report import Report
-    from beamdyn.common.edge.input_sweep import Sweep
+    from beamdyn.common.edge.input_sweep import InputSweep
     from brakes.config.forklift import ForkliftAnswer, ForkliftInput, StageName
 
 ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
@@ -103,7 +103,7 @@ def _swept(
     model: ModelChoice | None,
     texts: Sweeps,
     names: Results,
-) -> tuple[Sweep, ForkliftAnswer]:
+) -> tuple[InputSweep, ForkliftAnswer]:
     from beamdyn.common.edge.input_sweep import chosen
     from brakes.answers.tables import forklift_outputs
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.input_sweep import Axis, Output, Sweep
+    from beamdyn.common.edge.input_sweep import Axis, InputSweep, Output
 
 Sweeps = Annotated[tuple[str, ...], Parameter(name="--sweep", negative="", consume_multiple=False)]
 Results = Annotated[str | None, Parameter(name="--result")]
@@ -24,7 +24,7 @@ def run_sweep(
     texts: Sequence[str],
     outputs: Sequence[Output],
     solve: Callable[[Any], Any],
-) -> tuple[Sweep, Any]:
+) -> tuple[InputSweep, Any]:
     """A sweep over one or two inputs, and the answer with arrays that it is from."""
     from brakes.config.sweeps import parse_axis, replaced, sweep
 
@@ -41,7 +41,7 @@ def axes_of(texts: Sequence[str], parse: Callable[[str], Axis]) -> list[Axis]:
     return axes
 
 
-def show_sweep(found: Sweep, files: Outputs, question: Question, warnings: Sequence[str]) -> None:
+def show_sweep(found: InputSweep, files: Outputs, question: Question, warnings: Sequence[str]) -> None:
     """Print a sweep and write its files."""
     from beamdyn.common.curves import sweep_figure
     from beamdyn.common.edge.html_report import Report

@@ -9,10 +9,10 @@ import numpy as np
 from pydantic import BaseModel
 
 from beamdyn.common.edge import input_sweep as sweeps
-from beamdyn.common.edge.input_sweep import Axis, Output, Sweep, chosen
+from beamdyn.common.edge.input_sweep import Axis, InputSweep, Output, chosen
 from beamdyn.common.edge.inputs import Input, describe
 
-__all__ = ["Axis", "Output", "Sweep", "chosen", "parse_axis", "replaced", "sweep"]
+__all__ = ["Axis", "InputSweep", "Output", "chosen", "parse_axis", "replaced", "sweep"]
 
 Design = TypeVar("Design", bound=BaseModel)
 
@@ -45,7 +45,7 @@ def _with(model: Design, path: str, values: np.ndarray) -> Design:
     return type(model).model_construct(**fields)
 
 
-def sweep(axes: Sequence[Axis], outputs: Sequence[Output], answer: Any) -> Sweep:
+def sweep(axes: Sequence[Axis], outputs: Sequence[Output], answer: Any) -> InputSweep:
     """The results of a design with arrays.
 
     Parameters
@@ -59,6 +59,6 @@ def sweep(axes: Sequence[Axis], outputs: Sequence[Output], answer: Any) -> Sweep
 
     Returns
     -------
-    Sweep
+    InputSweep
     """
     return sweeps.sweep(axes, outputs, [output.shown(answer) for output in outputs])

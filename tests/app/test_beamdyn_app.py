@@ -6,23 +6,23 @@ import pytest
 from beamdyn import frequency_locus, load_scene
 from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
 
 
 @pytest.mark.parametrize("screen", SCENE.screens, ids=lambda s: s.name)
 def test_screen_answers_draws_and_tabulates(screen):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     assert work.solve(screen), work.mistakes
     answer = work.answered[screen.name].answer
     assert drawn(screen, answer, 1.0).startswith("<?xml")
-    assert "<table>" in html(screen.report(answer))
+    assert "<table>" in html(screen.tables(answer))
     assert len(csv_text(screen.rows(answer)).splitlines()) > 100
 
 
 def test_frequencies_are_those_of_the_function():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.put("mount.setting_angle", "90 deg")
     work.put("asked.modes", "3")
     assert work.solve(LOCUS), work.mistakes
@@ -32,7 +32,7 @@ def test_frequencies_are_those_of_the_function():
 
 
 def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     (tmp_path / "scene.toml").write_text(work.text(), encoding="utf-8")
     assert load_scene(tmp_path / "scene.toml") == SCENE.check(SCENE.base, "base")
 
@@ -49,7 +49,7 @@ def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
     ],
 )
 def test_mistake_is_at_its_field(path, text, sentence):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.put(path, text)
     assert not work.solve(LOCUS)
     ((where, said),) = work.mistakes[LOCUS.name].items()
@@ -61,7 +61,7 @@ def test_mistake_is_at_its_field(path, text, sentence):
     "kind, more", [("steady", {"speed"}), ("sampled", {"times"}), ("rolling", {"rolling_radius"})]
 )
 def test_motion_chooses_its_inputs(kind, more):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.put("motion.kind", kind)
     names = {entry.path.removeprefix("motion.") for entry in work.inputs if entry.path.startswith("motion.")}
     assert more <= names
@@ -69,7 +69,7 @@ def test_motion_chooses_its_inputs(kind, more):
 
 
 def test_steady_response_without_motion_says_what_is_missing():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.open("\n".join(SCENE.base.partition("[motion]")[:1]), "scene")
     assert work.solve(LOCUS), work.mistakes
     assert not work.solve(STEADY)
@@ -77,7 +77,7 @@ def test_steady_response_without_motion_says_what_is_missing():
 
 
 def test_tapered_beam_is_opened_and_saved():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     text = SCENE.base.replace('thickness = "0.2 mm"', 'thickness = { polynomial = ["0.3 mm", "-0.1 mm"] }')
     work.open(text, "tapered")
     assert work.solve(LOCUS), work.mistakes
@@ -85,7 +85,7 @@ def test_tapered_beam_is_opened_and_saved():
 
 
 def test_hostile_text_changes_nothing():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     before = dict(work.entries)
     with pytest.raises(ConfigError):
         work.open("[beam]\nlength = '1 m'\n__import__ = 'os'", "hostile")

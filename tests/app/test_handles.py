@@ -10,7 +10,7 @@ from matplotlib.patches import Circle
 
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.handles import sheet, told, written
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.rendering import address
 from brakes.app.caliper import CALIPER
 from brakes.app.drum import DRUM
@@ -24,7 +24,7 @@ WITHOUT = {"Internal forces"}
 
 
 def answered(document, screen, entries=()):
-    work = Work(document)
+    work = OpenDocument(document)
     for path, text in dict(entries).items():
         work.put(path, text)
     assert work.solve(screen), work.mistakes
@@ -322,8 +322,10 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
     async def body(page, handles):
         label = "pin of the shoe"
         x, y = handles.place(label)
-        kept = Work.solve
-        monkeypatch.setattr(Work, "solve", lambda self, screen: solved.append(screen) or kept(self, screen))
+        kept = OpenDocument.solve
+        monkeypatch.setattr(
+            OpenDocument, "solve", lambda self, screen: solved.append(screen) or kept(self, screen)
+        )
         for i in range(1, 31):
             handles.send(label, "pointerdown", x + 0.001 * i, y - 0.001 * i, False)
         handles.send(label, "pointerdown", x + 0.03, y - 0.03, True)

@@ -17,7 +17,7 @@ import pytest
 
 from beamdyn import load_scene
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER, main
-from beamdyn.cli.motion import _how_to_resume
+from beamdyn.cli.transients import _how_to_resume
 from beamdyn.cli.values import parse_window
 from beamdyn.result_tables import peaks
 
@@ -80,7 +80,7 @@ def test_digits_that_the_modes_left_out_spoil_are_not_printed(run):
 
 
 def test_simulate_writes_files(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.cli.motion._FRAMES", 7)
+    monkeypatch.setattr("beamdyn.cli.transients._FRAMES", 7)
     names = ("j.json", "c.csv", "p.png", "s.xdmf", "a.gif")
     j, c, p, s, a = (tmp_path / name for name in names)
     files = ("--json", j, "--csv", c, "--plot", p, "--series", s, "--animation", a)

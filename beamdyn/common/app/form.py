@@ -8,8 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.documents import Drag
-from beamdyn.common.app.entries import in_unit, toml_value, units_for
+from beamdyn.common.app.form_entries import in_unit, toml_value, units_for
+from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show
 

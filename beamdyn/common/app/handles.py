@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.app.documents import Handle, Screen
-from beamdyn.common.app.entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.app.form_entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import drawing
 from beamdyn.common.edge.units import quantity

@@ -7,11 +7,11 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.board import STYLE as BOARD
 from beamdyn.common.app.document_report import report_of
-from beamdyn.common.app.documents import Document, Program, Screen
-from beamdyn.common.app.panel import Panel
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.draggable_drawing import STYLE as BOARD
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screen_view import ScreenView
+from beamdyn.common.app.screens import Document, Program, Screen
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import STYLE
 
@@ -74,8 +74,8 @@ class Page:
 
     def __init__(self, program: Program) -> None:
         self.program = program
-        self.works = {document.name: Work(document) for document in program.documents}
-        self.panels: dict[str, Panel] = {}
+        self.works = {document.name: OpenDocument(document) for document in program.documents}
+        self.panels: dict[str, ScreenView] = {}
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
@@ -109,7 +109,7 @@ class Page:
         ):
             for name, (document, screen) in self.places.items():
                 with ui.tab_panel(name):
-                    self.panels[name] = Panel(self.works[document.name], screen, self._edited)
+                    self.panels[name] = ScreenView(self.works[document.name], screen, self._edited)
         with ui.dialog() as self._dialog, ui.card():
             ui.label("Open a TOML file, as the commands read it")
             self._upload: Any = ui.upload(

@@ -9,12 +9,12 @@ from typing import Any
 
 from nicegui import run, ui
 
-from beamdyn.common.app.documents import Screen, Sweeps
-from beamdyn.common.app.entries import Entries, in_unit, tables_of
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.form_entries import Entries, in_unit, tables_of
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Screen, Sweeps
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.input_sweep import Coordinate, Sweep, numbers, sweep_csv
+from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.rendering import csv_text, drawing, picture, png
@@ -29,9 +29,9 @@ _Asked = tuple[Entries, str, str]  # the design, the input with its values, the 
 class SweepPanel:
     """A folded panel below a screen's results."""
 
-    def __init__(self, work: Work, screen: Screen, sweeps: Sweeps) -> None:
+    def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps) -> None:
         self.work, self.screen, self.sweeps = work, screen, sweeps
-        self._found: tuple[_Asked, Sweep] | None = None
+        self._found: tuple[_Asked, InputSweep] | None = None
         self._shown: Entries | None = None
         path, _, values = sweeps.example.partition("=")
         self._fold: Any = ui.expansion("Sweep an input", on_value_change=self.state)
@@ -85,7 +85,7 @@ class SweepPanel:
         if (entry := self._inputs().get(self._input.value)) is not None:
             self._values.set_value(around(entry, self.work.entries))
 
-    async def _run(self) -> Sweep | None:
+    async def _run(self) -> InputSweep | None:
         """The sweep asked for; None if there is none, and then it says why."""
         text = f"{self._input.value}={self._values.value}"
         names = ",".join(self._results.value)

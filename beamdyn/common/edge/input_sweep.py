@@ -80,7 +80,7 @@ class Output:
 
 
 @dataclass(frozen=True)
-class Sweep(Result):
+class InputSweep(Result):
     """Results over one or two inputs.
 
     Attributes
@@ -231,7 +231,7 @@ def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> l
 
 def sweep(
     axes: Sequence[Axis], outputs: Sequence[Output], found: Sequence[Any], warnings: Sequence[str] = ()
-) -> Sweep:
+) -> InputSweep:
     """Results over inputs.
 
     Parameters
@@ -246,7 +246,7 @@ def sweep(
         Where there is no answer, and why.
     """
     shape = tuple(len(axis.values) for axis in reversed(axes))
-    return Sweep(
+    return InputSweep(
         inputs=tuple(axis.input.path for axis in axes),
         units=tuple(axis.unit for axis in axes),
         values=tuple(axis.given for axis in axes),
@@ -262,7 +262,7 @@ def one_by_one(
     axes: Sequence[Axis],
     outputs: Sequence[Output],
     solve: Callable[[Mapping[str, Any]], Any],
-) -> Sweep:
+) -> InputSweep:
     """A sweep that solves each case by itself, for designs that take no arrays.
 
     Parameters
@@ -333,13 +333,13 @@ def _put(tables: Mapping[str, Any], path: Sequence[str], change: Callable[[Any],
 # Its rows -----------------------------------------------------------------------------------------------
 
 
-def sweep_csv(found: Sweep) -> Iterator[Sequence[object]]:
+def sweep_csv(found: InputSweep) -> Iterator[Sequence[object]]:
     """Rows of a sweep's CSV file, with its heads."""
     yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(found)]
     yield from sweep_rows(found)
 
 
-def sweep_rows(found: Sweep) -> Iterator[list[float]]:
+def sweep_rows(found: InputSweep) -> Iterator[list[float]]:
     """Inputs and results, one row a case; the first input changes fastest."""
     grids = np.meshgrid(*found.values, indexing="xy") if len(found.values) > 1 else found.values
     cells = [np.ravel(values) for values in (*grids, *found.found)]
@@ -347,7 +347,7 @@ def sweep_rows(found: Sweep) -> Iterator[list[float]]:
         yield [*row]
 
 
-def columns(found: Sweep) -> list[tuple[str, str]]:
+def columns(found: InputSweep) -> list[tuple[str, str]]:
     """Names and units of the columns: inputs, then results."""
     inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in found.inputs)
     return [*zip(inputs, found.units, strict=True), *zip(found.results, found.result_units, strict=True)]

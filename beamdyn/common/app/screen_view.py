@@ -8,23 +8,23 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.board import Board
-from beamdyn.common.app.documents import Handle, Screen
-from beamdyn.common.app.entries import Entries
+from beamdyn.common.app.draggable_drawing import DraggableDrawing
+from beamdyn.common.app.folded_drawing import FoldedDrawing
 from beamdyn.common.app.form import Form
-from beamdyn.common.app.further import Further
+from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, sheet, told, written
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.app.sweep_panel import SweepPanel
 from beamdyn.common.edge.rendering import csv_text, html, png
 
 
-class Panel:
+class ScreenView:
     """A screen of a document that is worked on.
 
     Parameters
     ----------
-    work : Work
+    work : OpenDocument
         The document.
     screen : Screen
         Which of its screens.
@@ -32,7 +32,7 @@ class Panel:
         Called after a field of this screen has changed.
     """
 
-    def __init__(self, work: Work, screen: Screen, edited: Callable[[], object]) -> None:
+    def __init__(self, work: OpenDocument, screen: Screen, edited: Callable[[], object]) -> None:
         self.work, self.screen, self._edited = work, screen, edited
         self._drawn = ""
         with ui.element("div").classes("screen"):
@@ -48,9 +48,9 @@ class Panel:
         self._good: Any = ui.column().classes("w-full gap-2 shown")
         with self._good:
             self._slider()
-            self.board = Board(f"{self.screen.name}: drawing of the result", self._moved)
+            self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
             self._tables: Any = ui.html("", sanitize=False).classes("w-full")
-            self._more = [Further(title, draw) for title, draw in self.screen.more]
+            self._more = [FoldedDrawing(title, draw) for title, draw in self.screen.more]
         self._exports()
         sweeps = self.screen.sweeps
         self._sweep = None if sweeps is None else SweepPanel(self.work, self.screen, sweeps)
@@ -136,7 +136,7 @@ class Panel:
 
     def _show(self) -> None:
         answer = self.work.answered[self.screen.name].answer
-        self._tables.set_content(html(self.screen.report(answer)))
+        self._tables.set_content(html(self.screen.tables(answer)))
         self._draw()
         if self.board.held is None:  # while a point is moved, its drawing alone follows
             for more in self._more:

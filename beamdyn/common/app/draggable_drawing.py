@@ -9,8 +9,8 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.documents import Handle
 from beamdyn.common.app.handles import Place, Sheet, View
+from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.rendering import address
 
 STYLE = """
@@ -57,7 +57,7 @@ _KEY = """(event) => {
 }"""
 
 
-class Board:
+class DraggableDrawing:
     """A drawing with its handles.
 
     Parameters

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.app.entries import Entries, entries_of
+from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-    from beamdyn.common.edge.input_sweep import Sweep
+    from beamdyn.common.edge.input_sweep import InputSweep
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Sweeps:
     names: Callable[[Mapping[str, Any]], Sequence[str]]
     example: str
     results: str
-    run: Callable[[Mapping[str, Any], str, str], Sweep]
+    run: Callable[[Mapping[str, Any], str, str], InputSweep]
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Screen:
         Tables, or inputs outside any, that its result follows from.
     solve : callable
         Tables in, answer out.
-    report : callable
+    tables : callable
         The answer as tables and sentences.
     draw : callable
         Answer and place of the slider in, figure out.
@@ -150,7 +150,7 @@ class Screen:
     sections: tuple[str, ...]
     needs: tuple[str, ...]
     solve: Callable[[Mapping[str, Any]], Any]
-    report: Callable[[Any], Sequence[RenderableType]]
+    tables: Callable[[Any], Sequence[RenderableType]]
     draw: Callable[[Any, float], Figure]
     notes: Callable[[Any], Sequence[str]]
     rows: Callable[[Any], Iterable[Sequence[object]]]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from beamdyn.common.app.documents import Document, Screen
-from beamdyn.common.app.entries import Entries, by_field, tables_of, toml_of
+from beamdyn.common.app.form_entries import Entries, by_field, tables_of, toml_of
+from beamdyn.common.app.screens import Document, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 
@@ -20,7 +20,7 @@ class Answered:
 
 
 @dataclass
-class Work:
+class OpenDocument:
     """A document that is worked on: a state, which each client has for itself.
 
     Parameters

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Further:
+class FoldedDrawing:
     """A folded drawing of an answer.
 
     Parameters

@@ -139,7 +139,8 @@ def critical(
         Overwrite a file that exists.
     """
     from beamdyn import critical_point, load_scene
-    from beamdyn.common.edge.tables import console, supported
+    from beamdyn.common.digits import supported
+    from beamdyn.common.edge.tables import console
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
