@@ -1,4 +1,4 @@
-"""What the beam's screens ask for: a scene, and what is asked of it."""
+"""The form of the beam's screens: the tables of a scene, and the options that commands have."""
 
 from __future__ import annotations
 
@@ -8,11 +8,19 @@ from typing import Annotated, Any, get_args
 
 from pydantic import BaseModel, Field
 
+from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
 from beamdyn.scene.scene import Scene
+
+TABLES = ("asked", "mount", "beam", "motion", "model")  # on the form of each screen, in this order
+DRAGS = (
+    Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
+    Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
+    Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
+)
 
 
 class ModeCount(Quantity):
@@ -27,7 +35,7 @@ class ModeCount(Quantity):
 
 
 class AskedInput(Section):
-    """What is asked of a scene: on the command line these are options."""
+    """[asked]: speed range and number of modes, which are options on the command line."""
 
     top_speed: Annotated[
         float, Quantity("rad/s", symbol="omega", meaning="top speed", above=0, remedy='e.g. "150 rad/s"')

@@ -1,14 +1,13 @@
-"""Commands about natural frequencies: at one speed, over speed, where they vanish."""
+"""Commands on natural frequencies: at one speed, over speed, and where the beam buckles."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beamdyn.cli.program import app, warn
-from beamdyn.cli.values import Discretization, SceneFile, Text, asked_speed, parse_positive, parse_speeds
+from beamdyn.cli.values import Discretization, SceneFile, Text, parse_positive, parse_speeds, speed_or_final
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
 from beamdyn.common.edge.program import NoAnswer
 
@@ -30,42 +29,43 @@ def modes(
     shapes: Path | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Natural frequencies, errors and stability at one speed.
+    """Natural frequencies at one speed, with their errors and stability.
 
     Parameters
     ----------
     scene
         The scene.
     speed
-        With its unit, e.g. "50 rad/s" or "525 rpm"; if not given, that of the scene's motion, or rest.
+        Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion,
+        or 0 without one.
     modes
-        How many modes.
+        Number of modes, from the lowest.
     discretization
-        Assumed modes or finite elements: each checks the other.
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
-        Relative error that is allowed: the cheapest model that keeps it is chosen.
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
     outputs
-        Files to write.
+        Output files.
     """
     from beamdyn import load_scene, natural_modes
     from beamdyn.common.edge.html_report import Question, Report
     from beamdyn.common.edge.tables import show
-    from beamdyn.result_tables import modes_table
+    from beamdyn.result_tables import modes_csv, modes_table
 
     outputs.check(shapes=shapes)
     loaded = load_scene(scene)
-    asked = Question.on_file(
+    question = Question.on_file(
         "beamdyn modes", scene, speed=speed, modes=modes, discretization=discretization, tolerance=tolerance
     )
-    found = natural_modes(loaded, asked_speed(loaded, speed), modes, discretization, tolerance)
-    warnings, refusal = [w for w in found.warnings if not w.startswith("unstable")], _unstable(found)
-    show(tables := [modes_table(found)])
-    report = Report(asked, tables, [*warnings, *refusal])
-    write(found, outputs, _modes_csv(found), on_axes(found.plot), report)
+    result = natural_modes(loaded, speed_or_final(loaded, speed), modes, discretization, tolerance)
+    warnings, refusal = [w for w in result.warnings if not w.startswith("unstable")], _unstable(result)
+    show(tables := [modes_table(result)])
+    report = Report(question, tables, [*warnings, *refusal])
+    write(result, outputs, modes_csv(result), on_axes(result.plot), report)
     if shapes is not None:
-        _write_shapes(found, shapes, outputs.force)
+        _write_shapes(result, shapes, outputs.force)
     warn(warnings)
     if refusal:
         raise NoAnswer(refusal[0])
@@ -82,38 +82,38 @@ def locus(
     tolerance: float | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Natural frequencies over speed, each mode followed through crossings.
+    """Natural frequencies over speed; each mode is tracked through crossings.
 
     Parameters
     ----------
     scene
         The scene.
     speeds
-        With their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50, 100 rad/s".
+        Speeds with their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50, 100 rad/s".
     modes
-        How many modes.
+        Number of modes, from the lowest.
     discretization
-        Assumed modes or finite elements: each checks the other.
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
-        Relative error that is allowed: the cheapest model that keeps it is chosen.
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
     outputs
-        Files to write.
+        Output files.
     """
     from beamdyn import frequency_locus, load_scene
     from beamdyn.common.edge.html_report import Question, Report
     from beamdyn.common.edge.tables import show
-    from beamdyn.result_tables import locus_table
+    from beamdyn.result_tables import locus_csv, locus_table
 
     outputs.check()
     given = parse_speeds(speeds)
-    asked = Question.on_file(
+    question = Question.on_file(
         "beamdyn locus", scene, speeds=speeds, modes=modes, discretization=discretization, tolerance=tolerance
     )
-    found = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
-    show(tables := [locus_table(found)])
-    report = Report(asked, tables, found.warnings)
-    write(found, outputs, _locus_csv(found), on_axes(partial(_draw_locus, found)), report)
-    warn(found.warnings)
+    result = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
+    show(tables := [locus_table(result)])
+    report = Report(question, tables, result.warnings)
+    write(result, outputs, locus_csv(result), on_axes(partial(_draw_locus, result)), report)
+    warn(result.warnings)
 
 
 @app.command
@@ -125,14 +125,14 @@ def critical(
     json: Path | None = None,
     force: Flag = False,
 ) -> None:
-    """Speed at which the rotating beam buckles.
+    """Critical speed, at which the rotating beam buckles.
 
     Parameters
     ----------
     scene
         The scene.
     discretization
-        Assumed modes or finite elements: each checks the other.
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     json
         Write the result with its error estimate and provenance into this file.
     force
@@ -144,11 +144,11 @@ def critical(
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
-    found = critical_point(load_scene(scene), discretization)
-    value = supported(found.speed, found.error * found.speed, 12)
-    stiff = "no critical speed: at no speed does the beam buckle"
-    console().print(stiff if value == "inf" else f"critical speed: {value} rad/s; above it the beam buckles")
-    write(found, outputs)
+    result = critical_point(load_scene(scene), discretization)
+    value = supported(result.speed, result.error * result.speed, 12)
+    none = "no critical speed: the beam buckles at no speed"
+    console().print(none if value == "inf" else f"critical speed: {value} rad/s; above it the beam buckles")
+    write(result, outputs)
 
 
 @app.command
@@ -161,16 +161,16 @@ def limits(
     json: Path | None = None,
     force: Flag = False,
 ) -> None:
-    """Setting angles at which the first frequency stops falling, and starts rising, with speed.
+    """Setting angles that separate a first frequency that falls with speed from one that rises.
 
     Parameters
     ----------
     scene
         The scene; its own setting angle is not used.
     top_speed
-        Speed up to which the second limit holds, with its unit, e.g. "400 rad/s".
+        Speed up to which the frequency must rise for the second limit, with its unit, e.g. "400 rad/s".
     discretization
-        Assumed modes or finite elements: each checks the other.
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     json
         Write the result with its error estimate and provenance into this file.
     force
@@ -184,18 +184,18 @@ def limits(
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
-    asked = parse_positive("--top-speed", top_speed, "rad/s")
-    found = setting_angle_limits(load_scene(scene), asked, discretization)
-    write(found, outputs)
-    if isnan(found.first) or isnan(found.second):
-        raise NoAnswer(found.warnings[0])
-    console().print(limits_table(found))
-    warn(found.warnings)
+    top = parse_positive("--top-speed", top_speed, "rad/s")
+    result = setting_angle_limits(load_scene(scene), top, discretization)
+    write(result, outputs)
+    if isnan(result.first) or isnan(result.second):
+        raise NoAnswer(result.warnings[0])
+    console().print(limits_table(result))
+    warn(result.warnings)
 
 
 @app.command
 def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False) -> None:
-    """Terms of the equations of motion: which are in the scene, and why.
+    """Terms of the equations of motion: which of them the scene has, and why.
 
     Parameters
     ----------
@@ -212,53 +212,37 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
-    found = terms(load_scene(scene))
+    result = terms(load_scene(scene))
     heads = ("", "term", "symbol", "largest", "reason")
-    console().print(table("Terms of the equations of motion", heads, found.rows(), (0, 1, 2, 4)))
-    console().print(found.excited())
-    write(found, outputs)
+    console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
+    console().print(result.excited())
+    write(result, outputs)
 
 
-def _draw_locus(found: Locus, ax: Axes) -> None:
+def _draw_locus(result: Locus, ax: Axes) -> None:
     from beamdyn import critical_speed
     from beamdyn.output.plots import mark_critical
 
-    mark_critical(found.plot(ax), critical_speed(found.scene))
+    mark_critical(result.plot(ax), critical_speed(result.scene))
 
 
-def _write_shapes(found: Modes, path: Path, force: bool) -> None:
+def _write_shapes(result: Modes, path: Path, force: bool) -> None:
     import numpy as np
 
     from beamdyn.output.export import write_shapes
 
-    x = np.linspace(0, found.scene.beam.length, 101)
-    write_shapes(path, x, np.real(found.shape(x)), found.labels(), force=force)
+    x = np.linspace(0, result.scene.beam.length, 101)
+    write_shapes(path, x, np.real(result.shape(x)), result.labels(), force=force)
 
 
-def _modes_csv(found: Modes) -> Iterator[Sequence[object]]:
-    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status"
-    columns = found.frequency, found.error, found.growth_rate, found.status
-    for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
-        yield mode, found.speed, *row
-
-
-def _locus_csv(found: Locus) -> Iterator[Sequence[object]]:
-    names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
-    columns = found.frequency, found.error, found.growth_rate, found.status, found.confidence
-    numbers = range(1, found.frequency.shape[1] + 1)
-    yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
-    for speed, *rows in zip(found.speeds.tolist(), *(column.tolist() for column in columns), strict=True):
-        yield speed, *(value for row in rows for value in row)
-
-
-def _unstable(found: Modes) -> list[str]:
-    """The sentence that says which mode grows, and from what speed on the beam does; none if none grows."""
+def _unstable(result: Modes) -> list[str]:
+    """The sentence that names the unstable modes and the critical speed; none if all are stable."""
     from beamdyn import critical_speed
 
-    grows = [i for i, status in enumerate(found.status) if status in ("divergence", "flutter")]
-    if not grows:
+    unstable = [i for i, status in enumerate(result.status) if status in ("divergence", "flutter")]
+    if not unstable:
         return []
-    which = ", ".join(f"mode {i + 1} ({found.status[i]}, {found.growth_rate[i]:.4g} 1/s)" for i in grows)
-    critical = critical_speed(found.scene)
-    where = f"; the critical speed is {critical:.6g} rad/s" if critical <= found.speed else ""
-    return [f"unstable at {found.speed:g} rad/s: {which}{where}"]
+    which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
+    critical = critical_speed(result.scene)
+    where = f"; the critical speed is {critical:.6g} rad/s" if critical <= result.speed else ""
+    return [f"unstable at {result.speed:g} rad/s: {which}{where}"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     import numpy as np
 
     from beamdyn.transient.simulate import Transient
-    from beamdyn.transient.sweep import Sweep
 
 Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 
@@ -49,7 +48,7 @@ def simulate(
     animation: Path | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Motion of the beam in time, from rest.
+    """Transient of the beam, from rest.
 
     Parameters
     ----------
@@ -58,40 +57,40 @@ def simulate(
     t_end
         End of the run with its unit, e.g. "30 s".
     modes
-        How many modes at rest; auto: as few as leave no more than the tolerance out.
+        Size of the modal basis; auto: the smallest whose modal truncation error meets the tolerance.
     tolerance
-        Error in time that is aimed at, relative to the largest deflection.
+        Target for the time-integration error, relative to the largest deflection.
     method
-        The integrator: our own, or one of scipy's, which takes minutes where ours takes a second.
+        Integrator: auto is the package's own; scipy's take minutes where that takes a second.
     discretization
-        Assumed modes or finite elements: each checks the other.
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     window
-        Report the largest deflection of this stretch, too: start:end, e.g. "20:30 s".
+        Also give the largest deflection within this time window: start:end, e.g. "20:30 s".
     series
-        Write three periods around the largest deflection (in the window) for ParaView: .xdmf.
+        Write three periods around the largest deflection (within the window) for ParaView: .xdmf.
     animation
         Write an animation of the same: .gif.
     outputs
-        Files to write.
+        Output files.
     """
     from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question, Report
     from beamdyn.common.edge.tables import show
-    from beamdyn.result_tables import transient_table
+    from beamdyn.result_tables import transient_csv, transient_table
     from beamdyn.transient.simulate import simulate
 
     outputs.check(series=series, animation=animation)
     end = parse_positive("--t-end", t_end, "s")
-    stretch = None if window is None else parse_window(window, end)
+    span = None if window is None else parse_window(window, end)
     loaded = load_scene(scene)
-    asked = Question.on_file(
+    question = Question.on_file(
         "beamdyn simulate", scene, t_end=t_end, modes=modes, tolerance=tolerance, method=method,
         discretization=discretization, window=window,
     )  # fmt: skip
     run = simulate(loaded, end, modes, tolerance, method, discretization)
-    show(tables := [transient_table(run, stretch)])
-    write(run, outputs, _transient_csv(run), on_axes(run.plot), Report(asked, tables))
-    _write_close_up(run, stretch or (0.0, end), series, animation, outputs.force)
+    show(tables := [transient_table(run, span)])
+    write(run, outputs, transient_csv(run), on_axes(run.plot), Report(question, tables))
+    _write_close_up(run, span or (0.0, end), series, animation, outputs.force)
 
 
 @app.command
@@ -110,43 +109,43 @@ def sweep(
     store: Path | None = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Largest deflection in a stretch of time, one transient a speed.
+    """Largest deflection within a time window over speed: one transient per speed.
 
     Parameters
     ----------
     scene
-        The scene; the speed at which its motion ends is varied.
+        The scene; the final speed of its motion is varied.
     speeds
-        With their unit: start:stop:count, e.g. "0:150:151 rad/s", or a list, e.g. "50, 55 rad/s".
+        Speeds with their unit: start:stop:count, e.g. "0:150:151 rad/s", or a list, e.g. "50, 55 rad/s".
     window
-        Stretch of time in which the largest deflection is sought, e.g. "20:30 s"; the runs end with it.
+        Time window of the largest deflection: start:end, e.g. "20:30 s"; each transient ends with it.
     modes
-        How many modes at rest; auto: as few as leave no more than the tolerance out.
+        Size of the modal basis; auto: the smallest whose modal truncation error meets the tolerance.
     tolerance
-        Error in time that is aimed at, relative to the largest deflection.
+        Target for the time-integration error, relative to the largest deflection.
     workers
-        Processes that share the work.
+        Number of processes.
     store
-        Folder that keeps what is done, so that the same command goes on after an interruption.
+        Folder for finished speeds: after an interruption the same command computes only the others.
     outputs
-        Files to write.
+        Output files.
     """
     from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question, Report
     from beamdyn.common.edge.tables import show
-    from beamdyn.result_tables import sweep_table
+    from beamdyn.result_tables import sweep_csv, sweep_table
     from beamdyn.transient.sweep import sweep
 
     outputs.check()
-    given, stretch, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
-    asked = Question.on_file(
+    given, span, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
+    question = Question.on_file(
         "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
     )
     with _executor(scheduler) as executor, _progress(len(given), store) as progress:
-        found = sweep(
+        result = sweep(
             loaded,
             given,
-            stretch,
+            span,
             modes=modes,
             tolerance=tolerance,
             workers=workers,
@@ -154,10 +153,10 @@ def sweep(
             store=store,
             progress=progress,
         )
-    show(tables := [sweep_table(found)])
-    report = Report(asked, tables, found.warnings)
-    write(found, outputs, _sweep_csv(found), on_axes(found.plot), report)
-    warn(found.warnings)
+    show(tables := [sweep_table(result)])
+    report = Report(question, tables, result.warnings)
+    write(result, outputs, sweep_csv(result), on_axes(result.plot), report)
+    warn(result.warnings)
 
 
 # Close-up -----------------------------------------------------------------------------------------
@@ -239,16 +238,3 @@ def _how_to_resume(done: int, cases: int, store: Path | None) -> str:
     if store is None:
         return f"{done} of {cases} speeds were done and are lost; --store DIR keeps what is done"
     return f"{done} of {cases} speeds are stored in {store}; the same command goes on from there"
-
-
-# Tables for other programs ------------------------------------------------------------------------
-
-
-def _transient_csv(run: Transient) -> Iterator[Sequence[object]]:
-    yield "time_s", "tip_deflection_m"
-    yield from zip(run.t.tolist(), run.tip.tolist(), strict=True)
-
-
-def _sweep_csv(found: Sweep) -> Iterator[Sequence[object]]:
-    yield "speed_rad_per_s", "largest_deflection_m", "time_error_m"
-    yield from zip(found.speeds.tolist(), found.peaks.tolist(), found.time_error.tolist(), strict=True)

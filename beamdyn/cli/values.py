@@ -84,10 +84,10 @@ def parse_speeds(text: str) -> np.ndarray:
         raise ValueError(
             f'--speeds = "{text}": it is empty; give e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s"'
         )
-    found = _UNIT.search(text.strip())
-    if found is None:
+    match = _UNIT.search(text.strip())
+    if match is None:
         raise ValueError(f'--speeds = "{text}": give a unit at its end, e.g. "{text.strip()} rad/s"')
-    unit, numbers = found.group(), text.strip()[: found.start()]
+    unit, numbers = match.group(), text.strip()[: match.start()]
     return _range(text, numbers, unit) if ":" in numbers else _list(text, numbers, unit)
 
 
@@ -127,8 +127,8 @@ def _member(text: str, number: str, unit: str) -> float:
     return parse_speed("--speeds", f"{number} {unit}")
 
 
-def asked_speed(scene: Scene, speed: str | None) -> float:
-    """The speed asked for [rad/s], else that at which the scene's motion ends, else 0."""
+def speed_or_final(scene: Scene, speed: str | None) -> float:
+    """The speed of the option [rad/s]; without it the final speed of the scene's motion, or 0."""
     if speed is not None:
         return parse_speed("--speed", speed)
     final = 0.0 if scene.motion is None else scene.motion.final_speed

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beamdyn import frequency_locus, load_scene
-from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
+from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
@@ -25,8 +25,8 @@ def test_frequencies_are_those_of_the_function():
     work = OpenDocument(SCENE)
     work.put("mount.setting_angle", "90 deg")
     work.put("asked.modes", "3")
-    assert work.solve(LOCUS), work.mistakes
-    found = work.answered[LOCUS.name].answer.locus
+    assert work.solve(FREQUENCIES), work.mistakes
+    found = work.answered[FREQUENCIES.name].answer.locus
     (scene := SCENE.check(work.text(), "saved"))
     assert np.array_equal(found.frequency, frequency_locus(scene, found.speeds, 3).frequency)
 
@@ -51,8 +51,8 @@ def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
 def test_mistake_is_at_its_field(path, text, sentence):
     work = OpenDocument(SCENE)
     work.put(path, text)
-    assert not work.solve(LOCUS)
-    ((where, said),) = work.mistakes[LOCUS.name].items()
+    assert not work.solve(FREQUENCIES)
+    ((where, said),) = work.mistakes[FREQUENCIES.name].items()
     assert where == path
     assert sentence in said[0]
 
@@ -71,16 +71,16 @@ def test_motion_chooses_its_inputs(kind, more):
 def test_steady_response_without_motion_says_what_is_missing():
     work = OpenDocument(SCENE)
     work.open("\n".join(SCENE.base.partition("[motion]")[:1]), "scene")
-    assert work.solve(LOCUS), work.mistakes
-    assert not work.solve(STEADY)
-    assert "choose the motion" in str(work.mistakes[STEADY.name])
+    assert work.solve(FREQUENCIES), work.mistakes
+    assert not work.solve(STEADY_STATE)
+    assert "choose the motion" in str(work.mistakes[STEADY_STATE.name])
 
 
 def test_tapered_beam_is_opened_and_saved():
     work = OpenDocument(SCENE)
     text = SCENE.base.replace('thickness = "0.2 mm"', 'thickness = { polynomial = ["0.3 mm", "-0.1 mm"] }')
     work.open(text, "tapered")
-    assert work.solve(LOCUS), work.mistakes
+    assert work.solve(FREQUENCIES), work.mistakes
     assert SCENE.check(work.text(), "saved") == SCENE.check(text, "tapered")
 
 

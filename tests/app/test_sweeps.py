@@ -11,7 +11,7 @@ from nicegui import ui
 from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn import frequency_locus, resonance_speeds, steady_response
-from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
+from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Program
@@ -79,7 +79,7 @@ def test_mechanism_against_a_point():
 
 
 def test_frequencies_against_the_setting_angle():
-    found = swept(SCENE, LOCUS, "mount.setting_angle=0:90:3 deg",
+    found = swept(SCENE, FREQUENCIES, "mount.setting_angle=0:90:3 deg",
                   "frequency_1,frequency_2,frequency_1_at_rest,first_resonance")  # fmt: skip
     for i, angle in enumerate(("0 deg", "45 deg", "90 deg")):
         work = OpenDocument(SCENE)
@@ -95,7 +95,10 @@ def test_frequencies_against_the_setting_angle():
 
 def test_largest_steady_amplitude_is_that_of_a_dense_search():
     found = swept(
-        SCENE, STEADY, "model.damping_ratio=0.005:0.01:2", "amplitude,largest_amplitude,speed_of_largest"
+        SCENE,
+        STEADY_STATE,
+        "model.damping_ratio=0.005:0.01:2",
+        "amplitude,largest_amplitude,speed_of_largest",
     )
     amplitude, largest, speed = found.found
     for i, ratio in enumerate((0.005, 0.01)):
@@ -144,7 +147,7 @@ def test_what_statics_does_not_determine_is_no_answer():
 
 def test_without_damping_a_resonance_has_no_largest_amplitude():
     with pytest.raises(NoAnswer, match=r"model\.damping_ratio = 0: without damping"):
-        swept(SCENE, STEADY, "beam.thickness=0.2:0.3:2 mm", "largest_amplitude")
+        swept(SCENE, STEADY_STATE, "beam.thickness=0.2:0.3:2 mm", "largest_amplitude")
 
 
 @pytest.mark.parametrize(
