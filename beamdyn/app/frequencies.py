@@ -24,7 +24,7 @@ _SPEEDS = 121
 
 @dataclass(frozen=True)
 class Frequencies:
-    """What the screen shows.
+    """The answer that the screen shows.
 
     Parameters
     ----------

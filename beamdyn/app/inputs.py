@@ -76,7 +76,7 @@ def _beam(entries: Mapping[str, str]) -> type[Section]:
 
 
 def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
-    """The kind chosen for a table; the usual one if it is not said, and empty if nothing is."""
+    """The kind chosen for a table: the default if only other keys are given, "" if none is."""
     given = any(text for path, text in entries.items() if path.startswith(f"{table}."))
     return entries.get(f"{table}.kind", "") or (usual if given else "")
 

@@ -135,5 +135,5 @@ def _names(outputs: Any, tables: Mapping[str, Any]) -> Sequence[str]:
 
 
 def _modes(tables: Mapping[str, Any]) -> int:
-    """How many modes are asked for."""
+    """Number of modes in the form."""
     return read(tables)[2]

@@ -1,4 +1,4 @@
-"""Published values beside ours, with deviations and verdicts."""
+"""Comparison of published values with computed ones: deviation and verdict."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from beamdyn.common.digits import supported
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published value beside ours.
+    """A published value and the computed one.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Curves of any results over any inputs."""
+"""Figures of sweeps: curves of results over inputs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST_CURVES = 8
 
 
 def sweep_figure(found: Any) -> Figure:
-    """One panel a result over the first input, one curve a value of the second.
+    """Draw a sweep: one panel per result over the first input, one curve per value of the second.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Numbers as text, with the digits that their error leaves."""
+"""Numbers as text with the digits that their error justifies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _DIGITS = 10  # most that a table shows
 
 
 def supported(value: float, error: float, most: int = _DIGITS) -> str:
-    """A number with the digits that its error leaves: half a unit of the last one is not below the error.
+    """A number rounded so that half a unit of its last digit is not below its error.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The report on a document that is worked on, and the drawing of an answer as it has it."""
+"""The HTML report on the document that is open in an interactive program."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from beamdyn.common.edge.rendering import drawing, html, picture
 
 
 def drawn(screen: Screen, answer: object, place: float) -> str:
-    """The SVG of an answer with the slider at a place, or the sentence why there is none."""
+    """The drawing of an answer, at a position of the slider, as SVG; a sentence if it cannot be drawn."""
     return drawing(lambda: screen.draw(answer, place))
 
 
 def report_of(work: OpenDocument, title: str) -> str:
-    """A report on a document: what is shown of each screen that has an answer to the entries."""
+    """The HTML report on a document: tables and drawing of each screen whose answer is up to date."""
     parts = []
     for screen in work.document.screens:
         if not work.stale(screen):

@@ -1,4 +1,4 @@
-"""Further drawings on the page: folded, and drawn only while they are open."""
+"""Additional drawings on the page: folded, and drawn only while they are open."""
 
 from __future__ import annotations
 

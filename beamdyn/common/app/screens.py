@@ -1,4 +1,4 @@
-"""What an interactive program consists of: documents, each a TOML file with screens on it. No page here."""
+"""Descriptions of an interactive program: its documents (kinds of TOML file) and their screens."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sweeps:
-    """Any input of a screen against any of its results.
+    """The sweeps that a screen offers: any input against any result.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Sweeps:
 
 @dataclass(frozen=True)
 class Slider:
-    """A number that the drawing alone follows.
+    """A slider above the drawing, which changes the drawing only.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Slider:
 
 @dataclass(frozen=True)
 class Drag:
-    """A slider below a field, which writes into it.
+    """A slider below a field of the form, which writes into the field.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Drag:
 
 @dataclass(frozen=True)
 class Handle:
-    """A point of a drawing that is moved in it, which writes into fields.
+    """A draggable point of a drawing, which writes into fields of the form.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Handle:
     step : float
         How far an arrow key moves it [m].
     grain : float
-        To what a length is rounded [m].
+        Step to which a length is rounded [m].
     """
 
     label: str
@@ -111,7 +111,7 @@ class Handle:
 
 @dataclass(frozen=True)
 class Screen:
-    """A form, what follows from it, and its tables and drawing: pure functions.
+    """A screen: a form, and pure functions that solve its tables and show the answer.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ class Screen:
     sections : tuple of str
         Tables whose inputs stand on its form; "" for inputs outside any table.
     needs : tuple of str
-        Tables, or inputs outside any, that its result follows from.
+        Tables, or inputs outside any, that the answer depends on.
     solve : callable
         Tables in, answer out.
     tables : callable
@@ -183,7 +183,7 @@ class Document:
     screens : tuple of Screen
         In the order in which results are handed on.
     aside : mapping
-        Entries on opening that are not in the file, such as options of a command.
+        Initial entries that are not part of the file, such as options of a command.
     """
 
     name: str

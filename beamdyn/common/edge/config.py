@@ -23,7 +23,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 class ConfigError(ValueError):
-    """A file that does not describe what it should.
+    """A TOML file with mistakes: all of them in one message.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class CoreSection(Section):
 
     @model_validator(mode="after")
     def _core_accepts(self) -> CoreSection:
-        with np.errstate(all="ignore"):  # a warning of numpy would be no answer to a mistyped exponent
+        with np.errstate(all="ignore"):  # numpy's warnings are no message for a mistyped exponent
             self.core  # noqa: B018
         return self
 
@@ -102,12 +102,12 @@ def parse(text: str, source: str) -> dict[str, Any]:
 
 
 def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model:
-    """The model that tables describe.
+    """Validate tables.
 
     Parameters
     ----------
     model : type of BaseModel
-        What they should describe.
+        The model of the tables.
     data : mapping
         Tables, as tomllib reads them.
     source : str
@@ -135,7 +135,7 @@ _WORDS = {
 
 
 def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
-    """What is wrong, as a sentence, and the path of the input that it is about."""
+    """One mistake as a sentence, and the path of the input that it is about."""
     place, path = _path(error["loc"]), _path(error["loc"], indices=False)
     context = error.get("ctx", {})
     match error["type"]:
@@ -153,7 +153,7 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any) -> tuple[str, str]:
-    """What a number or a core object says, with the key of the file where it is about one."""
+    """The refusal of a number or a core object, in terms of the file's keys."""
     if isinstance(reason, InvalidInput) and not reason.field:
         return str(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
@@ -184,7 +184,7 @@ def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
 
 
 def _path(loc: Iterable[int | str], indices: bool = True) -> str:
-    """The place as a TOML path; tags of alternatives, in angle brackets, are no keys."""
+    """A TOML path; pydantic's tags of alternatives, in angle brackets, are left out."""
     keys = (part for part in loc if not str(part).startswith("<"))
     parts = [f".{key}" if isinstance(key, str) else f"[{key}]" * indices for key in keys]
     return "".join(parts).removeprefix(".")
@@ -198,7 +198,7 @@ def _how_to_give(model: type[BaseModel], path: str) -> str:
 
 
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """That a key is not known, and the known one that resembles it most, or all that are known."""
+    """Sentence on an unknown key, with the nearest known key, or all known ones."""
     table, key = _path(loc[:-1], indices=False), str(loc[-1])  # whatever the key begins with
     prefix = table and f"{table}."
     inside = [i.path.removeprefix(prefix) for i in describe(model) if i.path.startswith(prefix)]

@@ -1,4 +1,4 @@
-"""Any input against any result: "stop.speed=10:30:9 km/h"."""
+"""Sweeps of any input of a file, such as "stop.speed=10:30:9 km/h", against any result."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST = 100_000
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of an input.
+    """An input that is varied, and its values.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Output:
-    """A number of a result, as people read it.
+    """A number of an answer that a sweep can show.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Output:
     words : str
         What it is.
     of : callable
-        Takes it from a result, in SI.
+        Takes it from an answer, in SI.
     unit : str
         Unit in which it is shown.
     scale : float
@@ -92,7 +92,7 @@ class InputSweep(Result):
     results, result_units : tuple of str
         Names of the results and their units.
     found : tuple of ndarray, shape (n,) or (m, n)
-        The results; nan or inf where there is none.
+        The results as arrays; nan or inf where there is none.
     warnings : tuple of str
         Where there is no answer, and why.
     """
@@ -111,7 +111,7 @@ class InputSweep(Result):
 
 @dataclass(frozen=True)
 class Coordinate(Input):
-    """One of the numbers of an input that is several, such as x of a point.
+    """One coordinate of an input that is a point.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class Coordinate(Input):
 
 
 def numbers(inputs: Sequence[Input]) -> list[Input]:
-    """The inputs that are numbers, and x and y of those that are points."""
+    """The inputs that can be varied: numbers, and the coordinates of points."""
     return [found for entry in inputs for found in _numbers(entry)]
 
 
@@ -180,7 +180,7 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> A
 
 
 def _in_si(entry: Input, number: str, unit: str, said: str) -> float:
-    """An end of the range within the bounds of the input."""
+    """An end of the range in SI, checked against the bounds of the input."""
     asked = entry.quantity
     given = f"{number} {unit}".strip() if asked.unit or unit else float(number)
     try:
@@ -202,14 +202,14 @@ def _find(inputs: Sequence[Input], key: str, said: str) -> Input:
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """That a name is not known, and the nearest one or all."""
+    """Sentence on an unknown name, with the nearest known name, or all."""
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"
 
 
 def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> list[Output]:
-    """The outputs of names that are separated by commas.
+    """The outputs with these names, separated by commas.
 
     Raises
     ------
@@ -263,7 +263,7 @@ def one_by_one(
     outputs: Sequence[Output],
     solve: Callable[[Mapping[str, Any]], Any],
 ) -> InputSweep:
-    """A sweep that solves each case by itself, for designs that take no arrays.
+    """Sweep case by case, for designs that take no arrays.
 
     Parameters
     ----------
@@ -305,7 +305,7 @@ def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
 
 
 def placed(tables: Mapping[str, Any], axis: Axis, value: float) -> dict[str, Any]:
-    """Tables with a value, in the unit of its axis, in place of what they have there."""
+    """The tables with the input of an axis replaced by a value [the axis' unit]."""
     entry = axis.input
     given: Any = f"{value:.15g} {axis.unit}" if axis.unit else float(value)
     if not isinstance(entry, Coordinate):

@@ -1,4 +1,4 @@
-"""Each input described once: files, command line, forms and documentation take it from there."""
+"""Tables of inputs: each input is described once, for files, command line, forms and documentation."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Quantity(Described):
     """
 
     def parse(self, given: object) -> float:
-        """The value in SI of what was given.
+        """Convert to SI and check the bounds.
 
         Raises
         ------
@@ -40,11 +40,11 @@ class Quantity(Described):
         return self.within_bounds(given, self.convert(given))
 
     def convert(self, given: object) -> float:
-        """The value in SI, whatever the bounds."""
+        """Convert to SI without checking the bounds."""
         return quantity(given, self.unit) if self.unit else _plain(given)
 
     def within_bounds(self, given: object, value: float) -> float:
-        """The value, if it is within the bounds."""
+        """Refuse a value out of bounds."""
         if (
             (self.above is not None and value <= self.above)
             or (self.below is not None and value >= self.below)
@@ -60,7 +60,7 @@ class Quantity(Described):
 
 @dataclass(frozen=True)
 class Input:
-    """One input of a model, as documentation and forms need it.
+    """Description of one input of a model, for forms and documentation.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Cho
 
 
 def _parts(annotation: Any) -> Iterator[Any]:
-    """An annotation and all that it is made of."""
+    """An annotation and its parts, recursively."""
     yield annotation
     for part in get_args(annotation):
         yield from _parts(part)

@@ -74,7 +74,7 @@ def write(
     draw: Callable[[], Figure] | None = None,
     report: Report | None = None,
 ) -> None:
-    """Write what was asked for; `rows` are those of the CSV file, `draw` makes the picture."""
+    """Write the requested files; `rows` are those of the CSV file, `draw` makes the picture."""
     if outputs.json is not None:
         from beamdyn.common.results import to_json
 
@@ -91,7 +91,7 @@ def write(
 
 
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
-    """What makes a figure of its own for something that draws on axes."""
+    """Turn a function that draws on axes into one that makes a figure."""
 
     def made() -> Figure:
         from matplotlib.figure import Figure

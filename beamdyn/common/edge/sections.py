@@ -30,7 +30,7 @@ class MadeSection(CoreSection):
 
 
 def section_of(made: type, kind: str = "", tables: Mapping[type, Any] | None = None) -> type[MadeSection]:
-    """The table that stands for a core class.
+    """Make the table of a core class.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def section_of(made: type, kind: str = "", tables: Mapping[type, Any] | None = N
 
 
 def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
-    """The annotation of a table that is one of several, by its key ``kind``; without it, the first."""
+    """The annotation of a table with alternatives, told apart by the key ``kind``; default: the first."""
     usual, *_ = sections
     tagged = (Annotated[section, Tag(f"<{kind}>")] for kind, section in sections.items())
 
@@ -78,7 +78,7 @@ def _description(hint: Any) -> Described:
 
 
 def _annotation(hint: Any, tables: Mapping[type, Any]) -> Any:
-    """What pydantic is to read where the core takes a value of this annotation."""
+    """The annotation for pydantic that corresponds to one of the core."""
     inner = get_args(hint)[0] if get_origin(hint) is Annotated else hint
     parts = [part for part in get_args(inner) or (inner,) if part is not NoneType]
     read: Any

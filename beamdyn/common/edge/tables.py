@@ -1,4 +1,4 @@
-"""Tables for people: numbers with the digits they deserve, on the console."""
+"""Tables on the console, and a progress bar."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _PIPE_WIDTH = 120  # of tables that go to a file or another program
 
 
 def console() -> Console:
-    """Where reports are printed: standard output, without markup."""
+    """The console on standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     return Console(width=width, markup=False, highlight=False, emoji=False)
 
