@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.program import app, warn
+from beamdyn.cli.program import app, deliver, warn
 from beamdyn.cli.values import Discretization, SceneFile, Text, parse_positive, parse_speeds, speed_or_final
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
 from beamdyn.common.edge.program import NoAnswer
@@ -50,8 +50,7 @@ def modes(
         Output files.
     """
     from beamdyn import load_scene, natural_modes
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import modes_csv, modes_table
 
     outputs.check(shapes=shapes)
@@ -60,15 +59,11 @@ def modes(
         "beamdyn modes", scene, speed=speed, modes=modes, discretization=discretization, tolerance=tolerance
     )
     result = natural_modes(loaded, speed_or_final(loaded, speed), modes, discretization, tolerance)
-    warnings, refusal = [w for w in result.warnings if not w.startswith("unstable")], _unstable(result)
-    show(tables := [modes_table(result)])
-    report = Report(question, tables, [*warnings, *refusal])
-    write(result, outputs, modes_csv(result), on_axes(result.plot), report)
     if shapes is not None:
         _write_shapes(result, shapes, outputs.force)
-    warn(warnings)
-    if refusal:
-        raise NoAnswer(refusal[0])
+    warnings, refusal = [w for w in result.warnings if not w.startswith("unstable")], _unstable(result)
+    tables, rows, draw = [modes_table(result)], modes_csv(result), on_axes(result.plot)
+    deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
 
 
 @app.command
@@ -100,8 +95,7 @@ def locus(
         Output files.
     """
     from beamdyn import frequency_locus, load_scene
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import locus_csv, locus_table
 
     outputs.check()
@@ -110,10 +104,8 @@ def locus(
         "beamdyn locus", scene, speeds=speeds, modes=modes, discretization=discretization, tolerance=tolerance
     )
     result = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
-    show(tables := [locus_table(result)])
-    report = Report(question, tables, result.warnings)
-    write(result, outputs, locus_csv(result), on_axes(partial(_draw_locus, result)), report)
-    warn(result.warnings)
+    tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
+    deliver(result, outputs, question, tables, rows, draw, result.warnings)
 
 
 @app.command
@@ -235,14 +227,14 @@ def _write_shapes(result: Modes, path: Path, force: bool) -> None:
     write_shapes(path, x, np.real(result.shape(x)), result.labels(), force=force)
 
 
-def _unstable(result: Modes) -> list[str]:
-    """The sentence that names the unstable modes and the critical speed; none if all are stable."""
+def _unstable(result: Modes) -> str:
+    """The sentence that names the unstable modes and the critical speed; empty if all are stable."""
     from beamdyn import critical_speed
 
     unstable = [i for i, status in enumerate(result.status) if status in ("divergence", "flutter")]
     if not unstable:
-        return []
+        return ""
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
     critical = critical_speed(result.scene)
     where = f"; the critical speed is {critical:.6g} rad/s" if critical <= result.speed else ""
-    return [f"unstable at {result.speed:g} rad/s: {which}{where}"]
+    return f"unstable at {result.speed:g} rad/s: {which}{where}"

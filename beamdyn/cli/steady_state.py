@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.program import app, warn
+from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
     Discretization,
@@ -13,8 +13,7 @@ from beamdyn.cli.values import (
     parse_positive,
     parse_speeds,
 )
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes, write
-from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 
 if TYPE_CHECKING:
     pass
@@ -49,8 +48,7 @@ def resonances(
         Output files.
     """
     from beamdyn import load_scene, resonance_speeds
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import crossings_csv, crossings_table
 
     outputs.check()
@@ -64,10 +62,8 @@ def resonances(
         discretization=discretization,
     )
     result = resonance_speeds(load_scene(scene), top, modes, order, discretization)
-    show(tables := [crossings_table(result)])
-    report = Report(question, tables, result.warnings)
-    write(result, outputs, crossings_csv(result), on_axes(result.plot), report)
-    warn(result.warnings)
+    tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
+    deliver(result, outputs, question, tables, rows, draw, result.warnings)
 
 
 @app.command
@@ -99,8 +95,7 @@ def steady(
         Output files.
     """
     from beamdyn import load_scene, steady_response
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import steady_csv, steady_table
 
     outputs.check()
@@ -117,10 +112,6 @@ def steady(
         load_scene(scene), given, modes, tolerance=tolerance, discretization=discretization
     )
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
-    refusal = [] if result.stable.any() else [none]
-    show(tables := [steady_table(result)])
-    report = Report(question, tables, [*result.warnings, *refusal])
-    write(result, outputs, steady_csv(result), on_axes(result.plot), report)
-    warn(result.warnings)
-    if refusal:
-        raise NoAnswer(none)
+    refusal = "" if result.stable.any() else none
+    tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)
+    deliver(result, outputs, question, tables, rows, draw, result.warnings, refusal)

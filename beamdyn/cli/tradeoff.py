@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.cli.program import app, warn
+from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import SceneFile, Text, parse_positive, parse_speed
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes, write
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,8 +47,8 @@ def tradeoff(
         Output files.
     """
     from beamdyn import load_scene
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import progress_bar, show
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.edge.tables import progress_bar
     from beamdyn.tradeoffs import tradeoff
 
     outputs.check()
@@ -61,10 +61,12 @@ def tradeoff(
     )
     with progress_bar("measuring") as progress:
         result = tradeoff(loaded, given, modes, end, limit, progress)
-    show(tables := [_table(diagram) for diagram in result.diagrams])
-    report = Report(question, tables, result.warnings)
-    write(result, outputs, _csv(result), on_axes(lambda ax: _draw(result, ax)), report)
-    warn(result.warnings)
+    tables, rows, draw = (
+        [_table(diagram) for diagram in result.diagrams],
+        _csv(result),
+        on_axes(lambda ax: _draw(result, ax)),
+    )
+    deliver(result, outputs, question, tables, rows, draw, result.warnings)
 
 
 def _table(diagram: Diagram) -> Group:

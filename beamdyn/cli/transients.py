@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from beamdyn.cli.program import app, warn
+from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
     Discretization,
@@ -20,7 +20,7 @@ from beamdyn.cli.values import (
     parse_speeds,
     parse_window,
 )
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes, write
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 from beamdyn.common.edge.program import Interrupted
 
 if TYPE_CHECKING:
@@ -74,8 +74,7 @@ def simulate(
         Output files.
     """
     from beamdyn import load_scene
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import transient_csv, transient_table
     from beamdyn.transient.simulate import simulate
 
@@ -88,8 +87,7 @@ def simulate(
         discretization=discretization, window=window,
     )  # fmt: skip
     run = simulate(loaded, end, modes, tolerance, method, discretization)
-    show(tables := [transient_table(run, span)])
-    write(run, outputs, transient_csv(run), on_axes(run.plot), Report(question, tables))
+    deliver(run, outputs, question, [transient_table(run, span)], transient_csv(run), on_axes(run.plot))
     _write_close_up(run, span or (0.0, end), series, animation, outputs.force)
 
 
@@ -131,8 +129,7 @@ def sweep(
         Output files.
     """
     from beamdyn import load_scene
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import sweep_csv, sweep_table
     from beamdyn.transient.sweep import sweep
 
@@ -153,10 +150,8 @@ def sweep(
             store=store,
             progress=progress,
         )
-    show(tables := [sweep_table(result)])
-    report = Report(question, tables, result.warnings)
-    write(result, outputs, sweep_csv(result), on_axes(result.plot), report)
-    warn(result.warnings)
+    tables, rows, draw = [sweep_table(result)], sweep_csv(result), on_axes(result.plot)
+    deliver(result, outputs, question, tables, rows, draw, result.warnings)
 
 
 # Close-up -----------------------------------------------------------------------------------------

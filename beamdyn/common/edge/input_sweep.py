@@ -10,7 +10,7 @@ from typing import Any, get_args, get_origin
 
 import numpy as np
 
-from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.results import Result
@@ -131,7 +131,7 @@ def numbers(inputs: Sequence[Input]) -> list[Input]:
 
 
 def _numbers(entry: Input) -> Iterator[Input]:
-    parts = [*_parts(entry.kind)]
+    parts = [*parts_of(entry.kind)]
     if get_origin(entry.kind) is tuple:
         for place, (axis, _) in enumerate(zip("xy", get_args(entry.kind), strict=True)):
             words = replace(entry.quantity, meaning=f"{axis} of the {entry.quantity.meaning}")
@@ -139,12 +139,6 @@ def _numbers(entry: Input) -> Iterator[Input]:
             yield Coordinate(path, entry.section, float, words, (), entry.required, None, entry, place)
     elif float in parts and not any(get_origin(part) in (list, tuple, dict) for part in parts):
         yield entry
-
-
-def _parts(kind: Any) -> Iterator[Any]:
-    yield kind
-    for part in get_args(kind):
-        yield from _parts(part)
 
 
 def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> Axis:

@@ -132,7 +132,7 @@ def describe(
 
 
 def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Choice) -> list[Input]:
-    parts = [*_parts(field.annotation), *field.metadata]
+    parts = [*parts_of(field.annotation), *field.metadata]
     models = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
     if models:
         chosen = choose(path, models) if len(models) > 1 else models
@@ -144,11 +144,11 @@ def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Cho
     return [Input(path, section, field.annotation, described, choices, required, default)]
 
 
-def _parts(annotation: Any) -> Iterator[Any]:
+def parts_of(annotation: Any) -> Iterator[Any]:
     """An annotation and its parts, recursively."""
     yield annotation
     for part in get_args(annotation):
-        yield from _parts(part)
+        yield from parts_of(part)
 
 
 def _plain(given: object) -> float:
