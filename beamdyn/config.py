@@ -162,7 +162,7 @@ else:
 
 
 class _BeamInput(CoreSection):
-    length: Annotated[float, Quantity("m", symbol="L", meaning="length", above=0)]
+    length: Annotated[float, Quantity("m", "L", "length", above=0)]
     tip: _TipInput | None = None
     breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
 
@@ -175,12 +175,10 @@ class _BeamInput(CoreSection):
 class RectangularInput(_BeamInput):
     """[beam]: a beam of rectangular section."""
 
-    width: Annotated[Along, Varying("m", symbol="b", meaning="width of the section", above=0)]
-    thickness: Annotated[
-        Along, Varying("m", symbol="h", meaning="thickness, in the direction of bending", above=0)
-    ]
-    youngs_modulus: Annotated[float, Quantity("Pa", symbol="E", meaning="Young's modulus", above=0)]
-    density: Annotated[float, Quantity("kg/m3", symbol="rho", meaning="density", above=0)]
+    width: Annotated[Along, Varying("m", "b", "width of the section", above=0)]
+    thickness: Annotated[Along, Varying("m", "h", "thickness, in the direction of bending", above=0)]
+    youngs_modulus: Annotated[float, Quantity("Pa", "E", "Young's modulus", above=0)]
+    density: Annotated[float, Quantity("kg/m3", "rho", "density", above=0)]
 
     @cached_property
     def core(self) -> Beam:
@@ -191,20 +189,14 @@ class RectangularInput(_BeamInput):
 class StiffnessInput(_BeamInput):
     """[beam]: a beam of any section, by its stiffness."""
 
-    mass_per_length: Annotated[Along, Varying("kg/m", symbol="rho A", meaning="mass per length", above=0)]
-    bending_stiffness: Annotated[Along, Varying("N m2", symbol="E I", meaning="bending stiffness", above=0)]
-    axial_stiffness: (
-        Annotated[Along, Varying("N", symbol="E A", meaning="axial stiffness, for stretch", above=0)] | None
-    ) = None
+    mass_per_length: Annotated[Along, Varying("kg/m", "rho A", "mass per length", above=0)]
+    bending_stiffness: Annotated[Along, Varying("N m2", "E I", "bending stiffness", above=0)]
+    axial_stiffness: Annotated[Along, Varying("N", "E A", "axial stiffness, for stretch", above=0)] | None = (
+        None
+    )
     outer_fibre: (
         Annotated[
-            Along,
-            Varying(
-                "m",
-                symbol="c",
-                meaning="distance of the outer fibre from the neutral axis, for strain",
-                above=0,
-            ),
+            Along, Varying("m", "c", "distance of the outer fibre from the neutral axis, for strain", above=0)
         ]
         | None
     ) = None
@@ -261,7 +253,7 @@ class ModelInput(Section):
             symbol="zeta", meaning="modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"
         ),
     ] = Scene.damping_ratio
-    gravity: Annotated[float, Quantity("m/s2", symbol="g", meaning="gravity")] = Scene.gravity
+    gravity: Annotated[float, Quantity("m/s2", "g", "gravity")] = Scene.gravity
     stretch: Annotated[bool, Field(description="keep the stretch of the beam and its Coriolis coupling")] = (
         Scene.stretch
     )

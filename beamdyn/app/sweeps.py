@@ -39,10 +39,6 @@ class SweepCase:
     top: float
     modes: int
 
-    def frequency(self, speed: float, mode: int) -> float:
-        """A natural frequency at a speed [Hz]; nan where the mode diverges."""
-        return float(natural_modes(self.scene, speed, self.modes).frequency[mode])
-
     @cached_property
     def crossings(self) -> np.ndarray:
         """Speeds at which the motion excites a mode [rad/s]."""
@@ -92,30 +88,35 @@ class SweepCase:
 
 def frequency_outputs(modes: int) -> list[Output]:
     """Frequencies at the top speed and at rest, critical speed, first resonance."""
-    at_top = [
-        Output(f"frequency_{i + 1}", f"frequency {i + 1}", lambda a, i=i: a.frequency(a.top, i), "Hz")
-        for i in range(modes)
-    ]
-    at_rest = [
-        Output(f"frequency_{i + 1}_at_rest", f"frequency {i + 1}", lambda a, i=i: a.frequency(0.0, i), "Hz")
+    frequencies = [
+        Output(f"frequency_{i + 1}{where}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
+        for where, share in (("", 1.0), ("_at_rest", 0.0))
         for i in range(modes)
     ]
     return [
-        *at_top,
-        *at_rest,
-        Output("critical_speed", "critical speed", lambda a: critical_speed(a.scene), "rad/s"),
-        Output("first_resonance", "lowest speed of resonance", lambda a: a.first_resonance, "rad/s"),
+        *frequencies,
+        Output("critical_speed", "critical speed", lambda case: critical_speed(case.scene), "rad/s"),
+        Output("first_resonance", "lowest speed of resonance", lambda case: case.first_resonance, "rad/s"),
     ]
+
+
+def _frequency(mode: int, share: float, case: SweepCase) -> float:
+    """A natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
+    return float(natural_modes(case.scene, share * case.top, case.modes).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
     """The steady amplitude at the top speed, and the largest on the way there."""
     return [
         Output(
-            "amplitude", "amplitude at top speed", lambda a: a.amplitudes(np.array([a.top]))[0], "mm", 1e-3
+            "amplitude",
+            "amplitude at top speed",
+            lambda case: case.amplitudes(np.array([case.top]))[0],
+            "mm",
+            1e-3,
         ),
-        Output("largest_amplitude", "largest amplitude", lambda a: a.peak[1], "mm", 1e-3),
-        Output("speed_of_largest", "its speed", lambda a: a.peak[0], "rad/s"),
+        Output("largest_amplitude", "largest amplitude", lambda case: case.peak[1], "mm", 1e-3),
+        Output("speed_of_largest", "its speed", lambda case: case.peak[0], "rad/s"),
     ]
 
 

@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass
 
 @dataclass(frozen=True)
 class Described:
-    """Description of an input, for ``Annotated[float, Described("m", symbol="L", meaning="length")]``.
+    """Description of an input, for ``Annotated[float, Described("m", "L", "length")]``.
 
     Parameters
     ----------
@@ -30,9 +30,9 @@ class Described:
     """
 
     unit: str = ""
-    _: KW_ONLY
     symbol: str = ""
     meaning: str = ""
+    _: KW_ONLY
     above: float | None = None
     below: float | None = None
     least: float | None = None

@@ -37,26 +37,19 @@ class TipMass:
         If a value is negative or not finite, or no body has these three moments of inertia.
     """
 
-    mass: Annotated[float, Described("kg", symbol="m_t", meaning="mass", least=0)]
+    mass: Annotated[float, Described("kg", "m_t", "mass", least=0)]
     offset: Annotated[
-        float,
-        Described("m", symbol="e", meaning="distance of its centre of gravity beyond the end of the beam"),
+        float, Described("m", "e", "distance of its centre of gravity beyond the end of the beam")
     ] = 0.0
     inertia: Annotated[
-        float,
-        Described("kg m2", symbol="J_n", meaning="moment of inertia about the axis of bending", least=0),
+        float, Described("kg m2", "J_n", "moment of inertia about the axis of bending", least=0)
     ] = 0.0
     transverse_inertia: Annotated[
         float | None,
-        Described(
-            "kg m2",
-            symbol="J_e",
-            meaning="moment of inertia about the direction of bending; else inertia",
-            least=0,
-        ),
+        Described("kg m2", "J_e", "moment of inertia about the direction of bending; else inertia", least=0),
     ] = None
     axial_inertia: Annotated[
-        float, Described("kg m2", symbol="J_1", meaning="moment of inertia about the beam axis", least=0)
+        float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)
     ] = 0.0
 
     def __post_init__(self) -> None:

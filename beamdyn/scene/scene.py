@@ -39,8 +39,8 @@ class Mount:
         float,
         Described(
             "m",
-            symbol="r",
-            meaning="distance of the root from the axis of rotation",
+            "r",
+            "distance of the root from the axis of rotation",
             least=0,
             required=True,
             remedy='for a beam that points outward give setting_angle = "180 deg"',
@@ -49,19 +49,13 @@ class Mount:
     setting_angle: Annotated[
         float,
         Described(
-            "rad",
-            symbol="phi",
-            meaning="direction of the beam: 0 inward, 90 deg tangential, 180 deg outward",
-            **_ONE_TURN,
+            "rad", "phi", "direction of the beam: 0 inward, 90 deg tangential, 180 deg outward", **_ONE_TURN
         ),
     ] = 0.0
     bending_angle: Annotated[
         float,
         Described(
-            "rad",
-            symbol="psi",
-            meaning="angle between the direction of bending and the plane of rotation",
-            **_ONE_TURN,
+            "rad", "psi", "angle between the direction of bending and the plane of rotation", **_ONE_TURN
         ),
     ] = 0.0
 

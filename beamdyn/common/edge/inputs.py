@@ -23,7 +23,7 @@ class Section(BaseModel):
 
 @dataclass(frozen=True)
 class Quantity(Described):
-    """A number of a file, for ``Annotated[float, Quantity("m", symbol="L", meaning="length")]``.
+    """A number of a file, for ``Annotated[float, Quantity("m", "L", "length")]``.
 
     A pydantic model takes it as text with a unit ("50 mm"), or bare where its unit is "", and holds the
     value in SI.

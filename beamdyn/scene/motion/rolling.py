@@ -36,14 +36,12 @@ class RoadWave:
         If the wavelength is not positive, or not exactly one of the amplitudes is given.
     """
 
-    wavelength: Annotated[float, Described("m", symbol="lambda", meaning="wavelength of the road", above=0)]
+    wavelength: Annotated[float, Described("m", "lambda", "wavelength of the road", above=0)]
     velocity_amplitude: Annotated[
-        float | None,
-        Described("m/s", symbol="C", meaning="amplitude of the wheel's vertical velocity; or height"),
+        float | None, Described("m/s", "C", "amplitude of the wheel's vertical velocity; or height")
     ] = None
     height: Annotated[
-        float | None,
-        Described("m", symbol="A", meaning="amplitude of the road's height; or velocity_amplitude"),
+        float | None, Described("m", "A", "amplitude of the road's height; or velocity_amplitude")
     ] = None
 
     def __post_init__(self) -> None:
@@ -107,9 +105,7 @@ class RollingWheel(Motion):
         If the radius is not positive, or the speed is neither a number nor a rotation.
     """
 
-    rolling_radius: Annotated[
-        float, Described("m", symbol="R", meaning="distance travelled per angle turned", above=0)
-    ]
+    rolling_radius: Annotated[float, Described("m", "R", "distance travelled per angle turned", above=0)]
     speed: Annotated[float | Rotation, Described(key="rotation")]
     road: RoadWave | None = None
 

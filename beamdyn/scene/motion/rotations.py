@@ -50,7 +50,7 @@ class SteadyRotation(Rotation):
         Speed [rad/s].
     """
 
-    speed: Annotated[float, Described("rad/s", symbol="omega", meaning="angular speed of the carrier")]
+    speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
 
     def __post_init__(self) -> None:
         keep(self, speed=real("speed", self.speed, "rad/s"))
@@ -96,8 +96,8 @@ class SpinUp(Rotation):
         If the duration is not positive or there is no such law.
     """
 
-    speed: Annotated[float, Described("rad/s", symbol="omega_s", meaning="angular speed of the carrier")]
-    duration: Annotated[float, Described("s", symbol="T", meaning="time that the spin-up takes", above=0)]
+    speed: Annotated[float, Described("rad/s", "omega_s", "angular speed of the carrier")]
+    duration: Annotated[float, Described("s", "T", "time that the spin-up takes", above=0)]
     law: Annotated[Law, Described(meaning="law of the spin-up")] = "smooth"
 
     def __post_init__(self) -> None:
@@ -186,8 +186,8 @@ class SampledRotation(Rotation):
         If the times do not ascend from 0, or there are not as many speeds as times.
     """
 
-    times: Sequence[Annotated[float, Described("s", symbol="t", meaning="times of the table, from 0")]]
-    speeds: Sequence[Annotated[float, Described("rad/s", symbol="omega", meaning="speeds at these times")]]
+    times: Sequence[Annotated[float, Described("s", "t", "times of the table, from 0")]]
+    speeds: Sequence[Annotated[float, Described("rad/s", "omega", "speeds at these times")]]
     interpolation: Annotated[
         Interpolation, Described(meaning="cubic spline, or cubics that do not overshoot")
     ] = "cubic"
