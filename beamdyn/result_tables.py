@@ -249,16 +249,8 @@ def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
 
 def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
     """Speeds of resonance, one row each."""
-    yield (
-        "speed_rad_per_s",
-        "relative_error",
-        "frequency_Hz",
-        "line",
-        "multiple",
-        "mode",
-        "second_mode",
-        "kind",
-    )
+    first = "speed_rad_per_s", "relative_error", "frequency_Hz"
+    yield *first, "line", "multiple", "mode", "second_mode", "kind"
     for c in result:
         second = "" if c.second_mode is None else c.second_mode
         yield c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind

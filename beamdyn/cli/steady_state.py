@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
@@ -53,14 +53,8 @@ def resonances(
 
     outputs.check()
     top = parse_positive("--top-speed", top_speed, "rad/s")
-    question = Question.on_file(
-        "beamdyn resonances",
-        scene,
-        top_speed=top_speed,
-        modes=modes,
-        order=order,
-        discretization=discretization,
-    )
+    options = {"modes": modes, "order": order, "discretization": discretization}
+    question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options)
     result = resonance_speeds(load_scene(scene), top, modes, order, discretization)
     tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, result.warnings)
@@ -100,17 +94,9 @@ def steady(
 
     outputs.check()
     given = parse_speeds(speeds)
-    question = Question.on_file(
-        "beamdyn steady",
-        scene,
-        speeds=speeds,
-        modes=modes,
-        tolerance=tolerance,
-        discretization=discretization,
-    )
-    result = steady_response(
-        load_scene(scene), given, modes, tolerance=tolerance, discretization=discretization
-    )
+    options: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
+    question = Question.on_file("beamdyn steady", scene, speeds=speeds, **options)
+    result = steady_response(load_scene(scene), given, **options)
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
     refusal = "" if result.stable.any() else none
     tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -139,17 +139,8 @@ def sweep(
         "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
     )
     with _executor(scheduler) as executor, _progress(len(given), store) as progress:
-        result = sweep(
-            loaded,
-            given,
-            span,
-            modes=modes,
-            tolerance=tolerance,
-            workers=workers,
-            executor=executor,
-            store=store,
-            progress=progress,
-        )
+        means: dict[str, Any] = {"workers": workers, "executor": executor, "store": store}
+        result = sweep(loaded, given, span, modes=modes, tolerance=tolerance, **means, progress=progress)
     tables, rows, draw = [sweep_table(result)], sweep_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, result.warnings)
 

@@ -90,6 +90,8 @@ def _annotation(hint: Any, tables: Mapping[type, Any]) -> Any:
         read = Annotated[float, Quantity(**vars(_description(hint)))]
     elif get_origin(parts[0]) is Annotated:
         read = list[_annotation(parts[0], tables)]
-    else:
+    elif hasattr(parts[0], "__dataclass_fields__"):
         read = section_of(parts[0], tables=tables)
+    else:
+        raise TypeError(f"{hint} is not described: give Annotated[{hint}, Described(...)]")
     return read | None if NoneType in get_args(inner) else read
