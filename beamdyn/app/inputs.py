@@ -15,7 +15,7 @@ from beamdyn.common.edge.units import InvalidInput
 from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
 from beamdyn.scene.scene import Scene
 
-TABLES = ("asked", "mount", "beam", "motion", "model")  # on the form of each screen, in this order
+TABLES = ("options", "mount", "beam", "motion", "model")  # on the form of each screen, in this order
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
@@ -34,8 +34,8 @@ class ModeCount(Quantity):
         return value
 
 
-class AskedInput(Section):
-    """[asked]: speed range and number of modes, which are options on the command line."""
+class OptionsInput(Section):
+    """[options]: speed range and number of modes, which are options on the command line."""
 
     top_speed: Annotated[
         float, Quantity("rad/s", symbol="omega", meaning="top speed", above=0, remedy='e.g. "150 rad/s"')
@@ -60,7 +60,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         kinds[f"{table}.kind"] = tuple(by_kind)
         return [by_kind.get(_kind(entries, table, next(iter(by_kind))), _NoKind)]
 
-    inputs = [*describe(AskedInput, "asked."), *describe(SceneInput, choose=choose)]
+    inputs = [*describe(OptionsInput, "options."), *describe(SceneInput, choose=choose)]
     return [
         dataclasses.replace(entry, choices=kinds[entry.path], required=False, default=None)
         if entry.path in kinds
@@ -83,10 +83,10 @@ def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
-    rest = {name: table for name, table in tables.items() if name != "asked"}
-    asked = validated(_AskedTable, {"asked": tables.get("asked", {})}, "asked").asked
-    return scene_from_dict(rest), asked.top_speed, int(asked.modes)
+    rest = {name: table for name, table in tables.items() if name != "options"}
+    options = validated(_OptionsTable, {"options": tables.get("options", {})}, "options").options
+    return scene_from_dict(rest), options.top_speed, int(options.modes)
 
 
-class _AskedTable(Section):
-    asked: AskedInput
+class _OptionsTable(Section):
+    options: OptionsInput

@@ -17,6 +17,6 @@ SCENE = Document(
     inputs_of,
     parse_scene,
     SCREENS,
-    aside={"asked.top_speed": "150 rad/s", "asked.modes": "2"},
+    aside={"options.top_speed": "150 rad/s", "options.modes": "2"},
 )
 BEAMDYN = Program("beamdyn", "Rotating beam", (SCENE,))

@@ -75,15 +75,15 @@ class SweepCase:
             best = self._largest(speeds)
             low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, len(speeds) - 1)]
             speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
-        found = self.amplitudes(speeds)
-        best = int(np.nanargmax(found))
-        return float(speeds[best]), float(found[best])
+        amplitudes = self.amplitudes(speeds)
+        best = int(np.nanargmax(amplitudes))
+        return float(speeds[best]), float(amplitudes[best])
 
     def _largest(self, speeds: np.ndarray) -> int:
-        found = self.amplitudes(speeds)
-        if np.isnan(found).all():
+        amplitudes = self.amplitudes(speeds)
+        if np.isnan(amplitudes).all():
             raise ValueError("at no speed up to the top speed is there a steady response")
-        return int(np.nanargmax(found))
+        return int(np.nanargmax(amplitudes))
 
 
 def frequency_outputs(modes: int) -> list[Output]:

@@ -24,7 +24,7 @@ def test_screen_answers_draws_and_tabulates(screen):
 def test_frequencies_are_those_of_the_function():
     work = OpenDocument(SCENE)
     work.put("mount.setting_angle", "90 deg")
-    work.put("asked.modes", "3")
+    work.put("options.modes", "3")
     assert work.solve(FREQUENCIES), work.mistakes
     found = work.answered[FREQUENCIES.name].answer.locus
     (scene := SCENE.check(work.text(), "saved"))
@@ -40,9 +40,9 @@ def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
 @pytest.mark.parametrize(
     "path, text, sentence",
     [
-        ("asked.modes", "0", "at least 1"),
-        ("asked.modes", "1.5", "whole number"),
-        ("asked.top_speed", "150", "give a unit"),
+        ("options.modes", "0", "at least 1"),
+        ("options.modes", "1.5", "whole number"),
+        ("options.top_speed", "150", "give a unit"),
         ("mount.setting_angle", "0.5 m", "unit of length"),
         ("beam.thickness", "", "missing"),
         ("beam.thickness", "{ polynomial = 1 }", "list"),

@@ -24,5 +24,5 @@ def report_of(work: OpenDocument, title: str) -> str:
             made = picture(drawn(screen, answer, screen.last), screen.name)
             more = further((name, partial(draw, answer)) for name, draw in screen.more)
             parts.append((screen.name, screen.notes(answer), html(screen.tables(answer)) + more, made))
-    asked = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
-    return report_page(title, "\n".join(filter(None, (asked, work.text()))), parts)
+    options = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
+    return report_page(title, "\n".join(filter(None, (options, work.text()))), parts)

@@ -138,10 +138,10 @@ def by_field(error: Exception, inputs: Sequence[Input]) -> dict[str, list[str]]:
     paths = [entry.path for entry in inputs]
     if not isinstance(error, ConfigError):
         return {path_of(error, paths): [str(error)]}
-    found: dict[str, list[str]] = {}
+    sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
-        found.setdefault(_field(place, paths), []).append(sentence)
-    return found
+        sentences.setdefault(_field(place, paths), []).append(sentence)
+    return sentences
 
 
 def _field(place: str, paths: Sequence[str]) -> str:

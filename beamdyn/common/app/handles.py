@@ -152,14 +152,14 @@ def changed_texts(
     inputs : sequence of Input
         Descriptions of the fields.
     """
-    found = _texts(handle, target, entries, inputs)
-    return {path: text for path, text in found.items() if text != entries.get(path, "")}
+    texts = _texts(handle, target, entries, inputs)
+    return {path: text for path, text in texts.items() if text != entries.get(path, "")}
 
 
 def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
     """Position of a handle in words, by the fields that it sets."""
-    found = _texts(handle, handle.at, entries, inputs)
-    return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in found.items())
+    texts = _texts(handle, handle.at, entries, inputs)
+    return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in texts.items())
 
 
 def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
@@ -184,8 +184,8 @@ def _coordinates(text: str, entry: Input) -> Sequence[str]:
     """Texts of a point's coordinates: as given, or the defaults."""
     if not text.strip() and isinstance(entry.default, tuple):
         return [f"{1e3 * value:.6g} mm" for value in entry.default]
-    found = tables_of({"point": text}, ()).get("point")
-    return [str(part) for part in found] if isinstance(found, list) and len(found) == 2 else ["", ""]
+    values = tables_of({"point": text}, ()).get("point")
+    return [str(part) for part in values] if isinstance(values, list) and len(values) == 2 else ["", ""]
 
 
 def _number(value: float, text: str, unit: str, grain: float) -> str:

@@ -45,8 +45,8 @@ class OpenDocument:
     def open(self, text: str, source: str) -> None:
         """Replace the design by the text of a file; on `ConfigError` nothing changes."""
         opened = self.document.opened(text, source)
-        asked = {path: self.entries[path] for path in self.document.aside}
-        self.entries, self.mistakes = opened | asked, {}
+        options = {path: self.entries[path] for path in self.document.aside}
+        self.entries, self.mistakes = opened | options, {}
 
     def text(self) -> str:
         """The design as TOML, including entries with mistakes."""

@@ -235,18 +235,18 @@ class Page:
     def _remember(self) -> None:
         """Store the entries and the name of the front screen in this tab of the browser."""
         designs = {name: work.entries for name, work in self.works.items()}
-        kept = json.dumps({"front": self.front, "designs": designs})
+        stored = json.dumps({"front": self.front, "designs": designs})
         # by the page's own client: the field that has changed may be gone, of a form that was made anew
-        self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(kept)})")
+        self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(stored)})")
 
     async def recall(self) -> None:
         """Restore what the browser stored."""
         await ui.context.client.connected()
         try:
-            kept = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
+            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
         except TimeoutError:
             return
-        page = json.loads(kept or "{}")
+        page = json.loads(stored or "{}")
         for name, entries in page.get("designs", {}).items():
             if (work := self.works.get(name)) is not None:
                 work.entries = {str(path): str(text) for path, text in entries.items()}

@@ -93,38 +93,38 @@ class SweepPanel:
         if self._found is not None and self._found[0] == request:
             return self._found[1]
         try:
-            found = await run.io_bound(self.sweeps.run, self._tables(), text, names)
+            swept = await run.io_bound(self.sweeps.run, self._tables(), text, names)
         except (ValueError, ArithmeticError, NoAnswer) as error:
             self._said.set_text(str(error))
             return None
-        if found is None:  # the program ends
+        if swept is None:  # the program ends
             return None
-        self._said.set_text(" ".join(found.warnings))
-        self._found = request, found
-        return found
+        self._said.set_text(" ".join(swept.warnings))
+        self._found = request, swept
+        return swept
 
     async def show(self) -> None:
         """Show the sweep."""
-        if found := await self._run():
-            words = f"{', '.join(found.results)} over {found.inputs[0]}"
-            self._picture.set_content(picture(drawing(lambda: sweep_figure(found)), words))
+        if swept := await self._run():
+            words = f"{', '.join(swept.results)} over {swept.inputs[0]}"
+            self._picture.set_content(picture(drawing(lambda: sweep_figure(swept)), words))
             self._shown = self._found[0][0] if self._found else None
             self.state()
 
     async def csv(self) -> None:
         """Download its rows."""
-        if found := await self._run():
-            ui.download.content(csv_text(sweep_csv(found)).encode(), "sweep.csv")
+        if swept := await self._run():
+            ui.download.content(csv_text(sweep_csv(swept)).encode(), "sweep.csv")
 
     async def svg(self) -> None:
         """Download its picture as SVG."""
-        if found := await self._run():
-            ui.download.content(drawing(lambda: sweep_figure(found)).encode(), "sweep.svg")
+        if swept := await self._run():
+            ui.download.content(drawing(lambda: sweep_figure(swept)).encode(), "sweep.svg")
 
     async def png(self) -> None:
         """Download its picture as PNG."""
-        if found := await self._run():
-            ui.download.content(png(sweep_figure(found)), "sweep.png")
+        if swept := await self._run():
+            ui.download.content(png(sweep_figure(swept)), "sweep.png")
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:

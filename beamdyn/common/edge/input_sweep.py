@@ -127,7 +127,7 @@ class Coordinate(Input):
 
 def numbers(inputs: Sequence[Input]) -> list[Input]:
     """The inputs that can be varied: numbers, and the coordinates of points."""
-    return [found for entry in inputs for found in _numbers(entry)]
+    return [number for entry in inputs for number in _numbers(entry)]
 
 
 def _numbers(entry: Input) -> Iterator[Input]:
@@ -160,39 +160,39 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> A
         If there is no such input, or the values do not fit it.
     """
     key, _, rest = text.partition("=")
-    said = f'{option} = "{text}"'
-    entry = _find(inputs, key.strip(), said)
+    words = f'{option} = "{text}"'
+    entry = _find(inputs, key.strip(), words)
     match = _RANGE.fullmatch(rest)
     if match is None:
         form = f"{entry.path}=1:2:11 {entry.quantity.unit}".strip()
-        raise ValueError(f'{said}: give KEY=start:stop:count unit, e.g. "{form}"')
+        raise ValueError(f'{words}: give KEY=start:stop:count unit, e.g. "{form}"')
     start, stop, count = float(match[1]), float(match[2]), int(match[3])
     if not 2 <= count <= _MOST or start == stop:
-        raise ValueError(f"{said}: give two different ends, and a count from 2 to {_MOST}")
-    low, high = (_in_si(entry, number, match[4], said) for number in (match[1], match[2]))
+        raise ValueError(f"{words}: give two different ends, and a count from 2 to {_MOST}")
+    low, high = (_in_si(entry, number, match[4], words) for number in (match[1], match[2]))
     return Axis(entry, match[4], np.linspace(start, stop, count), np.linspace(low, high, count))
 
 
-def _in_si(entry: Input, number: str, unit: str, said: str) -> float:
+def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
     """An end of the range in SI, checked against the bounds of the input."""
-    asked = entry.quantity
-    given = f"{number} {unit}".strip() if asked.unit or unit else float(number)
+    quantity = entry.quantity
+    given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
-        return asked.within_bounds(given, asked.convert(given))
+        return quantity.within_bounds(given, quantity.convert(given))
     except InvalidInput as error:
-        raise ValueError(f"{said}: {replace(error, field=entry.path)}") from None
+        raise ValueError(f"{words}: {replace(error, field=entry.path)}") from None
 
 
-def _find(inputs: Sequence[Input], key: str, said: str) -> Input:
+def _find(inputs: Sequence[Input], key: str, words: str) -> Input:
     """The input of a key."""
-    found = [i for i in inputs if key in (i.path, i.name)]
-    if len(found) > 1:
-        found = [i for i in found if i.required] or found
-    if len(found) > 1:
-        raise ValueError(f"{said}: {key} is ambiguous; give {' or '.join(i.path for i in found)}")
-    if not found:
-        raise ValueError(f"{said}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
-    return found[0]
+    matches = [i for i in inputs if key in (i.path, i.name)]
+    if len(matches) > 1:
+        matches = [i for i in matches if i.required] or matches
+    if len(matches) > 1:
+        raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
+    if not matches:
+        raise ValueError(f"{words}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
+    return matches[0]
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
@@ -276,7 +276,7 @@ def one_by_one(
         If there is no answer at any value; the message says why there is none at the first.
     """
     shape = tuple(len(axis.values) for axis in reversed(axes))
-    found, refusals = np.full((len(outputs), *shape), np.nan), []
+    results, refusals = np.full((len(outputs), *shape), np.nan), []
     for place in np.ndindex(shape):
         given = [float(axis.given[i]) for axis, i in zip(axes, reversed(place), strict=True)]
         design = tables
@@ -284,13 +284,13 @@ def one_by_one(
             design = placed(design, axis, value)
         try:
             answer = solve(design)
-            found[(slice(None), *place)] = [float(output.shown(answer)) for output in outputs]
+            results[(slice(None), *place)] = [float(output.shown(answer)) for output in outputs]
         except (ValueError, ArithmeticError, NoAnswer) as error:
             refusals.append(f"{_at(axes, given)}: {error}")
-    if len(refusals) == found[0].size:
+    if len(refusals) == results[0].size:
         raise NoAnswer(f"at none of {len(refusals)} values is there an answer; {refusals[0]}")
-    none = f"at {len(refusals)} of {found[0].size} values there is no answer; " if refusals else ""
-    return sweep(axes, outputs, [*found], [none + refusals[0]] if refusals else [])
+    none = f"at {len(refusals)} of {results[0].size} values there is no answer; " if refusals else ""
+    return sweep(axes, outputs, [*results], [none + refusals[0]] if refusals else [])
 
 
 def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
@@ -327,21 +327,21 @@ def _put(tables: Mapping[str, Any], path: Sequence[str], change: Callable[[Any],
 # Its rows -----------------------------------------------------------------------------------------------
 
 
-def sweep_csv(found: InputSweep) -> Iterator[Sequence[object]]:
+def sweep_csv(swept: InputSweep) -> Iterator[Sequence[object]]:
     """Rows of a sweep's CSV file, with its heads."""
-    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(found)]
-    yield from sweep_rows(found)
+    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(swept)]
+    yield from sweep_rows(swept)
 
 
-def sweep_rows(found: InputSweep) -> Iterator[list[float]]:
+def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:
     """Inputs and results, one row a case; the first input changes fastest."""
-    grids = np.meshgrid(*found.values, indexing="xy") if len(found.values) > 1 else found.values
-    cells = [np.ravel(values) for values in (*grids, *found.found)]
+    grids = np.meshgrid(*swept.values, indexing="xy") if len(swept.values) > 1 else swept.values
+    cells = [np.ravel(values) for values in (*grids, *swept.found)]
     for row in zip(*(column.tolist() for column in cells), strict=True):
         yield [*row]
 
 
-def columns(found: InputSweep) -> list[tuple[str, str]]:
+def columns(swept: InputSweep) -> list[tuple[str, str]]:
     """Names and units of the columns: inputs, then results."""
-    inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in found.inputs)
-    return [*zip(inputs, found.units, strict=True), *zip(found.results, found.result_units, strict=True)]
+    inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in swept.inputs)
+    return [*zip(inputs, swept.units, strict=True), *zip(swept.results, swept.result_units, strict=True)]

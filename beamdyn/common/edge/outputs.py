@@ -68,7 +68,7 @@ NO_FILES = Outputs()
 
 
 def write(
-    found: Result,
+    result: Result,
     outputs: Outputs,
     rows: Iterable[Sequence[object]] = (),
     draw: Callable[[], Figure] | None = None,
@@ -78,7 +78,7 @@ def write(
     if outputs.json is not None:
         from beamdyn.common.results import to_json
 
-        outputs.json.write_text(to_json(found.to_dict()), encoding="utf-8")
+        outputs.json.write_text(to_json(result.to_dict()), encoding="utf-8")
     if outputs.csv is not None:
         with outputs.csv.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)

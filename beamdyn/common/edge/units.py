@@ -163,8 +163,8 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
     if unit == "rad/s" and names.get(_root(kind)) == "frequency":
         turns = f'"{60 * float(number):g} rpm"' if f"{kind:~}" == "Hz" else "rpm"
         return f"ambiguous for an angular speed; give {turns} if turns are meant, rad/s if radians"
-    found = names.get(_root(kind), f"{kind:~C}")
-    return f"a unit of {found} where {_kind(unit)} is wanted; give e.g. {_usual(unit)}"
+    kind_of = names.get(_root(kind), f"{kind:~C}")
+    return f"a unit of {kind_of} where {_kind(unit)} is wanted; give e.g. {_usual(unit)}"
 
 
 def _kind(unit: str) -> str:
