@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from functools import cached_property
 from os import PathLike
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from numpy.polynomial import Polynomial
 from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
@@ -14,9 +13,10 @@ from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.sections import one_of_kinds, section_of
 from beamdyn.common.edge.units import quantity
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
+from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
@@ -150,42 +150,21 @@ def _kind_of_variation(given: Any) -> str | None:
 # Tables of the file -------------------------------------------------------------------------------
 
 
-class TipInput(CoreSection):
-    """[beam.tip]: a rigid body at the tip."""
+# By kind, in the order of the list of motions
+ROTATIONS = {name: section_of(made, name) for name, made in KINDS.items() if issubclass(made, Rotation)}
+_ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
+MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}
 
-    mass: Annotated[float, Quantity("kg", symbol="m_t", meaning="mass", least=0)]
-    offset: Annotated[
-        float,
-        Quantity("m", symbol="e", meaning="distance of its centre of gravity beyond the end of the beam"),
-    ] = TipMass.offset
-    inertia: Annotated[
-        float, Quantity("kg m2", symbol="J_n", meaning="moment of inertia about the axis of bending", least=0)
-    ] = TipMass.inertia
-    transverse_inertia: (
-        Annotated[
-            float,
-            Quantity(
-                "kg m2",
-                symbol="J_e",
-                meaning="moment of inertia about the direction of bending; else inertia",
-                least=0,
-            ),
-        ]
-        | None
-    ) = TipMass.transverse_inertia
-    axial_inertia: Annotated[
-        float, Quantity("kg m2", symbol="J_1", meaning="moment of inertia about the beam axis", least=0)
-    ] = TipMass.axial_inertia
-
-    @cached_property
-    def core(self) -> TipMass:
-        """The tip body."""
-        return TipMass(**dict(self))
+if TYPE_CHECKING:
+    _TipInput = _MountInput = _MotionInput = CoreSection
+else:
+    _TipInput, _MountInput = section_of(TipMass), section_of(Mount)
+    _MotionInput = one_of_kinds(MOTIONS)
 
 
 class _BeamInput(CoreSection):
-    length: Annotated[float, Quantity("m", symbol="L", meaning="length", above=0)]
-    tip: TipInput | None = None
+    length: Annotated[float, Quantity("m", "L", "length", above=0)]
+    tip: _TipInput | None = None
     breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
 
     def _arguments(self) -> dict[str, Any]:
@@ -197,12 +176,10 @@ class _BeamInput(CoreSection):
 class RectangularInput(_BeamInput):
     """[beam]: a beam of rectangular section."""
 
-    width: Annotated[Along, Varying("m", symbol="b", meaning="width of the section", above=0)]
-    thickness: Annotated[
-        Along, Varying("m", symbol="h", meaning="thickness, in the direction of bending", above=0)
-    ]
-    youngs_modulus: Annotated[float, Quantity("Pa", symbol="E", meaning="Young's modulus", above=0)]
-    density: Annotated[float, Quantity("kg/m3", symbol="rho", meaning="density", above=0)]
+    width: Annotated[Along, Varying("m", "b", "width of the section", above=0)]
+    thickness: Annotated[Along, Varying("m", "h", "thickness, in the direction of bending", above=0)]
+    youngs_modulus: Annotated[float, Quantity("Pa", "E", "Young's modulus", above=0)]
+    density: Annotated[float, Quantity("kg/m3", "rho", "density", above=0)]
 
     @cached_property
     def core(self) -> Beam:
@@ -213,20 +190,14 @@ class RectangularInput(_BeamInput):
 class StiffnessInput(_BeamInput):
     """[beam]: a beam of any section, by its stiffness."""
 
-    mass_per_length: Annotated[Along, Varying("kg/m", symbol="rho A", meaning="mass per length", above=0)]
-    bending_stiffness: Annotated[Along, Varying("N m2", symbol="E I", meaning="bending stiffness", above=0)]
-    axial_stiffness: (
-        Annotated[Along, Varying("N", symbol="E A", meaning="axial stiffness, for stretch", above=0)] | None
-    ) = None
+    mass_per_length: Annotated[Along, Varying("kg/m", "rho A", "mass per length", above=0)]
+    bending_stiffness: Annotated[Along, Varying("N m2", "E I", "bending stiffness", above=0)]
+    axial_stiffness: Annotated[Along, Varying("N", "E A", "axial stiffness, for stretch", above=0)] | None = (
+        None
+    )
     outer_fibre: (
         Annotated[
-            Along,
-            Varying(
-                "m",
-                symbol="c",
-                meaning="distance of the outer fibre from the neutral axis, for strain",
-                above=0,
-            ),
+            Along, Varying("m", "c", "distance of the outer fibre from the neutral axis, for strain", above=0)
         ]
         | None
     ) = None
@@ -274,152 +245,6 @@ BeamInput = Annotated[
 ]
 
 
-class MountInput(CoreSection):
-    """[mount]: how the root of the beam is fixed to the carrier."""
-
-    radius: Annotated[
-        float,
-        Quantity(
-            "m",
-            symbol="r",
-            meaning="distance of the root from the axis of rotation",
-            least=0,
-            remedy='for a beam that points outward give setting_angle = "180 deg"',
-        ),
-    ]
-    setting_angle: Annotated[
-        float,
-        Quantity(
-            "rad",
-            symbol="phi",
-            meaning="direction of the beam: 0 inward, 90 deg tangential, 180 deg outward",
-            least=-2 * math.pi,
-            most=2 * math.pi,
-            remedy="that is one turn either way",
-        ),
-    ] = Mount.setting_angle
-    bending_angle: Annotated[
-        float,
-        Quantity(
-            "rad",
-            symbol="psi",
-            meaning="angle between the direction of bending and the plane of rotation",
-            least=-2 * math.pi,
-            most=2 * math.pi,
-            remedy="that is one turn either way",
-        ),
-    ] = Mount.bending_angle
-
-    @cached_property
-    def core(self) -> Mount:
-        """The mount."""
-        return Mount(**dict(self))
-
-
-class SteadyInput(CoreSection):
-    """[motion] of kind "steady": rotation at constant speed about a fixed centre."""
-
-    kind: Annotated[Literal["steady"], Field(description="kind of motion")] = "steady"
-    speed: Annotated[float, Quantity("rad/s", symbol="omega", meaning="angular speed of the carrier")]
-
-    @cached_property
-    def core(self) -> SteadyRotation:
-        """The motion."""
-        return SteadyRotation(self.speed)
-
-
-class SpinUpInput(CoreSection):
-    """[motion] of kind "spin_up": from rest to a constant speed about a fixed centre."""
-
-    kind: Annotated[Literal["spin_up"], Field(description="kind of motion")]
-    speed: Annotated[float, Quantity("rad/s", symbol="omega_s", meaning="angular speed of the carrier")]
-    duration: Annotated[float, Quantity("s", symbol="T", meaning="time that the spin-up takes", above=0)]
-    law: Annotated[Literal["smooth", "linear"], Field(description="law of the spin-up")] = SpinUp.law
-
-    @cached_property
-    def core(self) -> SpinUp:
-        """The motion."""
-        return SpinUp(self.speed, self.duration, self.law)
-
-
-class SampledInput(CoreSection):
-    """[motion] of kind "sampled": a table of speeds, about a fixed centre."""
-
-    kind: Annotated[Literal["sampled"], Field(description="kind of motion")]
-    times: list[Annotated[float, Quantity("s", symbol="t", meaning="times of the table, from 0")]]
-    speeds: list[Annotated[float, Quantity("rad/s", symbol="omega", meaning="speeds at these times")]]
-    interpolation: Annotated[
-        Literal["cubic", "pchip"], Field(description="cubic spline, or cubics that do not overshoot")
-    ] = SampledRotation.interpolation
-
-    @cached_property
-    def core(self) -> SampledRotation:
-        """The motion."""
-        return SampledRotation(self.times, self.speeds, self.interpolation)
-
-
-class RoadInput(CoreSection):
-    """[motion.road]: a wavy road, by its height or by the velocity that it gives the wheel."""
-
-    wavelength: Annotated[float, Quantity("m", symbol="lambda", meaning="wavelength of the road", above=0)]
-    velocity_amplitude: (
-        Annotated[
-            float,
-            Quantity("m/s", symbol="C", meaning="amplitude of the wheel's vertical velocity; or height"),
-        ]
-        | None
-    ) = RoadWave.velocity_amplitude
-    height: (
-        Annotated[
-            float,
-            Quantity("m", symbol="A", meaning="amplitude of the road's height; or velocity_amplitude"),
-        ]
-        | None
-    ) = RoadWave.height
-
-    @cached_property
-    def core(self) -> RoadWave:
-        """The road."""
-        return RoadWave(**dict(self))
-
-
-def _kind_of_motion(given: Any) -> str:
-    return f"<{given.get('kind', 'steady')}>" if isinstance(given, dict) else "<steady>"
-
-
-RotationInput = Annotated[
-    Annotated[SteadyInput, Tag("<steady>")]
-    | Annotated[SpinUpInput, Tag("<spin_up>")]
-    | Annotated[SampledInput, Tag("<sampled>")],
-    Discriminator(_kind_of_motion, "kind", "give 'steady', 'spin_up' or 'sampled'"),
-]
-
-
-class RollingInput(CoreSection):
-    """[motion] of kind "rolling": a wheel that rolls, on a flat or a wavy road."""
-
-    kind: Annotated[Literal["rolling"], Field(description="kind of motion")]
-    rolling_radius: Annotated[
-        float, Quantity("m", symbol="R", meaning="distance travelled per angle turned", above=0)
-    ]
-    rotation: RotationInput
-    road: RoadInput | None = None
-
-    @cached_property
-    def core(self) -> RollingWheel:
-        """The motion."""
-        return RollingWheel(self.rolling_radius, self.rotation.core, self.road and self.road.core)
-
-
-MotionInput = Annotated[
-    Annotated[SteadyInput, Tag("<steady>")]
-    | Annotated[SpinUpInput, Tag("<spin_up>")]
-    | Annotated[SampledInput, Tag("<sampled>")]
-    | Annotated[RollingInput, Tag("<rolling>")],
-    Discriminator(_kind_of_motion, "kind", "give 'steady', 'spin_up', 'sampled' or 'rolling'"),
-]
-
-
 class ModelInput(Section):
     """[model]: what the model includes."""
 
@@ -429,7 +254,7 @@ class ModelInput(Section):
             symbol="zeta", meaning="modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"
         ),
     ] = Scene.damping_ratio
-    gravity: Annotated[float, Quantity("m/s2", symbol="g", meaning="gravity")] = Scene.gravity
+    gravity: Annotated[float, Quantity("m/s2", "g", "gravity")] = Scene.gravity
     stretch: Annotated[bool, Field(description="keep the stretch of the beam and its Coriolis coupling")] = (
         Scene.stretch
     )
@@ -439,8 +264,8 @@ class SceneInput(CoreSection):
     """A scene: the tables [beam], [mount], and where wanted [motion] and [model]."""
 
     beam: BeamInput
-    mount: MountInput
-    motion: MotionInput | None = None
+    mount: _MountInput
+    motion: _MotionInput | None = None
     model: ModelInput = ModelInput()
 
     @cached_property

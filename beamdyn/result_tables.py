@@ -1,4 +1,4 @@
-"""Reports for people: each result as a table, with the digits that its error leaves."""
+"""Tables of results: for people with the digits that the error leaves, and for CSV files in full."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.tables import supported, table
+from beamdyn.common.digits import supported
+from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
     from beamdyn.spectrum.critical import SettingAngleLimits
@@ -23,63 +24,63 @@ if TYPE_CHECKING:
 _SHOWN = 16  # rows of a locus, apart from those where a mode turns unstable
 
 
-def modes_table(found: Modes) -> Group:
+def modes_table(result: Modes) -> Group:
     """The table of natural modes."""
     rows = []
-    size = np.abs(found.eigenvalue) * found.error  # absolute error of the eigenvalues
-    for i, status in enumerate(found.status):
-        frequency = supported(found.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
-        growth = "0" if found.growth_rate[i] == 0 else supported(found.growth_rate[i], size[i])
-        rows.append((str(i + 1), frequency, f"{found.error[i]:.0e}", growth, str(status)))
-    title = f"Natural modes at {found.speed:.10g} rad/s, by {found.provenance.method}"
+    size = np.abs(result.eigenvalue) * result.error  # absolute error of the eigenvalues
+    for i, status in enumerate(result.status):
+        frequency = supported(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
+        growth = "0" if result.growth_rate[i] == 0 else supported(result.growth_rate[i], size[i])
+        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, str(status)))
+    title = f"Natural modes at {result.speed:.10g} rad/s, by {result.provenance.method}"
     return table(
         title, ("mode", "frequency [Hz]", "relative error", "growth rate [1/s]", "status"), rows, (4,)
     )
 
 
-def locus_table(found: Locus) -> Group:
-    """The table of a locus: some of its speeds, each frequency or, where there is none, the growth rate."""
+def locus_table(result: Locus) -> Group:
+    """The table of a locus at some of its speeds: frequencies, or growth rates of unstable modes."""
     rows = []
-    size = np.abs(found.eigenvalue) * found.error
-    for s in (shown := _shown(found)):
-        cells = [_cell(found, size, s, mode) for mode in range(found.frequency.shape[1])]
-        sure = f"{found.confidence[s].min():.2f}"
-        rows.append((f"{found.speeds[s]:.8g}", *cells, f"{found.error[s].max():.0e}", sure))
-    heads = [f"mode {mode} [Hz]" for mode in range(1, found.frequency.shape[1] + 1)]
-    title = f"Natural frequencies, by {found.provenance.method}{_part(shown, found.speeds)}"
+    size = np.abs(result.eigenvalue) * result.error
+    for s in (shown := _shown(result)):
+        cells = [_cell(result, size, s, mode) for mode in range(result.frequency.shape[1])]
+        sure = f"{result.confidence[s].min():.2f}"
+        rows.append((f"{result.speeds[s]:.8g}", *cells, f"{result.error[s].max():.0e}", sure))
+    heads = [f"mode {mode} [Hz]" for mode in range(1, result.frequency.shape[1] + 1)]
+    title = f"Natural frequencies, by {result.provenance.method}{_part(shown, result.speeds)}"
     return table(title, ("speed [rad/s]", *heads, "largest error", "tracking"), rows, ())
 
 
-def _shown(found: Locus) -> np.ndarray:
+def _shown(result: Locus) -> np.ndarray:
     """Indices of speeds for people: evenly spread, and those before and after a change of status."""
-    count = len(found.speeds)
+    count = len(result.speeds)
     spread = np.linspace(0, count - 1, min(count, _SHOWN)).round().astype(int)
-    change = np.flatnonzero((found.status[1:] != found.status[:-1]).any(axis=1))[:_SHOWN]
+    change = np.flatnonzero((result.status[1:] != result.status[:-1]).any(axis=1))[:_SHOWN]
     return np.unique(np.concatenate([spread, change, change + 1]))
 
 
-def _cell(found: Locus, size: np.ndarray, s: int, mode: int) -> str:
-    if found.status[s, mode] == "stable":
-        return supported(found.frequency[s, mode], size[s, mode] / (2 * np.pi))
-    return f"{found.status[s, mode]}, {found.growth_rate[s, mode]:+.3g} 1/s"
+def _cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
+    if result.status[s, mode] == "stable":
+        return supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
+    return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
 
 
-def limits_table(found: SettingAngleLimits) -> Group:
+def limits_table(result: SettingAngleLimits) -> Group:
     """The table of setting-angle limits."""
-    degrees = [supported(float(np.degrees(limit)), float(np.degrees(found.error))) for limit in found]
+    degrees = [supported(float(np.degrees(limit)), float(np.degrees(result.error))) for limit in result]
     meaning = (
         "below it the first frequency falls with speed; above it, it rises from rest",
         "below it the first frequency falls before the top speed; above it, it rises",
     )
-    title = f"Setting-angle limits up to {found.top_speed:.10g} rad/s, by {found.provenance.method}"
+    title = f"Setting-angle limits up to {result.top_speed:.10g} rad/s, by {result.provenance.method}"
     rows = zip(("first", "second"), degrees, meaning, strict=True)
     return table(title, ("limit", "angle [deg]", ""), rows, (0, 2))
 
 
 # Motion in time and resonance -------------------------------------------------------------------------
 
-_MODEL_DIGITS = 6  # most of a deflection: the modes that are left out allow no more
-_UNKNOWN = 5e-4  # relative error with which a deflection of unknown error is shown
+_MODEL_DIGITS = 6  # most of a deflection: the modal truncation error allows no more
+_UNKNOWN = 5e-4  # relative error assumed for the digits of a deflection whose error is not estimated
 
 
 def transient_table(run: Transient, window: tuple[float, float] | None = None) -> Group:
@@ -115,20 +116,20 @@ def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str
 
 
 def _errors(run: Transient) -> str:
-    """The two errors in words."""
+    """Time-integration error and modal truncation error in words."""
     known = math.isfinite(run.mode_error)
     modes = (
-        f"by the modes left out {1e3 * run.mode_error:.1g} mm" if known else "by the modes left out unknown"
+        f"modal truncation error {1e3 * run.mode_error:.1g} mm" if known else "modal truncation error unknown"
     )
     if math.isnan(run.time_error):
         return (
-            "The error in time is not estimated: this integrator bounds that of each step only. "
-            f"Estimated error {modes}."
+            "The time-integration error is not estimated: this integrator bounds that of each step only. "
+            f"Estimated {modes}."
         )
-    return f"Estimated error by the steps in time {1e3 * run.time_error:.1g} mm, {modes}."
+    return f"Estimated time-integration error {1e3 * run.time_error:.1g} mm, {modes}."
 
 
-def crossings_table(found: Crossings) -> Group:
+def crossings_table(result: Crossings) -> Group:
     """The table of resonance speeds."""
     rows = [
         (
@@ -138,40 +139,40 @@ def crossings_table(found: Crossings) -> Group:
             supported(c.frequency, c.error * c.frequency),
             c.kind,
         )
-        for c in found
+        for c in result
     ]
-    title = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}, by {found.provenance.method}"
+    title = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}, by {result.provenance.method}"
     return table(title, ("speed [rad/s]", "line", "mode", "frequency [Hz]", "kind"), rows, (1, 4))
 
 
-def steady_table(found: SteadyResponse) -> Group:
+def steady_table(result: SteadyResponse) -> Group:
     """The table of a steady response: some of its speeds, its peaks among them."""
     with np.errstate(divide="ignore"):
-        summits = peaks(np.log(found.amplitude), np.log(3))
-    shown = _shown_response(found.status, summits)
-    error = found.error * found.bound
-    sizes = [_millimetres(values, error) for values in (found.amplitude, found.bound)]
-    columns = [_speed_cells(found.speeds), *sizes, _status_cells(found.status, summits)]
-    title = f"Steady response, by harmonic balance with {found.provenance.method}"
+        peaks_at = peaks(np.log(result.amplitude), np.log(3))
+    shown = _shown_response(result.status, peaks_at)
+    error = result.error * result.bound
+    sizes = [_millimetres(values, error) for values in (result.amplitude, result.bound)]
+    columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
+    title = f"Steady response, by harmonic balance with {result.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
-    return table(title + _part(shown, found.speeds), heads, _rows(columns, shown), (3,))
+    return table(title + _part(shown, result.speeds), heads, _rows(columns, shown), (3,))
 
 
-def sweep_table(found: Sweep) -> Group:
+def sweep_table(result: Sweep) -> Group:
     """The table of a sweep: some of its speeds, its peaks among them."""
-    summits = sweep_peaks(found)
-    shown = _shown_response(np.array(found.status), summits)
-    sizes = _millimetres(found.peaks, found.time_error)
-    columns = _speed_cells(found.speeds), sizes, _status_cells(found.status, summits)
-    start, end = found.window
-    title = f"Largest tip deflection in {start:g} to {end:g} s, by {found.provenance.method}"
+    peaks_at = sweep_peaks(result)
+    shown = _shown_response(np.array(result.status), peaks_at)
+    sizes = _millimetres(result.peaks, result.time_error)
+    columns = _speed_cells(result.speeds), sizes, _status_cells(result.status, peaks_at)
+    start, end = result.window
+    title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "status")
-    return table(title + _part(shown, found.speeds), heads, _rows(columns, shown), (2,))
+    return table(title + _part(shown, result.speeds), heads, _rows(columns, shown), (2,))
 
 
-def sweep_peaks(found: Sweep) -> np.ndarray:
+def sweep_peaks(result: Sweep) -> np.ndarray:
     """Indices of the speeds at which a sweep peaks: by a quarter of its largest deflection."""
-    return peaks(found.peaks, 0.25 * np.nanmax(found.peaks, initial=0.0))
+    return peaks(result.peaks, 0.25 * np.nanmax(result.peaks, initial=0.0))
 
 
 def _speed_cells(speeds: np.ndarray) -> list[str]:
@@ -183,8 +184,8 @@ def _millimetres(values: np.ndarray, error: np.ndarray) -> list[str]:
     return [supported(float(v), float(e), _MODEL_DIGITS) for v, e in pairs]
 
 
-def _status_cells(status: Iterable[str], summits: np.ndarray) -> list[str]:
-    high = set(summits.tolist())
+def _status_cells(status: Iterable[str], peaks_at: np.ndarray) -> list[str]:
+    high = set(peaks_at.tolist())
     return [f"{s}, peak" if i in high else str(s) for i, s in enumerate(status)]
 
 
@@ -192,15 +193,15 @@ def _rows(columns: Sequence[list[str]], shown: np.ndarray) -> Iterator[list[str]
     return ([column[s] for column in columns] for s in shown)
 
 
-def _shown_response(status: np.ndarray, summits: np.ndarray) -> np.ndarray:
+def _shown_response(status: np.ndarray, peaks_at: np.ndarray) -> np.ndarray:
     """Indices of speeds for people: evenly spread, the peaks, and where the status changes."""
     spread = np.linspace(0, len(status) - 1, min(len(status), _SHOWN)).round().astype(int)
     change = np.flatnonzero(status[1:] != status[:-1])[:_SHOWN]
-    return np.unique(np.concatenate([spread, summits[:_SHOWN], change, change + 1]))
+    return np.unique(np.concatenate([spread, peaks_at[:_SHOWN], change, change + 1]))
 
 
 def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
-    """Indices of the local maxima that stand out by so much; values that are not finite do not count."""
+    """Indices of the local maxima of at least this prominence; values that are not finite are skipped."""
     from scipy.signal import find_peaks
 
     known = np.flatnonzero(np.isfinite(values))
@@ -211,3 +212,52 @@ def _part(shown: np.ndarray, all_: np.ndarray) -> str:
     if len(shown) == len(all_):
         return ""
     return f" ({len(shown)} of {len(all_)} speeds; CSV and JSON have all)"
+
+
+# Rows of CSV files, with their heads ----------------------------------------------------------------
+
+
+def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
+    """Frequency, error, growth rate and status of each mode."""
+    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status"
+    columns = result.frequency, result.error, result.growth_rate, result.status
+    for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
+        yield mode, result.speed, *row
+
+
+def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
+    """The same for each mode over speed, one row a speed."""
+    names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
+    columns = result.frequency, result.error, result.growth_rate, result.status, result.confidence
+    numbers = range(1, result.frequency.shape[1] + 1)
+    yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
+    for speed, *rows in zip(result.speeds.tolist(), *(column.tolist() for column in columns), strict=True):
+        yield speed, *(value for row in rows for value in row)
+
+
+def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
+    """Tip deflection over time."""
+    yield "time_s", "tip_deflection_m"
+    yield from zip(run.t.tolist(), run.tip.tolist(), strict=True)
+
+
+def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
+    """Largest deflection over speed."""
+    yield "speed_rad_per_s", "largest_deflection_m", "time_error_m"
+    yield from zip(result.speeds.tolist(), result.peaks.tolist(), result.time_error.tolist(), strict=True)
+
+
+def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
+    """Speeds of resonance, one row each."""
+    first = "speed_rad_per_s", "relative_error", "frequency_Hz"
+    yield *first, "line", "multiple", "mode", "second_mode", "kind"
+    for c in result:
+        second = "" if c.second_mode is None else c.second_mode
+        yield c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
+
+
+def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
+    """Steady amplitude over speed."""
+    yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", "growth_rate_per_s", "status"
+    columns = result.speeds, result.amplitude, result.bound, result.error, result.growth_rate, result.status
+    yield from zip(*(column.tolist() for column in columns), strict=True)

@@ -11,8 +11,8 @@ from time import perf_counter
 
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.documents import Program
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Program
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
@@ -22,7 +22,7 @@ RUNS, BOUND = 9, 100  # how often each is timed; the longest answer that feels i
 def time_screens(program: Program) -> Iterator[Row]:
     """Every screen of a program, on the design that it opens with."""
     for document in program.documents:
-        work = Work(document)
+        work = OpenDocument(document)
         for screen in document.screens:
             time = _time(lambda screen=screen, work=work: work.solve(screen))
             yield f"{screen.name}: answer to a change [ms]", f"{1e3 * time:.1f}", f"{BOUND}"

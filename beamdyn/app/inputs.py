@@ -1,81 +1,72 @@
-"""What the beam's screens ask for: a scene, and what is asked of it."""
+"""The form of the beam's screens: the tables of a scene, and the options that commands have."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
-from typing import Annotated, Any
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, get_args
 
+from pydantic import BaseModel, Field
+
+from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
-from beamdyn.config import (
-    RectangularInput,
-    RollingInput,
-    SampledInput,
-    SceneInput,
-    SpinUpInput,
-    SteadyInput,
-    StiffnessInput,
-    scene_from_dict,
-)
+from beamdyn.common.edge.units import InvalidInput
+from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
 from beamdyn.scene.scene import Scene
 
-_MOTIONS: dict[str, type[Section]] = {
-    "steady": SteadyInput,
-    "spin_up": SpinUpInput,
-    "sampled": SampledInput,
-    "rolling": RollingInput,
-}
+TABLES = ("options", "mount", "beam", "motion", "model")  # on the form of each screen, in this order
+DRAGS = (
+    Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
+    Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
+    Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
+)
 
 
-class Modes(Quantity):
+class ModeCount(Quantity):
     """A number of modes: a whole number."""
 
     def convert(self, given: object) -> float:
         """The number."""
         value = super().convert(given)
         if value != int(value):
-            raise ValueError(f"{given}: give a whole number")
+            raise InvalidInput("", given, "give a whole number")
         return value
 
 
-class AskedInput(Section):
-    """What is asked of a scene: on the command line these are options."""
+class OptionsInput(Section):
+    """[options]: speed range and number of modes, which are options on the command line."""
 
     top_speed: Annotated[
         float, Quantity("rad/s", symbol="omega", meaning="top speed", above=0, remedy='e.g. "150 rad/s"')
     ]
-    modes: Annotated[float, Modes(symbol="n", meaning="how many modes", least=1, most=8)]
+    modes: Annotated[float, ModeCount(symbol="n", meaning="how many modes", least=1, most=8)]
+
+
+class _NoKind(Section):
+    """A table whose kind has not been chosen yet."""
+
+    kind: Annotated[str, Field(description="kind of motion")]
 
 
 def inputs_of(entries: Mapping[str, str]) -> list[Input]:
     """Inputs of the alternatives that entries choose: the beam's kind and the motion's."""
-    sections = {_beam(entries), _motion(entries, "motion"), _motion(entries, "motion.rotation")}
-    others = {RectangularInput, StiffnessInput, *_MOTIONS.values()} - sections
-    found: dict[str, Input] = {}
-    for entry in (*describe(AskedInput, "asked."), *describe(SceneInput)):
-        if not _hidden(entry, entries, others):
-            found.setdefault(entry.path, entry)
-    kinds = tuple(_MOTIONS)
-    for path, choices in (("motion.kind", kinds), ("motion.rotation.kind", kinds[:3])):
-        if path in found:
-            found[path] = dataclasses.replace(found[path], choices=choices, required=False, default=None)
-    return [*found.values()]
+    kinds: dict[str, tuple[str, ...]] = {}
 
+    def choose(table: str, models: Sequence[type[BaseModel]]) -> list[type[BaseModel]]:
+        if table == "beam":
+            return [_beam(entries)]
+        by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
+        kinds[f"{table}.kind"] = tuple(by_kind)
+        return [by_kind.get(_kind(entries, table, next(iter(by_kind))), _NoKind)]
 
-def _hidden(entry: Input, entries: Mapping[str, str], others: set[Any]) -> bool:
-    if entry.path == "motion.kind":
-        return False
-    rolls = _motion(entries, "motion") is RollingInput
-    if entry.path.startswith(("motion.rotation.", "motion.road.")) and not rolls:
-        return True
-    if entry.path == "motion.rotation.kind":
-        return False
-    of_rotation = entry.path.startswith("motion.rotation.")
-    own = _motion(entries, "motion.rotation" if of_rotation else "motion")
-    if entry.section in _MOTIONS.values():
-        return entry.section is not own
-    return entry.section in others
+    inputs = [*describe(OptionsInput, "options."), *describe(SceneInput, choose=choose)]
+    return [
+        dataclasses.replace(entry, choices=kinds[entry.path], required=False, default=None)
+        if entry.path in kinds
+        else entry
+        for entry in inputs
+    ]
 
 
 def _beam(entries: Mapping[str, str]) -> type[Section]:
@@ -84,18 +75,18 @@ def _beam(entries: Mapping[str, str]) -> type[Section]:
     return StiffnessInput if given & own else RectangularInput
 
 
-def _motion(entries: Mapping[str, str], table: str) -> type[Section] | None:
-    kind = entries.get(f"{table}.kind", "")
-    moves = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-    return _MOTIONS.get(kind or ("steady" if moves else ""))
+def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
+    """The kind chosen for a table: the default if only other keys are given, "" if none is."""
+    given = any(text for path, text in entries.items() if path.startswith(f"{table}."))
+    return entries.get(f"{table}.kind", "") or (usual if given else "")
 
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
-    rest = {name: table for name, table in tables.items() if name != "asked"}
-    asked = validated(_Asked, {"asked": tables.get("asked", {})}, "asked").asked
-    return scene_from_dict(rest), asked.top_speed, int(asked.modes)
+    rest = {name: table for name, table in tables.items() if name != "options"}
+    options = validated(_OptionsTable, {"options": tables.get("options", {})}, "options").options
+    return scene_from_dict(rest), options.top_speed, int(options.modes)
 
 
-class _Asked(Section):
-    asked: AskedInput
+class _OptionsTable(Section):
+    options: OptionsInput

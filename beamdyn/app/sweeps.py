@@ -11,17 +11,19 @@ import numpy as np
 
 from beamdyn import critical_speed, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
-from beamdyn.common.app.documents import Sweeps
-from beamdyn.common.app.entries import entries_of
-from beamdyn.common.edge.input_sweep import Output, Sweep, chosen, numbers, one_by_one, parse_axis
+from beamdyn.common.app.form_entries import entries_of
+from beamdyn.common.app.screens import Sweeps
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.edge.config import MissingValue
+from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, numbers, one_by_one, parse_axis
 from beamdyn.scene.scene import Scene
 
 _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the largest, how often these close in
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A scene, and what is asked of it; each answer is found when it is wanted.
+class SweepCase:
+    """A case of a sweep: a scene, and how far and with how many modes; answers are computed when wanted.
 
     Parameters
     ----------
@@ -36,10 +38,6 @@ class Asked:
     scene: Scene
     top: float
     modes: int
-
-    def frequency(self, speed: float, mode: int) -> float:
-        """A natural frequency at a speed [Hz]; nan where the mode diverges."""
-        return float(natural_modes(self.scene, speed, self.modes).frequency[mode])
 
     @cached_property
     def crossings(self) -> np.ndarray:
@@ -56,7 +54,7 @@ class Asked:
     def amplitudes(self, speeds: np.ndarray) -> np.ndarray:
         """Steady amplitudes [m]; nan where there is none."""
         if self.scene.motion is None:
-            raise ValueError("motion.kind: missing; choose the motion that excites the beam")
+            raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
         return steady_response(self.scene, speeds, self.modes).amplitude
 
     @cached_property
@@ -69,62 +67,66 @@ class Asked:
             If the beam is not damped: then the amplitude at a resonance has no bound.
         """
         if self.scene.damping_ratio == 0 and len(self.crossings):
-            raise ValueError(
-                "model.damping_ratio = 0: without damping the amplitude at a resonance has no bound; "
-                "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
-            )
+            bound = "without damping the amplitude at a resonance has no bound"
+            advice = "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
+            raise InvalidValue("model.damping_ratio", 0.0, bound, advice)
         speeds = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), self.crossings)
         for _ in range(_ROUNDS):
             best = self._largest(speeds)
             low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, len(speeds) - 1)]
             speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
-        found = self.amplitudes(speeds)
-        best = int(np.nanargmax(found))
-        return float(speeds[best]), float(found[best])
+        amplitudes = self.amplitudes(speeds)
+        best = int(np.nanargmax(amplitudes))
+        return float(speeds[best]), float(amplitudes[best])
 
     def _largest(self, speeds: np.ndarray) -> int:
-        found = self.amplitudes(speeds)
-        if np.isnan(found).all():
+        amplitudes = self.amplitudes(speeds)
+        if np.isnan(amplitudes).all():
             raise ValueError("at no speed up to the top speed is there a steady response")
-        return int(np.nanargmax(found))
+        return int(np.nanargmax(amplitudes))
 
 
 def frequency_outputs(modes: int) -> list[Output]:
     """Frequencies at the top speed and at rest, critical speed, first resonance."""
-    at_top = [
-        Output(f"frequency_{i + 1}", f"frequency {i + 1}", lambda a, i=i: a.frequency(a.top, i), "Hz")
-        for i in range(modes)
-    ]
-    at_rest = [
-        Output(f"frequency_{i + 1}_at_rest", f"frequency {i + 1}", lambda a, i=i: a.frequency(0.0, i), "Hz")
+    frequencies = [
+        Output(f"frequency_{i + 1}{where}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
+        for where, share in (("", 1.0), ("_at_rest", 0.0))
         for i in range(modes)
     ]
     return [
-        *at_top,
-        *at_rest,
-        Output("critical_speed", "critical speed", lambda a: critical_speed(a.scene), "rad/s"),
-        Output("first_resonance", "lowest speed of resonance", lambda a: a.first_resonance, "rad/s"),
+        *frequencies,
+        Output("critical_speed", "critical speed", lambda case: critical_speed(case.scene), "rad/s"),
+        Output("first_resonance", "lowest speed of resonance", lambda case: case.first_resonance, "rad/s"),
     ]
+
+
+def _frequency(mode: int, share: float, case: SweepCase) -> float:
+    """A natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
+    return float(natural_modes(case.scene, share * case.top, case.modes).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
     """The steady amplitude at the top speed, and the largest on the way there."""
     return [
         Output(
-            "amplitude", "amplitude at top speed", lambda a: a.amplitudes(np.array([a.top]))[0], "mm", 1e-3
+            "amplitude",
+            "amplitude at top speed",
+            lambda case: case.amplitudes(np.array([case.top]))[0],
+            "mm",
+            1e-3,
         ),
-        Output("largest_amplitude", "largest amplitude", lambda a: a.peak[1], "mm", 1e-3),
-        Output("speed_of_largest", "its speed", lambda a: a.peak[0], "rad/s"),
+        Output("largest_amplitude", "largest amplitude", lambda case: case.peak[1], "mm", 1e-3),
+        Output("speed_of_largest", "its speed", lambda case: case.peak[0], "rad/s"),
     ]
 
 
 def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
     """The sweeps of a screen whose outputs follow from the number of modes."""
 
-    def run(tables: Mapping[str, Any], text: str, names: str) -> Sweep:
+    def run(tables: Mapping[str, Any], text: str, names: str) -> InputSweep:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
         wanted = chosen(outputs(_modes(tables)), names, "results")
-        return one_by_one(tables, [axis], wanted, lambda design: Asked(*read(design)))
+        return one_by_one(tables, [axis], wanted, lambda design: SweepCase(*read(design)))
 
     return Sweeps(partial(_names, outputs), example, results, run)
 
@@ -134,5 +136,5 @@ def _names(outputs: Any, tables: Mapping[str, Any]) -> Sequence[str]:
 
 
 def _modes(tables: Mapping[str, Any]) -> int:
-    """How many modes are asked for."""
+    """Number of modes in the form."""
     return read(tables)[2]

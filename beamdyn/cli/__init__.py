@@ -1,11 +1,12 @@
 """The command ``beamdyn``.  What is heavy is imported by the commands that need it."""
 
 from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
+    frequencies,
     interactive,
-    motion,
     published,
-    spectrum,
+    steady_state,
     tradeoff,
+    transients,
 )
 from beamdyn.cli.program import app, main
 from beamdyn.cli.values import parse_speeds

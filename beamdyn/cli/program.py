@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from cyclopts import App
 
 from beamdyn._version import __version__
 from beamdyn.common.edge import program
+from beamdyn.common.edge.outputs import Outputs, write
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.results import Result
 
 app = App(
     name="beamdyn",
@@ -29,3 +38,44 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def warn(warnings: Iterable[str]) -> None:
     """Print warnings on standard error."""
     program.warn("beamdyn", warnings)
+
+
+def deliver(
+    result: Result,
+    outputs: Outputs,
+    question: Question,
+    tables: Sequence[RenderableType],
+    rows: Iterable[Sequence[object]],
+    draw: Callable[[], Figure],
+    warnings: Sequence[str] = (),
+    refusal: str = "",
+) -> None:
+    """Print the result of a command, write the requested files, and print warnings.
+
+    Parameters
+    ----------
+    result, outputs, rows, draw
+        As for `beamdyn.common.edge.outputs.write`.
+    question : Question
+        The command and its input, for the report.
+    tables : sequence of rich renderables
+        The result for people.
+    warnings : sequence of str
+        Warnings.
+    refusal : str
+        Why the model has no answer; empty if it has one.
+
+    Raises
+    ------
+    NoAnswer
+        With the refusal, after everything has been written.
+    """
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.edge.tables import show
+
+    show(tables)
+    refusals = [refusal] if refusal else []
+    write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
+    warn(warnings)
+    if refusal:
+        raise program.NoAnswer(refusal)

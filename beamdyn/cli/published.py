@@ -21,12 +21,12 @@ def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False)
         Compare with the tables of rotating beams of other sources too; takes some ten seconds.
     """
     from beamdyn.common.edge.tables import console
-    from beamdyn.reproduce import report
+    from beamdyn.reproduce import compare_all
 
     if output.exists() and not output.is_dir():
         raise ValueError(f"--output = {output}: it is a file; give a folder")
     screen = console()
-    checked = report(screen, output, tables)
+    checked = compare_all(screen, output, tables)
     unexpected = sum(not row.as_expected for row in checked)
     if unexpected:
         raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")

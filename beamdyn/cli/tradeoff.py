@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.cli.program import app, warn
+from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import SceneFile, Text, parse_positive, parse_speed
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes, write
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,27 +27,28 @@ def tradeoff(
     budget: Text = "60 s",
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """What accuracy costs: error against time of bases, elements, integrators, modes and harmonics.
+    """Error against computing time of bases, elements, integrators, numbers of modes and harmonics.
 
     Parameters
     ----------
     scene
         The scene; transients and the steady response are measured if it has a motion.
     speed
-        With its unit, e.g. "50 rad/s" or "525 rpm"; if not given, that of the scene's motion, or rest.
+        Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion,
+        or 0 without one.
     modes
-        How many modes are wanted.
+        Number of modes, from the lowest.
     t_end
-        End of the transients with its unit, e.g. "2 s"; if not given, a hundred periods of the first mode
-        after the start, or, if the start is long, from rest.
+        End of the transients with its unit, e.g. "2 s"; default: a hundred periods of the first mode after
+        the spin-up, or from rest if the spin-up is long.
     budget
-        Time that all of it may take, about, e.g. "60 s"; what does not fit is left out, and named.
+        Approximate computing time, e.g. "60 s"; measurements that do not fit are left out and listed.
     outputs
-        Files to write.
+        Output files.
     """
     from beamdyn import load_scene
-    from beamdyn.common.edge.html_report import Question, Report
-    from beamdyn.common.edge.tables import progress_bar, show
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.edge.tables import progress_bar
     from beamdyn.tradeoffs import tradeoff
 
     outputs.check()
@@ -55,17 +56,21 @@ def tradeoff(
     end = None if t_end is None else parse_positive("--t-end", t_end, "s")
     limit = parse_positive("--budget", budget, "s")
     loaded = load_scene(scene)
-    asked = Question.on_file("beamdyn tradeoff", scene, speed=speed, modes=modes, t_end=t_end, budget=budget)
+    question = Question.on_file(
+        "beamdyn tradeoff", scene, speed=speed, modes=modes, t_end=t_end, budget=budget
+    )
     with progress_bar("measuring") as progress:
-        found = tradeoff(loaded, given, modes, end, limit, progress)
-    show(tables := [_table(diagram) for diagram in found.diagrams])
-    report = Report(asked, tables, found.warnings)
-    write(found, outputs, _csv(found), on_axes(lambda ax: _draw(found, ax)), report)
-    warn(found.warnings)
+        result = tradeoff(loaded, given, modes, end, limit, progress)
+    tables, rows, draw = (
+        [_table(diagram) for diagram in result.diagrams],
+        _csv(result),
+        on_axes(lambda ax: _draw(result, ax)),
+    )
+    deliver(result, outputs, question, tables, rows, draw, result.warnings)
 
 
 def _table(diagram: Diagram) -> Group:
-    """What each digit costs, what none beats, and what it is compared with."""
+    """Cost of each digit, the Pareto front, and the reference of the errors."""
     from rich.console import Group
     from rich.text import Text as Line
 
@@ -86,15 +91,15 @@ def _table(diagram: Diagram) -> Group:
     )
 
 
-def _csv(found: Tradeoff) -> Iterator[Sequence[object]]:
+def _csv(result: Tradeoff) -> Iterator[Sequence[object]]:
     yield "diagram", "family", "setting", "size", "relative_error", "time_s", "in_front"
-    for diagram in found.diagrams:
+    for diagram in result.diagrams:
         for m in diagram.measurements:
             yield diagram.title, m.family, m.setting, m.size, m.error, m.time, m in diagram.front
 
 
-def _draw(found: Tradeoff, ax: Axes) -> None:
-    rows, figure = -(-len(found.diagrams) // 2), ax.figure
+def _draw(result: Tradeoff, ax: Axes) -> None:
+    rows, figure = -(-len(result.diagrams) // 2), ax.figure
     size: Any = figure
-    size.set_size_inches(6.5 * min(2, len(found.diagrams)), 4.5 * rows)
-    found.plot(ax)
+    size.set_size_inches(6.5 * min(2, len(result.diagrams)), 4.5 * rows)
+    result.plot(ax)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Discretization = Literal["ritz", "fem"]
+BasisSize = int | Literal["auto"]
 
 _MOST_SPEEDS = 100_000
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
@@ -25,13 +27,13 @@ _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 
 def parse_quantity(option: str, text: str, unit: str) -> float:
-    """A number with its unit, in SI, or a ValueError that names the option."""
-    from beamdyn.common.edge.units import quantity
+    """A number with its unit, in SI; an InvalidInput names the option."""
+    from beamdyn.common.edge.units import InvalidInput, quantity
 
     try:
         return quantity(text, unit)
-    except ValueError as error:
-        raise ValueError(f"{option} = {error}") from None
+    except InvalidInput as error:
+        raise replace(error, field=option) from None
 
 
 def parse_positive(option: str, text: str, unit: str) -> float:
@@ -82,10 +84,10 @@ def parse_speeds(text: str) -> np.ndarray:
         raise ValueError(
             f'--speeds = "{text}": it is empty; give e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s"'
         )
-    found = _UNIT.search(text.strip())
-    if found is None:
+    match = _UNIT.search(text.strip())
+    if match is None:
         raise ValueError(f'--speeds = "{text}": give a unit at its end, e.g. "{text.strip()} rad/s"')
-    unit, numbers = found.group(), text.strip()[: found.start()]
+    unit, numbers = match.group(), text.strip()[: match.start()]
     return _range(text, numbers, unit) if ":" in numbers else _list(text, numbers, unit)
 
 
@@ -125,8 +127,8 @@ def _member(text: str, number: str, unit: str) -> float:
     return parse_speed("--speeds", f"{number} {unit}")
 
 
-def asked_speed(scene: Scene, speed: str | None) -> float:
-    """The speed asked for [rad/s], else that at which the scene's motion ends, else 0."""
+def speed_or_final(scene: Scene, speed: str | None) -> float:
+    """The speed of the option [rad/s]; without it the final speed of the scene's motion, or 0."""
     if speed is not None:
         return parse_speed("--speed", speed)
     final = 0.0 if scene.motion is None else scene.motion.final_speed

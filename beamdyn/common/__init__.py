@@ -1,1 +1,1 @@
-"""What knows no mechanics: checks, units, tables, stores."""
+"""Parts without mechanics, shared by both packages: checks, results, units, tables, workers, pages."""

@@ -1,4 +1,4 @@
-"""Curves of any results over any inputs."""
+"""Figures of sweeps: curves of results over inputs."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ _STYLES = ("-", "--", "-.", ":")
 _MOST_CURVES = 8
 
 
-def sweep_figure(found: Any) -> Figure:
-    """One panel a result over the first input, one curve a value of the second.
+def sweep_figure(swept: Any) -> Figure:
+    """Draw a sweep: one panel per result over the first input, one curve per value of the second.
 
     Parameters
     ----------
-    found : Sweep
-        See `beamdyn.common.edge.input_sweep.Sweep`.
+    swept : InputSweep
+        See `beamdyn.common.edge.input_sweep.InputSweep`.
 
     Returns
     -------
     Figure
     """
-    groups = _groups(found)
+    groups = _groups(swept)
     figure = Figure(figsize=(7.5, max(4.5, 2.7 * len(groups))), layout="constrained")
     panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
     for ax, (heading, labels, values) in zip(panels, groups, strict=True):
-        curves(ax, found.values[0], values, labels)
+        curves(ax, swept.values[0], values, labels)
         ax.set_ylabel(heading)
         if len(labels) > 1:
-            ax.legend(title=_second(found), fontsize=9, title_fontsize=9)
-    panels[-1].set_xlabel(_input(found, 0))
+            ax.legend(title=_second(swept), fontsize=9, title_fontsize=9)
+    panels[-1].set_xlabel(_input(swept, 0))
     return figure
 
 
-def _groups(found: Any) -> list[tuple[str, list[str], np.ndarray]]:
+def _groups(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
     """Panels: heading, names of the curves, the curves. Results of one unit share a panel."""
-    results = [*zip(found.results, found.result_units, found.found, strict=True)]
-    if len(found.values) > 1:
-        names = [f"{value:.4g}" for value in found.values[1]]
+    results = [*zip(swept.results, swept.result_units, swept.found, strict=True)]
+    if len(swept.values) > 1:
+        names = [f"{value:.4g}" for value in swept.values[1]]
         return [(_named(name, unit), names, values) for name, unit, values in results]
     groups: dict[str, list[tuple[str, np.ndarray]]] = {}
     for name, unit, values in results:
         groups.setdefault(unit or name, []).append((name, values))
-    units = {unit: unit for unit in found.result_units if unit}
+    units = {unit: unit for unit in swept.result_units if unit}
     return [
         (
             _named(", ".join(name for name, _ in group), units.get(key, "")),
@@ -59,15 +59,15 @@ def _groups(found: Any) -> list[tuple[str, list[str], np.ndarray]]:
     ]
 
 
-def _second(found: Any) -> str | None:
+def _second(swept: Any) -> str | None:
     """Heading of the legend: the second input."""
-    return _input(found, 1) if len(found.values) > 1 else None
+    return _input(swept, 1) if len(swept.values) > 1 else None
 
 
-def _input(found: Any, place: int) -> str:
+def _input(swept: Any, place: int) -> str:
     """An input, without its table."""
-    path = found.inputs[place]
-    return _named((path.partition(".")[2] or path).replace(".", " "), found.units[place])
+    path = swept.inputs[place]
+    return _named((path.partition(".")[2] or path).replace(".", " "), swept.units[place])
 
 
 def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:

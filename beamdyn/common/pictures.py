@@ -48,7 +48,7 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
 
 
 def output_path(path: str | Path, suffixes: Sequence[str], force: bool = False) -> Path:
-    """A path that may be written, or an error that says why not.
+    """Check that a file may be written.
 
     Parameters
     ----------

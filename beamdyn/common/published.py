@@ -1,4 +1,4 @@
-"""The numbers that papers print, one TOML file a paper, as package data."""
+"""Published numbers, one TOML file per paper, as package data."""
 
 from __future__ import annotations
 

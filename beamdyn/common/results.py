@@ -1,4 +1,4 @@
-"""What every answer has: its provenance, and ways to write it down."""
+"""Base of all results: provenance, and conversion to JSON."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Provenance:
-    """How an answer was found.
+    """How a result was computed.
 
     Parameters
     ----------

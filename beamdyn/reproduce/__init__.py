@@ -8,8 +8,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from rich.console import Console
 
-from beamdyn.common.edge.comparison import Comparison, comparison_table
-from beamdyn.common.edge.tables import progress_bar
+from beamdyn.common.comparison import Comparison
+from beamdyn.common.edge.tables import comparison_table, progress_bar
 from beamdyn.common.pictures import save_figure
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, motion, others
@@ -24,7 +24,7 @@ only those digits are printed that the estimated error supports.
 """
 
 
-def report(screen: Console, folder: Path, tables: bool = False) -> list[Comparison | Summary]:
+def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Comparison | Summary]:
     """Print the comparisons and draw the figures.
 
     Parameters

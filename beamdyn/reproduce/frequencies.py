@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.edge.comparison import Comparison
+from beamdyn.common.comparison import Comparison
 from beamdyn.equations.ritz import Ritz
 from beamdyn.output.plots import mark_points, plot_loci_by_angle, plot_locus
 from beamdyn.published import load

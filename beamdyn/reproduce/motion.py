@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from beamdyn.common.edge.comparison import Comparison
+from beamdyn.common.comparison import Comparison
 from beamdyn.common.pictures import COLOURS
 from beamdyn.published import load
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, rolling_scene

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import kind, not_negative, positive, real
+from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse
+from beamdyn.common.described import Described
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, distinct
 
 
@@ -35,11 +37,20 @@ class TipMass:
         If a value is negative or not finite, or no body has these three moments of inertia.
     """
 
-    mass: float
-    offset: float = 0.0
-    inertia: float = 0.0
-    transverse_inertia: float | None = None
-    axial_inertia: float = 0.0
+    mass: Annotated[float, Described("kg", "m_t", "mass", least=0)]
+    offset: Annotated[
+        float, Described("m", "e", "distance of its centre of gravity beyond the end of the beam")
+    ] = 0.0
+    inertia: Annotated[
+        float, Described("kg m2", "J_n", "moment of inertia about the axis of bending", least=0)
+    ] = 0.0
+    transverse_inertia: Annotated[
+        float | None,
+        Described("kg m2", "J_e", "moment of inertia about the direction of bending; else inertia", least=0),
+    ] = None
+    axial_inertia: Annotated[
+        float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)
+    ] = 0.0
 
     def __post_init__(self) -> None:
         not_negative("tip.mass", self.mass, "kg")
@@ -96,10 +107,9 @@ class Beam:
         if self.tip is not None:
             kind("tip", self.tip, TipMass)
         if self.tip is not None and self.length + self.tip.offset < 0:
-            raise ValueError(
-                f"tip.offset = {self.tip.offset:g} m puts the body behind the root of a beam of "
-                f"length {self.length:g} m; give an offset above {-self.length:g} m"
-            )
+            bound = f"it puts the body behind the root of a beam of length {self.length:g} m"
+            remedy = "give an offset above {limit}"
+            raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
 
     @classmethod
     def rectangular(
@@ -218,13 +228,9 @@ def _check_section(length: float, width: Profile, thickness: Profile) -> None:
     edges = np.union1d(width.breakpoints, thickness.breakpoints)
     xi = np.union1d(np.linspace(0, 1, 257), [*(edges[:-1] + 1e-12), *(edges[1:] - 1e-12)])
     b, h = width(xi), thickness(xi)
-    if h.max() > length:
-        raise ValueError(
-            f"thickness = {h.max():g} m exceeds length = {length:g} m; are the two swapped, or the units?"
-        )
-    if (h > b).any():
-        k = int((h > b).argmax())
-        raise ValueError(
-            f"thickness = {h[k]:g} m exceeds width = {b[k]:g} m: the beam bends in the direction of its "
-            "thickness; swap the two, or use Beam.from_stiffness for a section that is meant so"
-        )
+    bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
+    refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)
+    bound = "it exceeds width = {limit}, but the beam bends in the direction of its thickness"
+    advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
+    k = int((h > b).argmax())
+    refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 from beamdyn.common.checks import angle, not_negative
+from beamdyn.common.described import Described
+
+_ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
 
 @dataclass(frozen=True)
@@ -28,9 +33,29 @@ class Mount:
         If the radius is negative or an angle exceeds one turn.
     """
 
-    radius: float = 0.0
-    setting_angle: float = 0.0
-    bending_angle: float = 0.0
+    radius: Annotated[
+        float,
+        Described(
+            "m",
+            "r",
+            "distance of the root from the axis of rotation",
+            least=0,
+            required=True,
+            remedy='for a beam that points outward give setting_angle = "180 deg"',
+        ),
+    ] = 0.0
+    setting_angle: Annotated[
+        float,
+        Described(
+            "rad", "phi", "direction of the beam: 0 inward, 90 deg tangential, 180 deg outward", **_ONE_TURN
+        ),
+    ] = 0.0
+    bending_angle: Annotated[
+        float,
+        Described(
+            "rad", "psi", "angle between the direction of bending and the plane of rotation", **_ONE_TURN
+        ),
+    ] = 0.0
 
     def __post_init__(self) -> None:
         not_negative(

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
-from beamdyn.common.checks import real, real_array
+from beamdyn.common.checks import InvalidValue, real, real_array
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # a smooth engineering taper is resolved by 32
 _SLIVER = 1e-12  # a shorter segment, relative to the beam, is a rounding of x/L
@@ -157,7 +157,7 @@ def as_profile(name: str, given: Property, breakpoints: Sequence[float] = ()) ->
 def _edges(breakpoints: Sequence[float]) -> tuple[float, ...]:
     inner = real_array("breakpoints", breakpoints)
     if inner.size and not (inner.min() > 0 and inner.max() < 1):
-        raise ValueError(f"breakpoints = {breakpoints}: give fractions x/L between 0 and 1, ends excluded")
+        raise InvalidValue("breakpoints", breakpoints, "give fractions x/L between 0 and 1, ends excluded")
     return distinct(np.concatenate([[0.0], inner, [1.0]]))
 
 
@@ -257,4 +257,5 @@ def check_positive(name: str, profile: Profile) -> None:
     values = np.concatenate([profile(inner), left, right])
     k = int(values.argmin()) if np.isfinite(values).all() else int(np.argmin(np.isfinite(values)))
     if not (np.isfinite(values[k]) and values[k] > 0):
-        raise ValueError(f"{name} = {values[k]:g} at x/L = {where[k]:.3f}: it must be positive and finite")
+        place = f" at x/L = {where[k]:.3f}"
+        raise InvalidValue(name, float(values[k]), "it must be positive and finite", where=place)

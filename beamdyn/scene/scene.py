@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamdyn.common.checks import kind, not_negative, real
+from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount
@@ -47,10 +47,10 @@ class Scene:
         kind("mount", self.mount, Mount, "mount = Mount(radius=0.2) sets a radius of 0.2 m")
         kind("stretch", self.stretch, bool)
         if self.motion is not None and not hasattr(self.motion, "at"):
-            raise ValueError(f"motion = {self.motion!r}: give a motion, such as SteadyRotation(speed)")
+            raise InvalidValue("motion", self.motion, "give a motion, such as SteadyRotation(speed)")
         real("gravity", self.gravity, "m/s2")
         ratio = not_negative("damping_ratio", self.damping_ratio)
-        if ratio >= 1:
-            raise ValueError(f"damping_ratio = {ratio:g}: it must be below 1; 1 % is damping_ratio = 0.01")
+        remedy = "1 % is damping_ratio = 0.01"
+        refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
         if self.stretch and self.beam.axial_stiffness is None:
-            raise ValueError("stretch = True needs axial_stiffness: give it to Beam.from_stiffness")
+            raise InvalidValue("stretch", True, "it needs axial_stiffness", "give it to Beam.from_stiffness")

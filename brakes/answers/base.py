@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from pydantic import BaseModel
 from rich.console import RenderableType
 
-from beamdyn.common.app.documents import Handle, Slider
+from beamdyn.common.app.screens import Handle, Slider
 from beamdyn.common.edge import input_sweep
 from beamdyn.common.edge.config import parse, read, validated
-from beamdyn.common.edge.input_sweep import Axis, Output, Sweep, chosen, one_by_one, parse_axis
+from beamdyn.common.edge.input_sweep import Axis, InputSweep, Output, chosen, one_by_one, parse_axis
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.results import Result
@@ -135,7 +135,7 @@ class BrakeType(ABC, Generic[FileModel]):
     @abstractmethod
     def sweep_cases(
         self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
-    ) -> tuple[Sweep, Sequence[str]]:
+    ) -> tuple[InputSweep, Sequence[str]]:
         """Results over one or two inputs, and warnings."""
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
@@ -154,7 +154,7 @@ class BrakeType(ABC, Generic[FileModel]):
         texts: Sequence[str],
         results: str | None = None,
         options: tuple[str, str] = ("--sweep", "--result"),
-    ) -> tuple[Sweep, Sequence[str]]:
+    ) -> tuple[InputSweep, Sequence[str]]:
         """Sweep one or two inputs.
 
         Parameters
@@ -172,7 +172,7 @@ class BrakeType(ABC, Generic[FileModel]):
 
         Returns
         -------
-        sweep : Sweep
+        sweep : InputSweep
             The results.
         warnings : sequence of str
             Where there is no answer and why, and what else to look at.
@@ -222,7 +222,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
 
     def sweep_cases(
         self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
-    ) -> tuple[Sweep, Sequence[str]]:
+    ) -> tuple[InputSweep, Sequence[str]]:
         """Results from one answer whose numbers are arrays."""
         answer = self.solve(with_arrays(design, axes))
         values = [output.shown(answer) for output in outputs]
@@ -235,7 +235,7 @@ class TableBrakeType(BrakeType[FileModel]):
 
     def sweep_cases(
         self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
-    ) -> tuple[Sweep, Sequence[str]]:
+    ) -> tuple[InputSweep, Sequence[str]]:
         """Results case by case; not a number where there is no answer."""
         made = one_by_one(tables, axes, outputs, self._solve_determined)
         return made, made.warnings

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.documents import Slider
+from beamdyn.common.app.screens import Slider
 from beamdyn.common.edge.config import ConfigError, parse, read
 from beamdyn.common.edge.input_sweep import Output, numbers
 from beamdyn.common.edge.inputs import Input

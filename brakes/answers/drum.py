@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.documents import Handle
+from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from brakes.answers.base import Answer, ArrayBrakeType

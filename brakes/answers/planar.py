@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.app.documents import Handle
+from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.tables import table

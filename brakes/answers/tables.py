@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from rich.console import Group
 
-from beamdyn.common.edge.input_sweep import Output, Sweep, columns, sweep_rows
+from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
 from beamdyn.common.edge.tables import table
 
 _SHOWN = 24  # rows of a sweep
@@ -39,7 +39,7 @@ def outputs_csv(outputs: Iterable[Output], **results: Any) -> Iterator[Sequence[
         yield output.name, *(float(output.shown(result)) for result in results.values()), output.unit
 
 
-def sweep_table(sweep: Sweep) -> Group:
+def sweep_table(sweep: InputSweep) -> Group:
     """The table of a sweep: a selection of its rows, if there are many."""
     rows = [*sweep_rows(sweep)]
     shown = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), _SHOWN)).round().astype(int))

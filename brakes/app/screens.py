@@ -7,9 +7,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from beamdyn.common.app.documents import Document, Screen, Sweeps
+from beamdyn.common.app.screens import Document, Screen, Sweeps
 from beamdyn.common.edge.config import parse
-from beamdyn.common.edge.input_sweep import Sweep
+from beamdyn.common.edge.input_sweep import InputSweep
 from brakes.answers.base import BrakeType
 from brakes.app.bases import base
 
@@ -81,7 +81,7 @@ def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
     def names(tables: Mapping[str, Any]) -> list[str]:
         return [output.name for output in brake.outputs(brake.read(tables, brake.name))]
 
-    def run(tables: Mapping[str, Any], text: str, results: str) -> Sweep:
+    def run(tables: Mapping[str, Any], text: str, results: str) -> InputSweep:
         return brake.sweep(tables, brake.name, [text], results, ("sweep", "results"))[0]
 
     return Sweeps(names, brake.example_sweep, brake.sweep_results, run)

@@ -8,7 +8,7 @@ from beamdyn.common.app.server import add_command
 from brakes.cli.program import app
 
 if TYPE_CHECKING:
-    from beamdyn.common.app.documents import Program
+    from beamdyn.common.app.screens import Program
 
 
 def _program() -> Program:

@@ -18,12 +18,12 @@ def reproduce(*, output: Path = Path("brakes-reproduce")) -> None:
         Folder for the pictures; it is made if needed, and its pictures are replaced.
     """
     from beamdyn.common.edge.tables import console
-    from brakes.reproduce import report
+    from brakes.reproduce import compare_all
 
     if output.exists() and not output.is_dir():
         raise ValueError(f"--output = {output}: it is a file; give a folder")
     screen = console()
-    checked = report(screen, output)
+    checked = compare_all(screen, output)
     unexpected = sum(not verdict.as_expected for verdict in checked)
     if unexpected:
         raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")

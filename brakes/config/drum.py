@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
 from brakes.config.wording import in_range, of_file
@@ -216,8 +218,8 @@ class DrumInput(CoreSection):
     def _second(self) -> Shoe | None:
         try:
             return self.second_shoe and self.second_shoe.completed_by(self.shoe)
-        except ValueError as error:
-            raise ValueError(f"second_shoe: {error}") from None
+        except InvalidValue as error:
+            raise replace(error, field=f"second_shoe.{error.field}") from None
 
     def solve(self) -> BrakeResult:
         """Compute the forces in the brake.

@@ -11,9 +11,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Field, create_model
 
-from beamdyn.common.edge.config import CoreSection, parse, read, validated
+from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from beamdyn.common.edge.units import quantity, show
+from beamdyn.common.edge.units import InvalidInput, quantity, show
 from brakes.calipers import NAMED, Caliper, Design, StoppingDistance, stop
 from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
 from brakes.planar.described import Described
@@ -78,7 +78,7 @@ class PointQuantity(Quantity):
     def parse(self, given: object) -> Any:
         """Its coordinates [m]."""
         if isinstance(given, str):
-            raise ValueError(f'{show(given)}: no such point in [points]; name one, or give ["1 mm", "2 mm"]')
+            raise InvalidInput("", given, "no such point in [points]", 'name one, or give ["1 mm", "2 mm"]')
         return tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
 
 
@@ -110,7 +110,7 @@ class TravelQuantity(Quantity):
 
 def _two(given: object, example: str) -> list[Any]:
     if not isinstance(given, list) or len(given) != 2:
-        raise ValueError(f"{show(given)}: give two values, e.g. {example}")
+        raise InvalidInput("", given, f"give two values, e.g. {example}")
     return given
 
 
@@ -322,16 +322,17 @@ class MechanismInput(CoreSection):
         run = self.run
         if run.driver is None:
             if run.travel is not None and self.caliper is None:
-                raise ValueError("run.driver: missing; name the load that drives the stroke")
+                raise MissingValue("run.driver", None, "name the load that drives the stroke")
             return
         if run.driver not in loads:
-            raise ValueError(f"run.driver = {show(run.driver)}: no such load; name one of {', '.join(loads)}")
+            raise InvalidInput("run.driver", run.driver, "no such load", f"name one of {', '.join(loads)}")
         if run.travel is None:
-            raise ValueError("run.travel: missing; give the travel of the driver")
+            raise MissingValue("run.travel", None, "give the travel of the driver")
         turns = loads[run.driver].is_couple
         if turns != isinstance(run.travel, Angle):
-            travel = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
-            raise ValueError(f"run.travel: the driver {show(run.driver)} moves by {travel}")
+            wanted = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
+            bound, unit = f"the driver {show(run.driver)} moves by {wanted}", "m" if turns else "rad"
+            raise InvalidInput("run.travel", float(run.travel), bound, unit=unit)
 
 
 _Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_fields_of(Caliper))

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 
-_ANGLE = re.compile(r"([-+]?\d[\d.]*(?:e[-+]?\d+)?) rad\b(?!/)")
+from beamdyn.common.checks import InvalidValue
 
 
 @contextmanager
 def of_file(keys: Mapping[str, str]) -> Iterator[None]:
-    """Within it, a ValueError names the keys of a file in place of the core's names, and degrees.
+    """Within it, an `InvalidValue` names the keys of a file in place of the core's names, and degrees.
 
     Parameters
     ----------
@@ -23,11 +23,11 @@ def of_file(keys: Mapping[str, str]) -> Iterator[None]:
     """
     try:
         yield
-    except ValueError as error:
-        message = str(error)
-        for name, key in keys.items():
-            message = message.replace(name, key)
-        raise ValueError(in_degrees(message)) from None
+    except InvalidValue as error:
+        named = replace(
+            error, field=keys.get(error.field, error.field), other=keys.get(error.other, error.other)
+        )
+        raise (in_degrees(named) if error.unit == "rad" else named) from None
 
 
 @contextmanager
@@ -40,7 +40,8 @@ def in_range() -> Iterator[None]:
         raise ValueError(f"the numbers are out of range ({error}); check the size of each value") from None
 
 
-def in_degrees(message: str) -> str:
-    """A message with its angles in degrees."""
-    degrees = _ANGLE.sub(lambda found: f"{math.degrees(float(found[1])):.6g} deg", message)
-    return re.sub(r"\brad\b(?!/)", "deg", degrees)
+def in_degrees(error: InvalidValue) -> InvalidValue:
+    """The same about an angle in degrees."""
+    value = math.degrees(error.value) if isinstance(error.value, float) else error.value
+    limit = None if error.limit is None else math.degrees(error.limit)
+    return replace(error, value=value, limit=limit, unit="deg")

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle
 
+from beamdyn.common.array_checks import Numbers
 from beamdyn.common.curves import grid
 from beamdyn.common.pictures import COLOURS
-from brakes.arrays import Numbers
 from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 

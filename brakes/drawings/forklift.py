@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
+from beamdyn.common.array_checks import Numbers
 from beamdyn.common.curves import curves
 from beamdyn.common.pictures import COLOURS
-from brakes.arrays import Numbers
 from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop

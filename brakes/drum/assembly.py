@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brakes.arrays import Numbers, not_negative, numbers, positive, refuse, together
+from beamdyn.common.array_checks import Numbers, not_negative, numbers, positive, together
+from beamdyn.common.checks import refuse
 from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
 
 

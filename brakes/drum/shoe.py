@@ -13,18 +13,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers, not_negative, numbers, pair, positive, together
+from beamdyn.common.checks import one_of, refuse
 from beamdyn.common.results import Result
-from brakes.arrays import (
-    Numbers,
-    first_where,
-    not_negative,
-    numbers,
-    one_of,
-    pair,
-    positive,
-    refuse,
-    together,
-)
 
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 
@@ -92,18 +83,25 @@ class Shoe:
 
     def _check_arc(self) -> None:
         a1, a2 = self.lining
-        refuse(np.asarray(a2) - a1 <= 0, "lining[1]", a2, "rad", "the arc is empty: it must exceed lining[0]")
+        bound = "the arc is empty: it must exceed {other}"
+        refuse(np.asarray(a2) - a1 <= 0, "lining[1]", a2, "rad", bound, other="lining[0]")
         pin, start = self.pin_angle, np.asarray(a1)
-        advice = "start it beyond; angles are in rad, from -y"
-        bad = start < pin - _ROUNDING
-        bound = f"the lining overlaps the pin, at {first_where(bad, pin):.6g} rad"
-        refuse(bad, "lining[0]", a1, "rad", bound, advice)
+        advice = "start it beyond; angles are in {unit}, from -y"
+        bound = "the lining overlaps the pin, at {limit}"
+        refuse(start < pin - _ROUNDING, "lining[0]", a1, "rad", bound, advice, limit=pin)
         bad = start < self.phase - _ROUNDING
         refuse(bad, "lining[0]", a1, "rad", "the pressure would be negative below 0", advice)
         end = np.pi + np.minimum(self.phase, pin)
-        bad = np.asarray(a2) > end + _ROUNDING
-        bound = f"past {first_where(bad, end):.6g} rad the lining leaves the drum"
-        refuse(bad, "lining[1]", a2, "rad", bound, "end it before; give rad")
+        bound = "past {limit} the lining leaves the drum"
+        refuse(
+            np.asarray(a2) > end + _ROUNDING,
+            "lining[1]",
+            a2,
+            "rad",
+            bound,
+            "end it before; give {unit}",
+            limit=end,
+        )
 
     @property
     def pin_angle(self) -> Numbers:

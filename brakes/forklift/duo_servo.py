@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers, numbers, pair, positive, together
+from beamdyn.common.checks import refuse
 from beamdyn.common.results import Result
-from brakes.arrays import Numbers, first_where, numbers, pair, positive, refuse, together
 from brakes.forklift.levers import Levers
 
 
@@ -68,7 +69,7 @@ class DuoServo:
         self._check_pins()
         for name in ("face_tilt", "contact_angle"):
             bad = np.abs(np.asarray(getattr(self, name))) >= np.pi / 2
-            refuse(bad, name, getattr(self, name), "rad", "it must be less than a right angle", "give rad")
+            refuse(bad, name, getattr(self, name), "rad", "it must be less than a right angle", "give {unit}")
 
     def _check_pins(self) -> None:
         (x, y), (ax, ay) = self.tip, self.adjuster
@@ -103,9 +104,8 @@ class DuoServo:
         c = positive("clearance", clearance, "m")
         together(clearance=c, geometry=self.drum_radius * np.asarray(self.tip[0]) * self.adjuster[0])
         advice = "give m; take less clearance"
-        bad = c >= np.asarray(self.drum_radius)
-        bound = f"larger than the drum allows, its radius is {first_where(bad, self.drum_radius):g} m"
-        refuse(bad, "clearance", c, "m", bound, advice)
+        bound = "larger than the drum allows, its radius is {limit}"
+        refuse(c >= np.asarray(self.drum_radius), "clearance", c, "m", bound, advice, limit=self.drum_radius)
         turn = self._seating_turn(c)
         bound = "larger than the drum allows: the lining cannot reach it"
         refuse(np.isnan(turn), "clearance", c, "m", bound, advice)

@@ -24,8 +24,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers, positive, together
+from beamdyn.common.checks import refuse
 from beamdyn.common.results import Result
-from brakes.arrays import Numbers, positive, refuse, together
 from brakes.forklift.levers import Levers
 
 _STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60

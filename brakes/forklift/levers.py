@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brakes.arrays import Numbers, numbers, positive, refuse, together
+from beamdyn.common.array_checks import Numbers, numbers, positive, together
+from beamdyn.common.checks import refuse
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Levers:
         together(**vars(self))
         for name, value in (("alpha1 + gamma", self.phi1), ("alpha2 - gamma", self.phi2)):
             bound = "the piston's force and the adjuster's are more than a right angle apart"
-            refuse(np.abs(value) > np.pi / 2, name, value, "rad", bound, "angles are in rad")
+            refuse(np.abs(value) > np.pi / 2, name, value, "rad", bound, "angles are in {unit}")
 
     @property
     def in_radii(self) -> Levers:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers
 from beamdyn.common.results import Result
-from brakes.arrays import Numbers
 from brakes.forklift.duo_servo import ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
 from brakes.forklift.vehicle import Stop, StopConditions, Truck, stop

@@ -21,17 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers, not_negative, numbers, pair, positive, together
+from beamdyn.common.checks import refuse
 from beamdyn.common.results import Result
-from brakes.arrays import (
-    Numbers,
-    first_where,
-    not_negative,
-    numbers,
-    pair,
-    positive,
-    refuse,
-    together,
-)
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
 
@@ -82,18 +74,26 @@ class Truck:
         together(empty_mass=self.empty_mass, load_mass=self.load_mass, wheelbase=self.wheelbase,
                  front_wheel_radius=self.front_wheel_radius,
                  empty_x=x, empty_y=y, load_x=xl, load_y=yl)  # fmt: skip
-        self._check("the empty truck's centre of gravity", *self.empty_cg, "check empty_cg")
+        self._check("the empty truck's centre of gravity", *self.empty_cg, "check {other}")
         self._check("the centre of gravity with the load", *self.cg, "take less load, or nearer the axle")
 
     def _check(self, name: str, x: Numbers, y: Numbers, remedy: str) -> None:
         x, y = np.asarray(x), np.asarray(y)
         ahead = "it is ahead of the front wheel: the truck tips over it"
-        refuse(x <= 0, f"x of {name}", x, "m", ahead, remedy)
-        bad = x >= self.wheelbase
-        behind = f"it is behind the rear wheel, at wheelbase = {first_where(bad, self.wheelbase):g} m"
-        refuse(bad, f"x of {name}", x, "m", behind, remedy)
+        refuse(x <= 0, f"x of {name}", x, "m", ahead, remedy, other="empty_cg")
+        behind = "it is behind the rear wheel, at wheelbase = {limit}"
+        refuse(
+            x >= self.wheelbase,
+            f"x of {name}",
+            x,
+            "m",
+            behind,
+            remedy,
+            limit=self.wheelbase,
+            other="empty_cg",
+        )
         low = "it is below the ground (-front_wheel_radius)"
-        refuse(y + self.front_wheel_radius <= 0, f"y of {name}", y, "m", low, remedy)
+        refuse(y + self.front_wheel_radius <= 0, f"y of {name}", y, "m", low, remedy, other="empty_cg")
 
     @property
     def mass(self) -> Numbers:
@@ -288,9 +288,8 @@ def _refuse_overturning(truck: Truck, slope: Numbers) -> None:
     together(slope=slope, truck=front)
     remedy = "less slope, or a lower centre of gravity"
     for axle, limit, bad in (("rear", rear, slope >= rear), ("front", front, slope <= front)):
-        past = first_where(bad, limit)
-        bound = f"the truck overturns on it at rest, over the {axle} axle, past {past:.4g} rad"
-        refuse(bad, "slope", slope, "rad", bound, remedy)
+        bound = f"the truck overturns on it at rest, over the {axle} axle, past {{limit}}"
+        refuse(bad, "slope", slope, "rad", bound, remedy, limit=limit)
 
 
 class _Slide(NamedTuple):

@@ -12,7 +12,7 @@ from typing import Protocol
 
 from rich.console import Console
 
-from beamdyn.common.edge.comparison import comparison_table
+from beamdyn.common.edge.tables import comparison_table
 from beamdyn.common.pictures import save_figure
 from brakes.published import load
 from brakes.reproduce import caliper, drum, forklift
@@ -27,7 +27,7 @@ class Verdict(Protocol):
         ...
 
 
-def report(screen: Console, folder: Path) -> Sequence[Verdict]:
+def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
     """Print the papers' numbers beside ours and draw the pictures.
 
     Parameters

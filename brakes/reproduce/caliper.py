@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beamdyn.common.edge.comparison import Comparison
+from beamdyn.common.comparison import Comparison
 from beamdyn.common.pictures import save_figure
 from brakes.calipers import CaliperStroke, EeBrake, stop
 from brakes.published import load

@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.array_checks import Numbers
 from brakes.answers.forklift import ForkliftAnswer, solve_stages
-from brakes.arrays import Numbers
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, StopConditions, Truck, internal_forces, stop
 from brakes.published import load

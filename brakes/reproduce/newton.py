@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.array_checks import positive
 from beamdyn.common.results import Result
-from brakes.arrays import positive
 from brakes.forklift import Levers, equilibrium_equations
 
 _TOLERANCE = 1e-12  # on the largest left-hand side, in units of T/r and r

@@ -4,35 +4,35 @@ import numpy as np
 import pytest
 
 from beamdyn import frequency_locus, load_scene
-from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
+from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
 
 
 @pytest.mark.parametrize("screen", SCENE.screens, ids=lambda s: s.name)
 def test_screen_answers_draws_and_tabulates(screen):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     assert work.solve(screen), work.mistakes
     answer = work.answered[screen.name].answer
     assert drawn(screen, answer, 1.0).startswith("<?xml")
-    assert "<table>" in html(screen.report(answer))
+    assert "<table>" in html(screen.tables(answer))
     assert len(csv_text(screen.rows(answer)).splitlines()) > 100
 
 
 def test_frequencies_are_those_of_the_function():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.put("mount.setting_angle", "90 deg")
-    work.put("asked.modes", "3")
-    assert work.solve(LOCUS), work.mistakes
-    found = work.answered[LOCUS.name].answer.locus
+    work.put("options.modes", "3")
+    assert work.solve(FREQUENCIES), work.mistakes
+    found = work.answered[FREQUENCIES.name].answer.locus
     (scene := SCENE.check(work.text(), "saved"))
     assert np.array_equal(found.frequency, frequency_locus(scene, found.speeds, 3).frequency)
 
 
 def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     (tmp_path / "scene.toml").write_text(work.text(), encoding="utf-8")
     assert load_scene(tmp_path / "scene.toml") == SCENE.check(SCENE.base, "base")
 
@@ -40,19 +40,19 @@ def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
 @pytest.mark.parametrize(
     "path, text, sentence",
     [
-        ("asked.modes", "0", "at least 1"),
-        ("asked.modes", "1.5", "whole number"),
-        ("asked.top_speed", "150", "give a unit"),
+        ("options.modes", "0", "at least 1"),
+        ("options.modes", "1.5", "whole number"),
+        ("options.top_speed", "150", "give a unit"),
         ("mount.setting_angle", "0.5 m", "unit of length"),
         ("beam.thickness", "", "missing"),
         ("beam.thickness", "{ polynomial = 1 }", "list"),
     ],
 )
 def test_mistake_is_at_its_field(path, text, sentence):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.put(path, text)
-    assert not work.solve(LOCUS)
-    ((where, said),) = work.mistakes[LOCUS.name].items()
+    assert not work.solve(FREQUENCIES)
+    ((where, said),) = work.mistakes[FREQUENCIES.name].items()
     assert where == path
     assert sentence in said[0]
 
@@ -61,7 +61,7 @@ def test_mistake_is_at_its_field(path, text, sentence):
     "kind, more", [("steady", {"speed"}), ("sampled", {"times"}), ("rolling", {"rolling_radius"})]
 )
 def test_motion_chooses_its_inputs(kind, more):
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.put("motion.kind", kind)
     names = {entry.path.removeprefix("motion.") for entry in work.inputs if entry.path.startswith("motion.")}
     assert more <= names
@@ -69,23 +69,23 @@ def test_motion_chooses_its_inputs(kind, more):
 
 
 def test_steady_response_without_motion_says_what_is_missing():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     work.open("\n".join(SCENE.base.partition("[motion]")[:1]), "scene")
-    assert work.solve(LOCUS), work.mistakes
-    assert not work.solve(STEADY)
-    assert "choose the motion" in str(work.mistakes[STEADY.name])
+    assert work.solve(FREQUENCIES), work.mistakes
+    assert not work.solve(STEADY_STATE)
+    assert "choose the motion" in str(work.mistakes[STEADY_STATE.name])
 
 
 def test_tapered_beam_is_opened_and_saved():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     text = SCENE.base.replace('thickness = "0.2 mm"', 'thickness = { polynomial = ["0.3 mm", "-0.1 mm"] }')
     work.open(text, "tapered")
-    assert work.solve(LOCUS), work.mistakes
+    assert work.solve(FREQUENCIES), work.mistakes
     assert SCENE.check(work.text(), "saved") == SCENE.check(text, "tapered")
 
 
 def test_hostile_text_changes_nothing():
-    work = Work(SCENE)
+    work = OpenDocument(SCENE)
     before = dict(work.entries)
     with pytest.raises(ConfigError):
         work.open("[beam]\nlength = '1 m'\n__import__ = 'os'", "hostile")

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from beamdyn.common.app.document_report import drawn, report_of
-from beamdyn.common.app.entries import by_field, entries_of, in_unit, tables_of, toml_of
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.form_entries import by_field, entries_of, in_unit, tables_of, toml_of
+from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.input_sweep import sweep_csv
@@ -27,7 +27,7 @@ NAMES = [screen.name for _, screen in PLACES]
 @pytest.fixture(params=PLACES, ids=NAMES)
 def place(request):
     document, screen = request.param
-    work = Work(document)
+    work = OpenDocument(document)
     assert work.solve(screen), work.mistakes
     return work, screen, work.answered[screen.name].answer
 
@@ -58,7 +58,7 @@ def test_drawing_follows_the_slider(place):
 
 def test_tables_and_rows_agree(place):
     _, screen, answer = place
-    assert "<table>" in html(screen.report(answer))
+    assert "<table>" in html(screen.tables(answer))
     rows = csv_text(screen.rows(answer)).splitlines()
     assert len(rows) > 5
     assert len({row.count(",") for row in rows}) == 1
@@ -73,7 +73,7 @@ def test_saved_file_is_the_design(place):
 
 
 def test_wrong_entry_gives_the_sentence_of_the_command_and_keeps_the_last_answer():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     work.solve(VEHICLE)
     before = work.answered["Vehicle"]
     work.put("stop.speed", "20")
@@ -85,13 +85,13 @@ def test_wrong_entry_gives_the_sentence_of_the_command_and_keeps_the_last_answer
 
 
 def test_a_mistake_downstream_does_not_stop_what_is_upstream():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     work.put("forces.piston_force", "much")
     assert work.solve(VEHICLE) and work.solve(KINEMATICS) and not work.solve(FORCES)
 
 
 def test_stale_is_what_follows_from_a_change():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     for screen in FORKLIFT.screens:
         work.solve(screen)
     work.put("brake.clearance", "9 mm")
@@ -104,14 +104,14 @@ def test_stale_is_what_follows_from_a_change():
 
 @pytest.mark.parametrize("name", NAMED)
 def test_every_named_caliper_has_a_form(name):
-    work = Work(CALIPER)
+    work = OpenDocument(CALIPER)
     work.put("caliper", name)
     assert work.solve(CALIPER.screens[0]), work.mistakes
     assert {e.path.partition(".")[0] for e in work.inputs} >= {"caliper", "dimensions", "run"}
 
 
 def test_core_mistakes_find_their_field():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     work.put("brake.contact_angle", "-80 deg")  # the tip meets the drum first
     assert not work.solve(KINEMATICS)
     assert list(work.mistakes["Kinematics"]) == ["brake.clearance"]
@@ -122,7 +122,7 @@ def test_core_mistakes_find_their_field():
 )
 @pytest.mark.parametrize("document", BRAKES.documents, ids=lambda d: d.name)
 def test_hostile_file_is_refused_and_changes_nothing(document, text):
-    work = Work(document)
+    work = OpenDocument(document)
     before = dict(work.entries)
     with pytest.raises(ConfigError):
         work.open(text, "hostile.toml")
@@ -130,16 +130,16 @@ def test_hostile_file_is_refused_and_changes_nothing(document, text):
 
 
 def test_markup_in_an_entry_stays_text():
-    work = Work(CALIPER)
+    work = OpenDocument(CALIPER)
     screen = CALIPER.screens[0]
     work.put("title", "<script>alert(1)</script>")
     assert work.solve(screen)
-    assert "<script>" not in html(screen.report(work.answered[screen.name].answer))
+    assert "<script>" not in html(screen.tables(work.answered[screen.name].answer))
     assert "<script>" not in report_of(work, "<script>")
 
 
 def test_report_holds_all_in_one_file():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     for screen in FORKLIFT.screens:
         work.solve(screen)
     page = report_of(work, "Forklift")
@@ -149,7 +149,7 @@ def test_report_holds_all_in_one_file():
 
 
 def test_what_the_paper_prints_is_folded_out_beside_the_right_values():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     for screen, name, pair in (
         (VEHICLE, "stopping distance, from the driver's reaction", ["13.425", "9.5571"]),
         (FORCES, "torque of the brake T", ["8480.8", "11000"]),
@@ -168,7 +168,7 @@ def shown_table(draw, work, screen):
 
 
 def test_sweep_gives_a_row_a_value():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     sweeps = VEHICLE.sweeps
     found = sweeps.run(tables_of(work.entries, work.inputs), "stop.speed=10:30:5 km/h", "distance")
     rows = [*sweep_csv(found)]
@@ -185,7 +185,7 @@ def test_sweep_gives_a_row_a_value():
 )
 def test_sweep_to_begin_with_works(screen):
     document = next(d for d in BRAKES.documents if screen in d.screens)
-    work = Work(document)
+    work = OpenDocument(document)
     tables = tables_of(work.needed(screen), work.inputs)
     found = screen.sweeps.run(tables, screen.sweeps.example, screen.sweeps.results)
     assert len([*sweep_csv(found)]) > 10
@@ -210,12 +210,12 @@ def test_sweep_to_begin_with_works(screen):
 )
 def test_extreme_entries_give_an_answer_or_a_sentence(path, given):
     for document, screen in PLACES:
-        work = Work(document)
+        work = OpenDocument(document)
         if path in work.entries and path.partition(".")[0] in screen.needs:
             work.put(path, given)
             if work.solve(screen):
                 answer = work.answered[screen.name].answer
-                assert html(screen.report(answer))
+                assert html(screen.tables(answer))
                 assert isinstance(drawn(screen, answer, 1.0), str)
             else:
                 assert all(said for said in work.mistakes[screen.name].values())
@@ -233,11 +233,11 @@ def test_entries_and_tables_are_the_same_inputs(document):
 
 
 def test_empty_fields_are_not_in_the_file():
-    assert "piston_stroke" not in Work(FORKLIFT).text()
+    assert "piston_stroke" not in OpenDocument(FORKLIFT).text()
 
 
 def test_an_entry_cannot_add_a_key():
-    work = Work(FORKLIFT)
+    work = OpenDocument(FORKLIFT)
     work.put("stop.friction", "0.7\ngravity = '1 m/s2'")
     assert not work.solve(VEHICLE) or work.answered["Vehicle"].answer.stop.conditions.gravity > 9
 
@@ -251,4 +251,4 @@ def test_another_unit_is_the_same_quantity(text, unit, target, expected):
 
 
 def test_mistake_about_no_field_is_kept():
-    assert by_field(["model: something is wrong"], FORKLIFT.inputs({})) == {"": ["model: something is wrong"]}
+    assert by_field(ValueError("something is wrong"), FORKLIFT.inputs({})) == {"": ["something is wrong"]}

@@ -9,9 +9,9 @@ import pytest
 from matplotlib.patches import Circle
 
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.handles import sheet, told, written
-from beamdyn.common.app.session import Work
-from beamdyn.common.edge.rendering import address
+from beamdyn.common.app.handles import changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.edge.rendering import data_url
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
 from brakes.app.program import BRAKES
@@ -24,7 +24,7 @@ WITHOUT = {"Internal forces"}
 
 
 def answered(document, screen, entries=()):
-    work = Work(document)
+    work = OpenDocument(document)
     for path, text in dict(entries).items():
         work.put(path, text)
     assert work.solve(screen), work.mistakes
@@ -66,7 +66,7 @@ def test_handle_is_where_the_svg_has_its_point(document, screen, entries, place)
             figure.axes[0].plot(*(handle.scale * np.array(handle.at)), "o", gid=f"probe{i}")
         return figure
 
-    made = sheet(dataclasses.replace(screen, draw=draw), answer, place)
+    made = draw_sheet(dataclasses.replace(screen, draw=draw), answer, place)
     root = ET.fromstring(made.text)
     size = np.array(root.get("viewBox").split()[2:], dtype=float)
     assert made.ratio == pytest.approx(size[0] / size[1], rel=1e-6)
@@ -80,7 +80,7 @@ def test_handle_is_where_the_svg_has_its_point(document, screen, entries, place)
 @every_drawing
 def test_drawing_has_the_point_that_a_handle_moves(document, screen, entries, place):
     _, answer = answered(document, screen, entries)
-    made = sheet(screen, answer, place)
+    made = draw_sheet(screen, answer, place)
     ax = screen.draw(answer, place).axes[0]
     circles = [patch for patch in ax.patches if isinstance(patch, Circle)]
     points = [line.get_xydata() for line in ax.lines]
@@ -94,7 +94,7 @@ def test_drawing_has_the_point_that_a_handle_moves(document, screen, entries, pl
 
 def test_place_and_point_are_inverse():
     _, answer = answered(FORKLIFT, VEHICLE)
-    made = sheet(VEHICLE, answer, 1.0)
+    made = draw_sheet(VEHICLE, answer, 1.0)
     for place in ((0.0, 0.0), (0.2, 0.9), (1.0, 0.5)):
         assert made.view.place(made.view.point(place)) == pytest.approx(place, abs=1e-12)
 
@@ -102,8 +102,8 @@ def test_place_and_point_are_inverse():
 @every_drawing
 def test_held_picture_of_the_same_design_is_the_same(document, screen, entries, place):
     _, answer = answered(document, screen, entries)
-    made = sheet(screen, answer, place)
-    assert sheet(screen, answer, place, made.view).text == made.text
+    made = draw_sheet(screen, answer, place)
+    assert draw_sheet(screen, answer, place, made.view).text == made.text
 
 
 @pytest.mark.parametrize(
@@ -118,8 +118,8 @@ def test_held_picture_of_another_design_stays_in_place(document, entries):
     (screen,) = document.screens
     _, answer = answered(document, screen)
     _, other = answered(document, screen, entries)
-    held = sheet(screen, answer, 1.0).view
-    kept, free = sheet(screen, other, 1.0, held).view, sheet(screen, other, 1.0).view
+    held = draw_sheet(screen, answer, 1.0).view
+    kept, free = draw_sheet(screen, other, 1.0, held).view, draw_sheet(screen, other, 1.0).view
     np.testing.assert_allclose(kept.corners, held.corners, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(kept.limits, held.limits)
     moved = np.abs(free.corners - held.corners).max() + np.abs(free.limits - held.limits).max()
@@ -128,9 +128,9 @@ def test_held_picture_of_another_design_stays_in_place(document, entries):
 
 def test_locked_brake_is_drawn_without_handles_however_it_is_held():
     _, good = answered(DRUM, DRUM.screens[0])
-    held = sheet(DRUM.screens[0], good, 1.0).view
+    held = draw_sheet(DRUM.screens[0], good, 1.0).view
     _, locked = answered(DRUM, DRUM.screens[0], {"brake.friction": "1.2"})
-    made = sheet(DRUM.screens[0], locked, 1.0, held)
+    made = draw_sheet(DRUM.screens[0], locked, 1.0, held)
     assert made.handles == ()
     assert made.text == drawn(DRUM.screens[0], locked, 1.0)
 
@@ -147,7 +147,7 @@ def test_moved_point_is_really_there(document, screen, entries, place, way):
         far = 6 * handle.step * np.array(way)
         target = tuple(np.array(handle.at) + far)
         values = handle.moved(*target)
-        texts = written(handle, target, work.entries, work.inputs)
+        texts = changed_texts(handle, target, work.entries, work.inputs)
         assert set(texts) <= set(values)
         assert texts
         _, other = answered(document, screen, entries | texts)
@@ -164,7 +164,7 @@ def test_moved_point_is_really_there(document, screen, entries, place, way):
 def texts_of(document, screen, label, by, entries=(), place=0.0):
     work, answer = answered(document, screen, entries)
     handle = named(screen.handles(answer, place), label)
-    return written(handle, (handle.at[0] + by[0], handle.at[1] + by[1]), work.entries, work.inputs)
+    return changed_texts(handle, (handle.at[0] + by[0], handle.at[1] + by[1]), work.entries, work.inputs)
 
 
 def test_only_what_changes_is_written_in_the_fields_unit():
@@ -189,29 +189,31 @@ def test_point_that_is_not_given_is_written_from_its_default():
 def test_mistake_in_the_field_is_written_over(wrong):
     work, answer = answered(FORKLIFT, KINEMATICS)
     handle = named(KINEMATICS.handles(answer, 0.0), "tip of the shoe")
-    found = written(handle, handle.at, work.entries | {"brake.tip_x": wrong}, work.inputs)
+    found = changed_texts(handle, handle.at, work.entries | {"brake.tip_x": wrong}, work.inputs)
     assert found == {"brake.tip_x": "61.5 mm"} or found == {"brake.tip_x": "61.6 mm"}
     work, answer = answered(CALIPER, CALIPERS)
     handle = named(CALIPERS.handles(answer, 0.0), "right pad")
     entries = work.entries | {"dimensions.pad": wrong or "0"}
-    assert written(handle, handle.at, entries, work.inputs) == {"dimensions.pad": '["12.5 mm", "-46.0 mm"]'}
+    assert changed_texts(handle, handle.at, entries, work.inputs) == {
+        "dimensions.pad": '["12.5 mm", "-46.0 mm"]'
+    }
 
 
 def test_point_of_a_caliper_that_is_no_longer_named_writes_nothing():
     work, answer = answered(CALIPER, CALIPERS)
     work.put("caliper", "v-brake")
     for handle in CALIPERS.handles(answer, 1.0):
-        found = written(handle, (0.0, 0.0), work.entries, work.inputs)
+        found = changed_texts(handle, (0.0, 0.0), work.entries, work.inputs)
         assert set(found) <= {"dimensions.pad", "dimensions.clamp"}  # both kinds have these
 
 
 def test_words_say_where_a_handle_is():
     work, answer = answered(CALIPER, CALIPERS)
     handle = named(CALIPERS.handles(answer, 1.0), "pivot of the arm of the right pad")
-    assert told(handle, work.entries, work.inputs) == 'side pivot ["27 mm", "4 mm"]'
+    assert describe_place(handle, work.entries, work.inputs) == 'side pivot ["27 mm", "4 mm"]'
     work, answer = answered(FORKLIFT, VEHICLE)
     handle = named(VEHICLE.handles(answer, 1.0), "centre of gravity of the load")
-    assert told(handle, work.entries, work.inputs) == "load cg x -1.20 m, load cg y 0.450 m"
+    assert describe_place(handle, work.entries, work.inputs) == "load cg x -1.20 m, load cg y 0.450 m"
 
 
 def test_nothing_is_minus_nothing():
@@ -279,7 +281,7 @@ def test_pulled_point_writes_fields_and_is_drawn_there(simulate, fields):
         texts = {path: page.field(path).value for path in ("brake.adjuster_x", "brake.adjuster_y")}
         _, answer = answered(FORKLIFT, KINEMATICS, texts)
         # let go, the drawing is the usual one of that design, with nothing over it
-        assert handles.picture("Kinematics") == address(drawn(KINEMATICS, answer, 2.0))
+        assert handles.picture("Kinematics") == data_url(drawn(KINEMATICS, answer, 2.0))
 
     on_page(simulate, fields, "Kinematics", body)
 
@@ -293,7 +295,7 @@ def test_picture_stays_while_a_point_is_held_and_is_fitted_when_it_is_let_go(sim
         await handles.pull(label, 0.0, 0.0, done=True)
         assert handles.place(other) != pytest.approx(before, abs=1e-2)
         texts = {"dimensions.housing": page.field("dimensions.housing").value}
-        assert handles.picture("Caliper") == address(
+        assert handles.picture("Caliper") == data_url(
             drawn(CALIPERS, answered(CALIPER, CALIPERS, texts)[1], 1.0)
         )
 
@@ -322,8 +324,10 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
     async def body(page, handles):
         label = "pin of the shoe"
         x, y = handles.place(label)
-        kept = Work.solve
-        monkeypatch.setattr(Work, "solve", lambda self, screen: solved.append(screen) or kept(self, screen))
+        kept = OpenDocument.solve
+        monkeypatch.setattr(
+            OpenDocument, "solve", lambda self, screen: solved.append(screen) or kept(self, screen)
+        )
         for i in range(1, 31):
             handles.send(label, "pointerdown", x + 0.001 * i, y - 0.001 * i, False)
         handles.send(label, "pointerdown", x + 0.03, y - 0.03, True)

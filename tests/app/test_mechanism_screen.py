@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.entries import entries_of, tables_of, toml_of
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.form_entries import entries_of, tables_of, toml_of
+from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.rendering import html, svg
 from brakes.app.caliper import CALIPER, MECHANISM
@@ -22,7 +22,7 @@ OF_PARTS = ("own-caliper", "toggle-clamp")
 
 
 def opened(text):
-    work = Work(MECHANISM)
+    work = OpenDocument(MECHANISM)
     work.open(text, "mine.toml")
     return work
 
@@ -36,7 +36,7 @@ def answer(work):
 def test_file_of_parts_opens_solves_and_is_saved(name):
     work = opened(FILES[name])
     found = answer(work)
-    assert "<table>" in html(SCREEN.report(found))
+    assert "<table>" in html(SCREEN.tables(found))
     assert drawn(SCREEN, found, 0.5).startswith("<?xml")
     assert not SCREEN.notes(found)
     assert parse_mechanism(work.text()) == parse_mechanism(FILES[name])
@@ -47,7 +47,7 @@ def test_screen_shows_what_the_command_prints(capsys):
     """Hibbeler, Statics, 14th edition, problem 6-80: the work takes 3.6427 times the hand's force."""
     assert main(["caliper", str(EXAMPLES / "toggle-clamp.toml")]) == 0
     printed = capsys.readouterr().out
-    shown = html(SCREEN.report(answer(opened(FILES["toggle-clamp"]))))
+    shown = html(SCREEN.tables(answer(opened(FILES["toggle-clamp"]))))
     assert "364.27" in printed and ">364.27<" in shown
     words = {word for line in printed.splitlines() for word in line.split() if any(map(str.isdigit, word))}
     missing = {word for word in words if word not in shown}

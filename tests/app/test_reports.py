@@ -9,7 +9,7 @@ import pytest
 from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.document_report import report_of
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.rendering import html
 from brakes.app.caliper import CALIPER
 from brakes.app.program import BRAKES
@@ -19,7 +19,7 @@ DOCUMENTS = [*BRAKES.documents, *BEAMDYN.documents]
 
 
 def solved(document):
-    work = Work(document)
+    work = OpenDocument(document)
     for screen in document.screens:
         assert work.solve(screen), work.mistakes
     return work
@@ -42,7 +42,7 @@ def test_report_has_inputs_results_drawings_and_version(document):
     for screen in document.screens:
         found = work.answered[screen.name].answer
         assert f"<h2>{screen.name}</h2>" in page
-        assert html(screen.report(found)) in page
+        assert html(screen.tables(found)) in page
         assert all(f"Warning:</strong> {note}" in unescape(page) for note in screen.notes(found))
 
 
@@ -57,7 +57,7 @@ def test_report_has_a_warning_once():
 
 
 def test_refused_answer_is_reported_with_its_reason():
-    work = Work(DRUM)
+    work = OpenDocument(DRUM)
     work.put("brake.friction", "1.2")
     assert work.solve(DRUM.screens[0])
     assert "Warning:</strong> locked: friction 1.2" in report_of(work, "Mine")

@@ -11,10 +11,10 @@ from nicegui import ui
 from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn import frequency_locus, resonance_speeds, steady_response
-from beamdyn.app.program import BEAMDYN, LOCUS, SCENE, STEADY
-from beamdyn.common.app.documents import Program
-from beamdyn.common.app.entries import tables_of
-from beamdyn.common.app.session import Work
+from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
+from beamdyn.common.app.form_entries import tables_of
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Program
 from beamdyn.common.app.sweep_panel import around
 from beamdyn.common.edge.input_sweep import numbers, sweep_csv
 from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
@@ -27,7 +27,7 @@ CALIPER_SCREEN, MECHANISM_SCREEN = CALIPER.screens[0], MECHANISM.screens[0]
 
 
 def swept(document, screen, text, results, **changes):
-    work = Work(document)
+    work = OpenDocument(document)
     for path, given in changes.items():
         work.put(path.replace("__", "."), given)
     tables = tables_of(work.needed(screen), work.inputs)
@@ -35,7 +35,7 @@ def swept(document, screen, text, results, **changes):
 
 
 def solved(document, screen, **changes):
-    work = Work(document)
+    work = OpenDocument(document)
     for path, given in changes.items():
         work.put(path.replace("__", "."), given)
     assert work.solve(screen), work.mistakes
@@ -58,7 +58,9 @@ def test_caliper_against_its_clearance():
 
 def test_a_coordinate_of_a_point_leaves_the_other_as_it_is():
     found = swept(CALIPER, CALIPER_SCREEN, "dimensions.pad.y=-50:-40:2 mm", "right_advantage")
-    x = 1e3 * next(entry.default[0] for entry in Work(CALIPER).inputs if entry.path == "dimensions.pad")
+    x = 1e3 * next(
+        entry.default[0] for entry in OpenDocument(CALIPER).inputs if entry.path == "dimensions.pad"
+    )
     for i, y in enumerate((-50, -40)):
         run = solved(CALIPER, CALIPER_SCREEN, dimensions__pad=f'["{x!r} mm", "{y} mm"]').run
         assert found.found[0][i] == pytest.approx(run.advantage[-1, 0], rel=1e-9)
@@ -76,10 +78,10 @@ def test_mechanism_against_a_point():
 
 
 def test_frequencies_against_the_setting_angle():
-    found = swept(SCENE, LOCUS, "mount.setting_angle=0:90:3 deg",
+    found = swept(SCENE, FREQUENCIES, "mount.setting_angle=0:90:3 deg",
                   "frequency_1,frequency_2,frequency_1_at_rest,first_resonance")  # fmt: skip
     for i, angle in enumerate(("0 deg", "45 deg", "90 deg")):
-        work = Work(SCENE)
+        work = OpenDocument(SCENE)
         work.put("mount.setting_angle", angle)
         scene = SCENE.check(work.text(), "one")
         locus = frequency_locus(scene, [0.0, 150.0], 2)  # another way to the same: 1e-9 is asked of both
@@ -92,11 +94,14 @@ def test_frequencies_against_the_setting_angle():
 
 def test_largest_steady_amplitude_is_that_of_a_dense_search():
     found = swept(
-        SCENE, STEADY, "model.damping_ratio=0.005:0.01:2", "amplitude,largest_amplitude,speed_of_largest"
+        SCENE,
+        STEADY_STATE,
+        "model.damping_ratio=0.005:0.01:2",
+        "amplitude,largest_amplitude,speed_of_largest",
     )
     amplitude, largest, speed = found.found
     for i, ratio in enumerate((0.005, 0.01)):
-        work = Work(SCENE)
+        work = OpenDocument(SCENE)
         work.put("model.damping_ratio", str(ratio))
         scene = SCENE.check(work.text(), "one")
         coarse = steady_response(scene, np.linspace(0.25, 150.0, 600), 2)
@@ -124,7 +129,9 @@ def test_no_answer_anywhere_is_refused():
 
 
 def test_what_statics_does_not_determine_is_no_answer():
-    pins = Work(MECHANISM).entries["pin"].replace("]", ',\n { name = "extra", body = "arm", at = "E" }]')
+    pins = (
+        OpenDocument(MECHANISM).entries["pin"].replace("]", ',\n { name = "extra", body = "arm", at = "E" }]')
+    )
     with pytest.raises(NoAnswer, match="at none of 2 values"):
         swept(
             MECHANISM,
@@ -139,7 +146,7 @@ def test_what_statics_does_not_determine_is_no_answer():
 
 def test_without_damping_a_resonance_has_no_largest_amplitude():
     with pytest.raises(NoAnswer, match=r"model\.damping_ratio = 0: without damping"):
-        swept(SCENE, STEADY, "beam.thickness=0.2:0.3:2 mm", "largest_amplitude")
+        swept(SCENE, STEADY_STATE, "beam.thickness=0.2:0.3:2 mm", "largest_amplitude")
 
 
 @pytest.mark.parametrize(
@@ -166,7 +173,7 @@ def test_mistakes_are_refused_by_name(text, results, sentence):
 
 @pytest.mark.parametrize("name", ["eebrake", "dual-pivot", "v-brake"])
 def test_every_number_of_a_caliper_can_be_swept(name):
-    work = Work(CALIPER)
+    work = OpenDocument(CALIPER)
     work.put("caliper", name)
     work.put("run.points", "5")
     tables = tables_of(work.needed(CALIPER_SCREEN), work.inputs)
@@ -180,7 +187,7 @@ def test_every_number_of_a_caliper_can_be_swept(name):
 
 @pytest.mark.parametrize("document", [*BRAKES.documents, *BEAMDYN.documents], ids=lambda d: d.name)
 def test_values_to_begin_with_are_around_what_is_given(document):
-    work = Work(document)
+    work = OpenDocument(document)
     entries = {entry.path: entry for entry in numbers(work.inputs)}
     given = {
         "forklift": ("truck.empty_mass", "4.76e+03:7.14e+03:21 kg"),
@@ -276,7 +283,7 @@ def test_command_sweeps_a_caliper_as_the_screen_does(tmp_path, capsys):
         str(path),
     ]
     assert main(["caliper", "dual-pivot", *options]) == DONE
-    work = Work(CALIPER)
+    work = OpenDocument(CALIPER)
     work.open('caliper = "dual-pivot"', "mine")
     tables = tables_of(work.needed(CALIPER_SCREEN), work.inputs)
     found = CALIPER_SCREEN.sweeps.run(tables, "clearance=1:2:3 mm", "finger_travel,largest_roller")

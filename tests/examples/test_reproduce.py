@@ -8,8 +8,8 @@ import pytest
 
 from beamdyn import reproduce
 from beamdyn.cli import DONE, NO_ANSWER, main
-from beamdyn.common.edge.comparison import Comparison, comparison_table
-from beamdyn.common.edge.tables import console
+from beamdyn.common.comparison import Comparison
+from beamdyn.common.edge.tables import comparison_table, console
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, motion, others
 

@@ -83,7 +83,7 @@ def test_section_is_accepted_if_and_only_if_flat_and_slender(width, thickness):
     if thickness <= width and thickness <= STRIP["length"]:
         assert strip(width=width, thickness=thickness).outer_fibre is not None
     else:
-        refused(lambda: strip(width=width, thickness=thickness), f"thickness = {thickness:g} m exceeds")
+        refused(lambda: strip(width=width, thickness=thickness), f"thickness = {thickness:g} m: it exceeds")
 
 
 # Properties along the beam --------------------------------------------------------------------------

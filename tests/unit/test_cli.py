@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main, parse_speeds
-from beamdyn.common.edge.tables import supported
+from beamdyn.common.digits import supported
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "tyre_harvester.toml")

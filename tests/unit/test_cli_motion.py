@@ -17,7 +17,7 @@ import pytest
 
 from beamdyn import load_scene
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER, main
-from beamdyn.cli.motion import _how_to_resume
+from beamdyn.cli.transients import _how_to_resume
 from beamdyn.cli.values import parse_window
 from beamdyn.result_tables import peaks
 
@@ -69,18 +69,18 @@ def test_modes_are_those_at_the_final_speed_of_the_motion(run):
 def test_simulate_prints_table_3(run):
     code, out, err = run("simulate", SCENE, "--t-end", "30 s", "--window", "20:30 s")
     assert (code, err) == (DONE, "")
-    for part in ("1.9425", "29.65", "2.0731", "8.67", "steps", "20 to 30 s", "error by the steps in time"):
+    for part in ("1.9425", "29.65", "2.0731", "8.67", "steps", "20 to 30 s", "time-integration error"):
         assert part in out
     assert "warning" not in out
 
 
 def test_digits_that_the_modes_left_out_spoil_are_not_printed(run):
     out = run("simulate", SCENE, "--t-end", "30 s", "--window", "20:30 s", "--modes", "5")[1]
-    assert "1.9 " in out and "1.94" not in out and "by the modes left out 0.006 mm" in out
+    assert "1.9 " in out and "1.94" not in out and "modal truncation error 0.006 mm" in out
 
 
 def test_simulate_writes_files(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.cli.motion._FRAMES", 7)
+    monkeypatch.setattr("beamdyn.cli.transients._FRAMES", 7)
     names = ("j.json", "c.csv", "p.png", "s.xdmf", "a.gif")
     j, c, p, s, a = (tmp_path / name for name in names)
     files = ("--json", j, "--csv", c, "--plot", p, "--series", s, "--animation", a)

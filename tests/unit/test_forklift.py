@@ -102,7 +102,7 @@ def test_message_names_the_limit_of_the_case_that_fails():
     truck = {"empty_cg": (np.array([1.049, 1.5, 1.6]), 0.359), "load_mass": 0.0}
     limit = Truck(**(TRUCK | truck)).overturning_slopes[1]
     refused(
-        lambda: stop(truck, slope=0.6), "slope = 0.6 rad (and 1 more of 3 cases):", f"past {limit[1]:.4g} rad"
+        lambda: stop(truck, slope=0.6), "slope = 0.6 rad (and 1 more of 3 cases):", f"past {limit[1]:.6g} rad"
     )
 
 

@@ -397,12 +397,12 @@ def test_past_the_end(motion):
 @pytest.mark.parametrize(
     ("times", "speeds", "parts"),
     [
-        ([0, 2, 1], [0, 1, 2], ("2 is followed by 1 s", "sort")),
-        ([0, 1, 1], [0, 1, 2], ("1 is followed by 1 s", "drop repeats")),
-        ([3, 4], [0, 1], ("begin at 3 s", "subtract 3 s")),
+        ([0, 2, 1], [0, 1, 2], ("times = 1 s", "follows 2 s", "sort")),
+        ([0, 1, 1], [0, 1, 2], ("times = 1 s", "follows 1 s", "drop repeats")),
+        ([3, 4], [0, 1], ("times = 3 s", "subtract 3 s")),
         ([0, 1], [0, 1, 2], ("2 times and 3 speeds", "as many")),
         ([0], [1], ("at least two",)),
-        ([0, math.nan], [0, 1], ("times contains nan", "finite")),
+        ([0, math.nan], [0, 1], ("times = nan", "finite")),
         ([0, 1], ["a", "b"], ("speeds", "give a sequence of numbers")),
     ],
 )
@@ -431,7 +431,7 @@ def test_bad_table(times, speeds, parts):
         (lambda: UserMotion(shaken, t_end=-1.0), ("t_end = -1 s",)),
         (lambda: UserMotion(shaken, breakpoints=[[1]]), ("breakpoints", "one-dimensional")),
         (lambda: UserMotion(np.sin, t_end=1.0), ("function(t)", "MotionSample")),
-        (lambda: RotationFunction(5.0, speed_of, acceleration_of, 1.0), ("angle = 5.0", "function")),
+        (lambda: RotationFunction(5.0, speed_of, acceleration_of, 1.0), ("angle = 5", "function")),
         (lambda: RotationFunction(angle_of, speed_of, acceleration_of, 0.0), ("t_end = 0 s",)),
     ],
 )

@@ -83,7 +83,7 @@ def user_motion(t):
 
 
 BAD = {
-    "empty": ({"speeds": []}, "speeds is empty"),
+    "empty": ({"speeds": []}, r"speeds = \[\]: it is empty"),
     "descending": ({"speeds": [2.0, 1.0]}, "must ascend"),
     "critical": ({"speeds": [10.0, 159.0, 160.0, 170.0]}, r"2 of 4 \(160 to 170 rad/s\).*159\.818"),
     "window past the end": ({"t_end": 0.4}, "lie in the run"),

@@ -1,1 +1,1 @@
-"""What the interactive programs share: forms from descriptions of inputs, state, and the page itself."""
+"""Shared by the interactive programs: descriptions of screens, forms, the state of a design, the page."""

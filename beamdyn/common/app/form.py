@@ -8,8 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.documents import Drag
-from beamdyn.common.app.entries import in_unit, toml_value, units_for
+from beamdyn.common.app.form_entries import in_unit, toml_value, units_for
+from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show
 
@@ -73,7 +73,7 @@ class Form:
             self._slider(drag, entry, made)
 
     def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
-        """A slider that writes into a field, and stands where the field says, as far as it reaches."""
+        """A slider that writes into a field; it starts at the field's value, limited to its range."""
         given = in_unit(field.value or "", entry.quantity.unit, drag.unit).partition(" ")[0]
         try:
             at = float(given)
@@ -113,7 +113,7 @@ class Form:
         return field
 
     def _units(self, entry: Input, field: Any, units: Sequence[str]) -> None:
-        """A button whose menu, made when it is first wanted, turns what stands there into another unit."""
+        """A button whose menu converts the field's value to another unit; made at the first click."""
 
         def put(unit: str) -> None:
             field.set_value(in_unit(field.value or "", entry.quantity.unit, unit))
@@ -128,7 +128,7 @@ class Form:
         button.props(f'flat dense round size=sm aria-label="unit of {_words(entry)}"')
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
-        """Mark the fields that mistakes are about, and only those; they are seen, even in a folded table."""
+        """Mark the fields with mistakes, clear the others, and open folded tables with a mistake."""
         for path, field in self.fields.items():
             said = mistakes.get(path)
             field.error = " ".join(said) if said else None
@@ -137,7 +137,7 @@ class Form:
 
 
 def _lines(*given: Any, **more: Any) -> Any:
-    """A field of as many lines as it has."""
+    """A text field that grows with its lines."""
     return ui.textarea(*given, **more).props("autogrow")
 
 
@@ -148,7 +148,7 @@ def label(entry: Input) -> str:
 
 
 def help_of(entry: Input) -> str:
-    """Meaning, unit and bounds; where it need not be given, what holds then."""
+    """Meaning, unit and bounds, and whether it may be left out."""
     return entry.help if entry.required else f"{entry.help}; not required"
 
 
@@ -169,7 +169,7 @@ def _options(entry: Input) -> tuple[str, ...]:
 
 
 def _default(entry: Input) -> str:
-    """What holds if it is not given, as it could be given."""
+    """The default value, as a user would type it."""
     if entry.default is None or entry.default in ("", [], ()):
         return _NOT_GIVEN
     value, unit = entry.default, entry.quantity.unit

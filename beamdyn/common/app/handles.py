@@ -1,4 +1,4 @@
-"""Points of a drawing that are moved: where they lie in its picture, and what a new place writes. No page."""
+"""Draggable points of a drawing: their place in the picture, and the field values for a new place."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.app.documents import Handle, Screen
-from beamdyn.common.app.entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.app.form_entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import drawing
 from beamdyn.common.edge.units import quantity
@@ -46,7 +46,7 @@ class View:
 
     @classmethod
     def of(cls, figure: Figure) -> View:
-        """That of a figure that has been drawn: only then its layout is made."""
+        """The view of a figure, which must have been drawn: its layout is made only then."""
         ax = figure.axes[0]
         limits = np.array([ax.get_xlim(), ax.get_ylim()], dtype=float).T
         parts = ax.transData.transform(limits) / figure.bbox.size
@@ -54,7 +54,7 @@ class View:
         return cls(limits, np.abs(parts - (0.0, 1.0)), boxes)
 
     def keep(self, figure: Figure) -> None:
-        """Have a like figure drawn in the same way: its first axes show the same, and all stay in place."""
+        """Give another figure of the same kind this view: same limits, same places of all axes."""
         for axes, box in zip(figure.axes, self.boxes, strict=True):
             axes.set_position(box)
         (left, low), (right, high) = self.limits.tolist()
@@ -102,7 +102,7 @@ class Sheet:
         return self.view.place((handle.scale * x, handle.scale * y))
 
 
-def sheet(screen: Screen, answer: Any, progress: float, view: View | None = None) -> Sheet:
+def draw_sheet(screen: Screen, answer: Any, progress: float, view: View | None = None) -> Sheet:
     """The drawing of an answer with its handles.
 
     Parameters
@@ -136,8 +136,10 @@ def sheet(screen: Screen, answer: Any, progress: float, view: View | None = None
 # In the fields ------------------------------------------------------------------------------------------
 
 
-def written(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
-    """What a handle at a new place writes into fields: the texts that change, by path.
+def changed_texts(
+    handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]
+) -> Entries:
+    """Texts of the fields that change when a handle is moved, by path.
 
     Parameters
     ----------
@@ -150,14 +152,14 @@ def written(handle: Handle, target: Place, entries: Mapping[str, str], inputs: S
     inputs : sequence of Input
         Descriptions of the fields.
     """
-    found = _texts(handle, target, entries, inputs)
-    return {path: text for path, text in found.items() if text != entries.get(path, "")}
+    texts = _texts(handle, target, entries, inputs)
+    return {path: text for path, text in texts.items() if text != entries.get(path, "")}
 
 
-def told(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
-    """Where a handle is, in words: what it would write there."""
-    found = _texts(handle, handle.at, entries, inputs)
-    return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in found.items())
+def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
+    """Position of a handle in words, by the fields that it sets."""
+    texts = _texts(handle, handle.at, entries, inputs)
+    return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in texts.items())
 
 
 def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
@@ -170,7 +172,7 @@ def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Se
 
 
 def _text(value: float | Place, text: str, entry: Input, grain: float) -> str:
-    """A value as its field has it; as much of the text as says the same stays as it is."""
+    """A value as text for its field; parts of the old text that still hold are kept."""
     unit = entry.quantity.unit
     if not isinstance(value, tuple):
         return _number(value, text, unit, grain)
@@ -179,15 +181,15 @@ def _text(value: float | Place, text: str, entry: Input, grain: float) -> str:
 
 
 def _coordinates(text: str, entry: Input) -> Sequence[str]:
-    """Texts of a point's coordinates: as given, or those that hold if nothing is given."""
+    """Texts of a point's coordinates: as given, or the defaults."""
     if not text.strip() and isinstance(entry.default, tuple):
         return [f"{1e3 * value:.6g} mm" for value in entry.default]
-    found = tables_of({"point": text}, ()).get("point")
-    return [str(part) for part in found] if isinstance(found, list) and len(found) == 2 else ["", ""]
+    values = tables_of({"point": text}, ()).get("point")
+    return [str(part) for part in values] if isinstance(values, list) and len(values) == 2 else ["", ""]
 
 
 def _number(value: float, text: str, unit: str, grain: float) -> str:
-    """A quantity in the unit of a text, rounded; the text itself if it says the same within rounding."""
+    """A quantity in the unit of the old text, rounded; the old text if it agrees within rounding."""
     grain = grain if unit == "m" else _ANGLE
     try:
         if abs(quantity(text, unit) - value) <= grain / 2:
@@ -201,6 +203,6 @@ def _number(value: float, text: str, unit: str, grain: float) -> str:
 
 
 def _unit_of(text: str, unit: str) -> str:
-    """The unit in which a text is given, if it is a usual one."""
+    """The unit of a text, if it is one of those in common use."""
     by_length = sorted(units_for(unit), key=len, reverse=True)
     return next((u for u in by_length if text.rstrip().endswith(u)), _UNITS.get(unit, unit))

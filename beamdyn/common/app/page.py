@@ -1,4 +1,4 @@
-"""The page of an interactive program: tabs, opening and saving, reports; a session for each client."""
+"""The page of an interactive program, one per client: tabs, opening and saving files, HTML report."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.board import STYLE as BOARD
 from beamdyn.common.app.document_report import report_of
-from beamdyn.common.app.documents import Document, Program, Screen
-from beamdyn.common.app.panel import Panel
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.draggable_drawing import STYLE as BOARD
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screen_view import ScreenView
+from beamdyn.common.app.screens import Document, Program, Screen
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import STYLE
 
@@ -74,8 +74,8 @@ class Page:
 
     def __init__(self, program: Program) -> None:
         self.program = program
-        self.works = {document.name: Work(document) for document in program.documents}
-        self.panels: dict[str, Panel] = {}
+        self.works = {document.name: OpenDocument(document) for document in program.documents}
+        self.panels: dict[str, ScreenView] = {}
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
@@ -109,7 +109,7 @@ class Page:
         ):
             for name, (document, screen) in self.places.items():
                 with ui.tab_panel(name):
-                    self.panels[name] = Panel(self.works[document.name], screen, self._edited)
+                    self.panels[name] = ScreenView(self.works[document.name], screen, self._edited)
         with ui.dialog() as self._dialog, ui.card():
             ui.label("Open a TOML file, as the commands read it")
             self._upload: Any = ui.upload(
@@ -134,7 +134,7 @@ class Page:
         return self.places[self.front]
 
     def _turned(self) -> None:
-        """Another screen has come to the front: show it from its top."""
+        """Another screen has been chosen: scroll to its top."""
         self._entered()
         self._remember()
         ui.run_javascript("window.scrollTo(0, 0)")
@@ -144,7 +144,7 @@ class Page:
         self._marks()
 
     def _edited(self) -> None:
-        """Another screen of the same document may be stale now."""
+        """Update which screens are stale after a change."""
         for panel in self.panels.values():
             panel.state()
         self._marks()
@@ -180,7 +180,7 @@ class Page:
         self.open(text, name)
 
     def open(self, text: str, name: str) -> None:
-        """Open the text of a file as the document whose tables it has; else say what the command says."""
+        """Open the text of a file as the document that accepts it, or show the parser's message."""
         document = self._kind_of(text)
         try:
             self.works[document.name].open(text, name)
@@ -193,7 +193,7 @@ class Page:
         ui.notify(f"{name} is open")
 
     def _kind_of(self, text: str) -> Document:
-        """The document that accepts a text; if none does, the one in front."""
+        """The first document that accepts a text, else the one in front."""
         for document in self.program.documents:
             try:
                 document.opened(text, "")
@@ -206,12 +206,12 @@ class Page:
         self._refused.set_text(sentence)
 
     def save(self) -> None:
-        """Hand over the design in front as TOML."""
+        """Download the design in front as TOML."""
         document = self.current[0]
         ui.download.content(self.works[document.name].text(), f"{document.name}.toml")
 
     def report(self) -> None:
-        """Hand over a report on the document in front: its good answers, each with its drawing."""
+        """Download the HTML report on the document in front."""
         document = self.current[0]
         for screen in document.screens:
             self.panels[screen.name].enter()
@@ -221,7 +221,7 @@ class Page:
         ui.download.content(report_of(work, title), f"{document.name}.html")
 
     def reset(self) -> None:
-        """The design on opening."""
+        """Return to the base design."""
         document = self.current[0]
         self.works[document.name].open(document.base, document.name)
         self._rebuild(document)
@@ -233,20 +233,20 @@ class Page:
         return json.dumps(f"{self.program.name}-page")
 
     def _remember(self) -> None:
-        """Keep the entries and which screen is in front in the browser, for this tab of it."""
+        """Store the entries and the name of the front screen in this tab of the browser."""
         designs = {name: work.entries for name, work in self.works.items()}
-        kept = json.dumps({"front": self.front, "designs": designs})
+        stored = json.dumps({"front": self.front, "designs": designs})
         # by the page's own client: the field that has changed may be gone, of a form that was made anew
-        self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(kept)})")
+        self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(stored)})")
 
     async def recall(self) -> None:
-        """Put back what the browser kept."""
+        """Restore what the browser stored."""
         await ui.context.client.connected()
         try:
-            kept = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
+            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
         except TimeoutError:
             return
-        page = json.loads(kept or "{}")
+        page = json.loads(stored or "{}")
         for name, entries in page.get("designs", {}).items():
             if (work := self.works.get(name)) is not None:
                 work.entries = {str(path): str(text) for path, text in entries.items()}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import App, Parameter
 
 if TYPE_CHECKING:
-    from beamdyn.common.app.documents import Program
+    from beamdyn.common.app.screens import Program
 
 MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
 _HOME = "127.0.0.1"

@@ -1,4 +1,4 @@
-"""Sweeps on the page: an input of a screen against its results, as a picture and as a file."""
+"""The panel of a screen that sweeps an input: picture and CSV of the results."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 
 from nicegui import run, ui
 
-from beamdyn.common.app.documents import Screen, Sweeps
-from beamdyn.common.app.entries import Entries, in_unit, tables_of
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.form_entries import Entries, in_unit, tables_of
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Screen, Sweeps
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.input_sweep import Coordinate, Sweep, numbers, sweep_csv
+from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.rendering import csv_text, drawing, picture, png
@@ -23,15 +23,15 @@ _USUAL = {"m": "mm", "rad": "deg"}  # where no unit is given
 _COUNT, _AROUND = 21, 0.2  # values of a sweep to begin with, and how far they go, as a part of the value
 
 
-_Asked = tuple[Entries, str, str]  # the design, the input with its values, the results
+_Request = tuple[Entries, str, str]  # the design, the input with its values, the results
 
 
 class SweepPanel:
     """A folded panel below a screen's results."""
 
-    def __init__(self, work: Work, screen: Screen, sweeps: Sweeps) -> None:
+    def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps) -> None:
         self.work, self.screen, self.sweeps = work, screen, sweeps
-        self._found: tuple[_Asked, Sweep] | None = None
+        self._found: tuple[_Request, InputSweep] | None = None
         self._shown: Entries | None = None
         path, _, values = sweeps.example.partition("=")
         self._fold: Any = ui.expansion("Sweep an input", on_value_change=self.state)
@@ -55,7 +55,7 @@ class SweepPanel:
             self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
 
     def state(self) -> None:
-        """While it is open: offer the inputs and results that there are, grey a sweep of another design."""
+        """While it is open: update the inputs and results offered, and grey a stale sweep."""
         if self._fold.value:
             self._offer()
             stale = self._shown not in (None, self.work.needed(self.screen))
@@ -71,7 +71,7 @@ class SweepPanel:
             self._results.set_options(names, value=kept or names[:1])
 
     def _inputs(self) -> dict[str, Input]:
-        """The inputs that are given, or have a value if they are not."""
+        """The inputs that have a value, given or by default."""
         entries, needs = self.work.entries, self.screen.needs
         known = [i for i in self.work.inputs if (i.path.partition(".")[0] if "." in i.path else "") in needs]
         there = [i for i in known if entries.get(i.path) or i.default is not None]
@@ -85,46 +85,46 @@ class SweepPanel:
         if (entry := self._inputs().get(self._input.value)) is not None:
             self._values.set_value(around(entry, self.work.entries))
 
-    async def _run(self) -> Sweep | None:
-        """The sweep asked for; None if there is none, and then it says why."""
+    async def _run(self) -> InputSweep | None:
+        """Run the sweep; None if it fails, with the reason shown."""
         text = f"{self._input.value}={self._values.value}"
         names = ",".join(self._results.value)
-        asked = (self.work.needed(self.screen), text, names)
-        if self._found is not None and self._found[0] == asked:
+        request = (self.work.needed(self.screen), text, names)
+        if self._found is not None and self._found[0] == request:
             return self._found[1]
         try:
-            found = await run.io_bound(self.sweeps.run, self._tables(), text, names)
+            swept = await run.io_bound(self.sweeps.run, self._tables(), text, names)
         except (ValueError, ArithmeticError, NoAnswer) as error:
             self._said.set_text(str(error))
             return None
-        if found is None:  # the program ends
+        if swept is None:  # the program ends
             return None
-        self._said.set_text(" ".join(found.warnings))
-        self._found = asked, found
-        return found
+        self._said.set_text(" ".join(swept.warnings))
+        self._found = request, swept
+        return swept
 
     async def show(self) -> None:
         """Show the sweep."""
-        if found := await self._run():
-            words = f"{', '.join(found.results)} over {found.inputs[0]}"
-            self._picture.set_content(picture(drawing(lambda: sweep_figure(found)), words))
+        if swept := await self._run():
+            words = f"{', '.join(swept.results)} over {swept.inputs[0]}"
+            self._picture.set_content(picture(drawing(lambda: sweep_figure(swept)), words))
             self._shown = self._found[0][0] if self._found else None
             self.state()
 
     async def csv(self) -> None:
-        """Hand over its rows."""
-        if found := await self._run():
-            ui.download.content(csv_text(sweep_csv(found)).encode(), "sweep.csv")
+        """Download its rows."""
+        if swept := await self._run():
+            ui.download.content(csv_text(sweep_csv(swept)).encode(), "sweep.csv")
 
     async def svg(self) -> None:
-        """Hand over its picture as SVG."""
-        if found := await self._run():
-            ui.download.content(drawing(lambda: sweep_figure(found)).encode(), "sweep.svg")
+        """Download its picture as SVG."""
+        if swept := await self._run():
+            ui.download.content(drawing(lambda: sweep_figure(swept)).encode(), "sweep.svg")
 
     async def png(self) -> None:
-        """Hand over its picture as PNG."""
-        if found := await self._run():
-            ui.download.content(png(sweep_figure(found)), "sweep.png")
+        """Download its picture as PNG."""
+        if swept := await self._run():
+            ui.download.content(png(sweep_figure(swept)), "sweep.png")
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
@@ -135,7 +135,7 @@ def around(entry: Input, entries: Mapping[str, str]) -> str:
 
 
 def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
-    """Number and unit of what stands in the field, or of what holds if nothing does."""
+    """Number and unit of a field's value, or of the default."""
     unit, (text, default) = entry.quantity.unit, _text_and_default(entry, entries)
     number, _, given = text.strip().partition(" ")
     with suppress(ValueError):
@@ -148,7 +148,7 @@ def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
 
 
 def _text_and_default(entry: Input, entries: Mapping[str, str]) -> tuple[str, Any]:
-    """What stands in the field of an input, or in its part of it, and what holds if nothing does."""
+    """The text of an input's field (of a coordinate: its part of it), and the default."""
     if not isinstance(entry, Coordinate):
         return entries.get(entry.path, ""), entry.default
     whole: Any = entry.of.default or (0.0, 0.0)

@@ -1,1 +1,1 @@
-"""What files, commands and screens share: units, descriptions of inputs, tables, reports, exit codes."""
+"""Shared by files, commands and screens: units, descriptions of inputs, tables, HTML reports, exit codes."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import difflib
-import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -15,14 +15,15 @@ import numpy as np
 from pydantic import BaseModel, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.inputs import Section, describe
-from beamdyn.common.edge.units import show
+from beamdyn.common.edge.units import InvalidInput, show
 
 Model = TypeVar("Model", bound=BaseModel)
 
 
 class ConfigError(ValueError):
-    """A file that does not describe what it should.
+    """A TOML file with mistakes: all of them in one message.
 
     Parameters
     ----------
@@ -30,16 +31,26 @@ class ConfigError(ValueError):
         Name of the file, or what stands for it.
     mistakes : sequence of str
         One sentence each: the key's path, the value, what is wrong and the remedy.
+    paths : sequence of str
+        For each mistake the path of the input that it is about, empty for none; all empty if not given.
     """
 
-    def __init__(self, source: str, mistakes: Sequence[str]) -> None:
+    def __init__(self, source: str, mistakes: Sequence[str], paths: Sequence[str] = ()) -> None:
         self.source, self.mistakes = source, tuple(mistakes)
+        self.paths = tuple(paths) or ("",) * len(self.mistakes)
         one = len(mistakes) == 1
         head = f"{source}: " if one else f"{source}: {len(mistakes)} mistakes\n  "
         super().__init__(head + "\n  ".join(mistakes))
 
-    def __reduce__(self) -> tuple[type, tuple[str, tuple[str, ...]]]:
-        return type(self), (self.source, self.mistakes)
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.source, self.mistakes, self.paths)
+
+
+class MissingValue(InvalidValue):
+    """A value that must be given and is not: only `field` and `bound` are said."""
+
+    def __str__(self) -> str:
+        return f"{self.field}: missing; {self.bound}"
 
 
 class CoreSection(Section):
@@ -52,7 +63,7 @@ class CoreSection(Section):
 
     @model_validator(mode="after")
     def _core_accepts(self) -> CoreSection:
-        with np.errstate(all="ignore"):  # a warning of numpy would be no answer to a mistyped exponent
+        with np.errstate(all="ignore"):  # numpy's warnings are no message for a mistyped exponent
             self.core  # noqa: B018
         return self
 
@@ -91,12 +102,12 @@ def parse(text: str, source: str) -> dict[str, Any]:
 
 
 def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model:
-    """The model that tables describe.
+    """Validate tables.
 
     Parameters
     ----------
     model : type of BaseModel
-        What they should describe.
+        The model of the tables.
     data : mapping
         Tables, as tomllib reads them.
     source : str
@@ -110,8 +121,8 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
     try:
         return model.model_validate(dict(data))
     except ValidationError as error:
-        mistakes = [_sentence(model, e) for e in error.errors(include_url=False)]
-        raise ConfigError(source, list(dict.fromkeys(mistakes))) from None
+        mistakes = dict(_mistake(model, each) for each in error.errors(include_url=False))
+        raise ConfigError(source, [*mistakes], [*mistakes.values()]) from None
 
 
 _WORDS = {
@@ -123,57 +134,86 @@ _WORDS = {
 }
 
 
-def _sentence(model: type[BaseModel], error: ErrorDetails) -> str:
-    """What is wrong in one place: path, value, remedy."""
-    path, value = _path(error["loc"]), show(error["input"])
+def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
+    """One mistake as a sentence, and the path of the input that it is about."""
+    place, path = _path(error["loc"]), _path(error["loc"], indices=False)
+    context = error.get("ctx", {})
     match error["type"]:
         case "missing":
-            return f"{path}: missing; {_how_to_give(model, path)}"
+            return str(MissingValue(place, None, _how_to_give(model, path))), path
         case "extra_forbidden":
-            path = f"{_path(error['loc'][:-1])}.{error['loc'][-1]}".removeprefix(
-                "."
-            )  # whatever it begins with
-            return f"{path}: unknown key; {_nearest(model, path)}"
+            return _unknown(model, error["loc"]), path
         case "value_error":
-            reason = str(error.get("ctx", {}).get("error"))
-            return f"{path} = {reason}" if reason.startswith(value) else f"{path or 'model'}: {reason}"
+            return _refusal(model, place, path, context.get("error"))
         case "kind":
-            return f"{path}.kind = {show(error['input']['kind'])}: {error['msg']}"
+            return str(InvalidInput(f"{place}.kind", error["input"]["kind"], error["msg"])), f"{path}.kind"
         case "literal_error":
-            return f"{path} = {value}: give {error.get('ctx', {}).get('expected')}"
-    return f"{path} = {value}: {_WORDS.get(error['type'], error['msg'])}"
+            return str(InvalidInput(place, error["input"], f"give {context.get('expected')}")), path
+    return str(InvalidInput(place, error["input"], _WORDS.get(error["type"], error["msg"]))), path
 
 
-def _path(loc: tuple[int | str, ...]) -> str:
-    """The place as a TOML path; tags of alternatives, in angle brackets, are no keys."""
-    parts = [f"[{p}]" if isinstance(p, int) else f".{p}" for p in loc if not str(p).startswith("<")]
+def _refusal(model: type[BaseModel], place: str, path: str, reason: Any) -> tuple[str, str]:
+    """The refusal of a number or a core object, in terms of the file's keys."""
+    if isinstance(reason, InvalidInput) and not reason.field:
+        return str(replace(reason, field=place)), path
+    if key := path_of(reason, [entry.path for entry in describe(model)], path):
+        field = f"{place}.{key.removeprefix(path).lstrip('.')}".lstrip(".")
+        kind = InvalidInput if type(reason) is InvalidValue else type(reason)
+        said: dict[str, Any] = vars(reason) | {"field": field}
+        return str(kind(**said)), key
+    return f"{place or 'model'}: {reason}", path
+
+
+def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
+    """The path of the input that an error of the core is about; empty if it is about no single one.
+
+    Parameters
+    ----------
+    error : Exception
+        An `InvalidValue` names its argument; others name none.
+    paths : iterable of str
+        Paths of inputs.
+    table : str
+        Path of the table in which it is looked for.
+    """
+    field = error.field if isinstance(error, InvalidValue) else ""
+    exact = f"{table}.{field}".lstrip(".")
+    ends = {path for path in paths if field and f".{path}".endswith(f".{field}")}
+    inside = {path for path in ends if path.startswith(table and f"{table}.")}
+    return exact if exact in inside else inside.pop() if len(inside) == 1 else ""
+
+
+def _path(loc: Iterable[int | str], indices: bool = True) -> str:
+    """A TOML path; pydantic's tags of alternatives, in angle brackets, are left out."""
+    keys = (part for part in loc if not str(part).startswith("<"))
+    parts = [f".{key}" if isinstance(key, str) else f"[{key}]" * indices for key in keys]
     return "".join(parts).removeprefix(".")
 
 
 def _how_to_give(model: type[BaseModel], path: str) -> str:
-    inputs, path = describe(model), _without_indices(path)
+    inputs = describe(model)
     if any(i.path.startswith(f"{path}.") for i in inputs):
         return f"give a table [{path}]"
     return next((f"give the {i.help}" for i in inputs if i.path == path), "give as many values as stations")
 
 
-def _nearest(model: type[BaseModel], path: str) -> str:
-    """The known key that resembles an unknown one most, or all that are known."""
-    parent, _, key = _without_indices(path).rpartition(".")
-    prefix = parent and f"{parent}."
-    known = [
-        i.path.removeprefix(prefix).partition(".")[0] for i in describe(model) if i.path.startswith(prefix)
-    ]
-    known = list(dict.fromkeys(known)) or ["polynomial", "stations", "values"]
-    if key in known and (kinds := _kinds_with(model, parent, key)):
+def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
+    """Sentence on an unknown key, with the nearest known key, or all known ones."""
+    table, key = _path(loc[:-1], indices=False), str(loc[-1])  # whatever the key begins with
+    prefix = table and f"{table}."
+    inside = [i.path.removeprefix(prefix) for i in describe(model) if i.path.startswith(prefix)]
+    known = list(dict.fromkeys(path.partition(".")[0] for path in inside))
+    place = f"{_path(loc[:-1])}.{key}".removeprefix(".")
+    return (
+        f"{place}: unknown key; {_nearest(model, table, key, known or ['polynomial', 'stations', 'values'])}"
+    )
+
+
+def _nearest(model: type[BaseModel], table: str, key: str, known: list[str]) -> str:
+    if key in known and (kinds := _kinds_with(model, table, key)):
         return f"it goes with kind = {' or '.join(kinds)}"
     near = difflib.get_close_matches(key, known, n=1)
     return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
-
-
-def _without_indices(path: str) -> str:
-    """The path of an item of a list as descriptions have it."""
-    return re.sub(r"\[\d+\]", "", path)
 
 
 def _kinds_with(model: type[BaseModel], table: str, key: str) -> list[str]:

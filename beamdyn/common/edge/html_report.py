@@ -25,7 +25,7 @@ pre { background: #f4f4f4; padding: 1rem; white-space: pre-wrap; overflow-wrap: 
 
 @dataclass(frozen=True)
 class Question:
-    """What a command was asked.
+    """A command with its options and its input file, for the head of a report.
 
     Parameters
     ----------
@@ -40,13 +40,13 @@ class Question:
 
     @classmethod
     def of(cls, command: str, file: object, text: str, **options: object) -> Question:
-        """That of a command on a file whose text is given; options that are not given are None or empty."""
+        """From the text of the file; options that are None or empty are left out."""
         words = [*command.split(), str(file), *_options(options)]
         return cls(f"{command}: {file}", f"# {_line(shlex.join(words))}\n\n{text}")
 
     @classmethod
     def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
-        """That of a command on a file; raises `ConfigError` if it cannot be read."""
+        """From a file; raises `ConfigError` if it cannot be read."""
         from beamdyn.common.edge.config import read
 
         return cls.of(command, file, read(file), **options)
@@ -66,12 +66,12 @@ def _line(text: str) -> str:
 
 @dataclass(frozen=True)
 class Report:
-    """What a command's report says besides its picture.
+    """Contents of a command's HTML report, besides its main drawing.
 
     Parameters
     ----------
     question : Question
-        What was asked.
+        The command and its input.
     tables : sequence of rich renderables
         As printed.
     warnings : sequence of str
@@ -99,7 +99,7 @@ def further(drawings: Iterable[tuple[str, Callable[[], Figure]]]) -> str:
 
 
 def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:
-    """A report that needs no other file.
+    """The HTML page of a report, which needs no other file.
 
     Parameters
     ----------

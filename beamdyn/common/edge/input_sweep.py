@@ -1,4 +1,4 @@
-"""Any input against any result: "stop.speed=10:30:9 km/h"."""
+"""Sweeps of any input of a file, such as "stop.speed=10:30:9 km/h", against any result."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import Any, get_args, get_origin
 
 import numpy as np
 
-from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.results import Result
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -21,7 +22,7 @@ _MOST = 100_000
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of an input.
+    """An input that is varied, and its values.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Output:
-    """A number of a result, as people read it.
+    """A number of an answer that a sweep can show.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ class Output:
     words : str
         What it is.
     of : callable
-        Takes it from a result, in SI.
+        Takes it from an answer, in SI.
     unit : str
         Unit in which it is shown.
     scale : float
@@ -79,7 +80,7 @@ class Output:
 
 
 @dataclass(frozen=True)
-class Sweep(Result):
+class InputSweep(Result):
     """Results over one or two inputs.
 
     Attributes
@@ -91,7 +92,7 @@ class Sweep(Result):
     results, result_units : tuple of str
         Names of the results and their units.
     found : tuple of ndarray, shape (n,) or (m, n)
-        The results; nan or inf where there is none.
+        The results as arrays; nan or inf where there is none.
     warnings : tuple of str
         Where there is no answer, and why.
     """
@@ -110,7 +111,7 @@ class Sweep(Result):
 
 @dataclass(frozen=True)
 class Coordinate(Input):
-    """One of the numbers of an input that is several, such as x of a point.
+    """One coordinate of an input that is a point.
 
     Parameters
     ----------
@@ -125,12 +126,12 @@ class Coordinate(Input):
 
 
 def numbers(inputs: Sequence[Input]) -> list[Input]:
-    """The inputs that are numbers, and x and y of those that are points."""
-    return [found for entry in inputs for found in _numbers(entry)]
+    """The inputs that can be varied: numbers, and the coordinates of points."""
+    return [number for entry in inputs for number in _numbers(entry)]
 
 
 def _numbers(entry: Input) -> Iterator[Input]:
-    parts = [*_parts(entry.kind)]
+    parts = [*parts_of(entry.kind)]
     if get_origin(entry.kind) is tuple:
         for place, (axis, _) in enumerate(zip("xy", get_args(entry.kind), strict=True)):
             words = replace(entry.quantity, meaning=f"{axis} of the {entry.quantity.meaning}")
@@ -138,12 +139,6 @@ def _numbers(entry: Input) -> Iterator[Input]:
             yield Coordinate(path, entry.section, float, words, (), entry.required, None, entry, place)
     elif float in parts and not any(get_origin(part) in (list, tuple, dict) for part in parts):
         yield entry
-
-
-def _parts(kind: Any) -> Iterator[Any]:
-    yield kind
-    for part in get_args(kind):
-        yield from _parts(part)
 
 
 def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> Axis:
@@ -165,50 +160,50 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> A
         If there is no such input, or the values do not fit it.
     """
     key, _, rest = text.partition("=")
-    said = f'{option} = "{text}"'
-    entry = _find(inputs, key.strip(), said)
+    words = f'{option} = "{text}"'
+    entry = _find(inputs, key.strip(), words)
     match = _RANGE.fullmatch(rest)
     if match is None:
         form = f"{entry.path}=1:2:11 {entry.quantity.unit}".strip()
-        raise ValueError(f'{said}: give KEY=start:stop:count unit, e.g. "{form}"')
+        raise ValueError(f'{words}: give KEY=start:stop:count unit, e.g. "{form}"')
     start, stop, count = float(match[1]), float(match[2]), int(match[3])
     if not 2 <= count <= _MOST or start == stop:
-        raise ValueError(f"{said}: give two different ends, and a count from 2 to {_MOST}")
-    low, high = (_in_si(entry, number, match[4], said) for number in (match[1], match[2]))
+        raise ValueError(f"{words}: give two different ends, and a count from 2 to {_MOST}")
+    low, high = (_in_si(entry, number, match[4], words) for number in (match[1], match[2]))
     return Axis(entry, match[4], np.linspace(start, stop, count), np.linspace(low, high, count))
 
 
-def _in_si(entry: Input, number: str, unit: str, said: str) -> float:
-    """An end of the range within the bounds of the input."""
-    asked = entry.quantity
-    given = f"{number} {unit}".strip() if asked.unit or unit else float(number)
+def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
+    """An end of the range in SI, checked against the bounds of the input."""
+    quantity = entry.quantity
+    given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
-        return asked.within_bounds(given, asked.convert(given))
-    except ValueError as error:
-        raise ValueError(f"{said}: {entry.path} = {error}") from None
+        return quantity.within_bounds(given, quantity.convert(given))
+    except InvalidInput as error:
+        raise ValueError(f"{words}: {replace(error, field=entry.path)}") from None
 
 
-def _find(inputs: Sequence[Input], key: str, said: str) -> Input:
+def _find(inputs: Sequence[Input], key: str, words: str) -> Input:
     """The input of a key."""
-    found = [i for i in inputs if key in (i.path, i.name)]
-    if len(found) > 1:
-        found = [i for i in found if i.required] or found
-    if len(found) > 1:
-        raise ValueError(f"{said}: {key} is ambiguous; give {' or '.join(i.path for i in found)}")
-    if not found:
-        raise ValueError(f"{said}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
-    return found[0]
+    matches = [i for i in inputs if key in (i.path, i.name)]
+    if len(matches) > 1:
+        matches = [i for i in matches if i.required] or matches
+    if len(matches) > 1:
+        raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
+    if not matches:
+        raise ValueError(f"{words}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
+    return matches[0]
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """That a name is not known, and the nearest one or all."""
+    """Sentence on an unknown name, with the nearest known name, or all."""
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"
 
 
 def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> list[Output]:
-    """The outputs of names that are separated by commas.
+    """The outputs with these names, separated by commas.
 
     Raises
     ------
@@ -230,7 +225,7 @@ def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> l
 
 def sweep(
     axes: Sequence[Axis], outputs: Sequence[Output], found: Sequence[Any], warnings: Sequence[str] = ()
-) -> Sweep:
+) -> InputSweep:
     """Results over inputs.
 
     Parameters
@@ -245,7 +240,7 @@ def sweep(
         Where there is no answer, and why.
     """
     shape = tuple(len(axis.values) for axis in reversed(axes))
-    return Sweep(
+    return InputSweep(
         inputs=tuple(axis.input.path for axis in axes),
         units=tuple(axis.unit for axis in axes),
         values=tuple(axis.given for axis in axes),
@@ -261,8 +256,8 @@ def one_by_one(
     axes: Sequence[Axis],
     outputs: Sequence[Output],
     solve: Callable[[Mapping[str, Any]], Any],
-) -> Sweep:
-    """A sweep that solves each case by itself, for designs that take no arrays.
+) -> InputSweep:
+    """Sweep case by case, for designs that take no arrays.
 
     Parameters
     ----------
@@ -281,7 +276,7 @@ def one_by_one(
         If there is no answer at any value; the message says why there is none at the first.
     """
     shape = tuple(len(axis.values) for axis in reversed(axes))
-    found, refusals = np.full((len(outputs), *shape), np.nan), []
+    results, refusals = np.full((len(outputs), *shape), np.nan), []
     for place in np.ndindex(shape):
         given = [float(axis.given[i]) for axis, i in zip(axes, reversed(place), strict=True)]
         design = tables
@@ -289,13 +284,13 @@ def one_by_one(
             design = placed(design, axis, value)
         try:
             answer = solve(design)
-            found[(slice(None), *place)] = [float(output.shown(answer)) for output in outputs]
+            results[(slice(None), *place)] = [float(output.shown(answer)) for output in outputs]
         except (ValueError, ArithmeticError, NoAnswer) as error:
             refusals.append(f"{_at(axes, given)}: {error}")
-    if len(refusals) == found[0].size:
+    if len(refusals) == results[0].size:
         raise NoAnswer(f"at none of {len(refusals)} values is there an answer; {refusals[0]}")
-    none = f"at {len(refusals)} of {found[0].size} values there is no answer; " if refusals else ""
-    return sweep(axes, outputs, [*found], [none + refusals[0]] if refusals else [])
+    none = f"at {len(refusals)} of {results[0].size} values there is no answer; " if refusals else ""
+    return sweep(axes, outputs, [*results], [none + refusals[0]] if refusals else [])
 
 
 def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
@@ -304,7 +299,7 @@ def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
 
 
 def placed(tables: Mapping[str, Any], axis: Axis, value: float) -> dict[str, Any]:
-    """Tables with a value, in the unit of its axis, in place of what they have there."""
+    """The tables with the input of an axis replaced by a value [the axis' unit]."""
     entry = axis.input
     given: Any = f"{value:.15g} {axis.unit}" if axis.unit else float(value)
     if not isinstance(entry, Coordinate):
@@ -332,21 +327,21 @@ def _put(tables: Mapping[str, Any], path: Sequence[str], change: Callable[[Any],
 # Its rows -----------------------------------------------------------------------------------------------
 
 
-def sweep_csv(found: Sweep) -> Iterator[Sequence[object]]:
+def sweep_csv(swept: InputSweep) -> Iterator[Sequence[object]]:
     """Rows of a sweep's CSV file, with its heads."""
-    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(found)]
-    yield from sweep_rows(found)
+    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(swept)]
+    yield from sweep_rows(swept)
 
 
-def sweep_rows(found: Sweep) -> Iterator[list[float]]:
+def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:
     """Inputs and results, one row a case; the first input changes fastest."""
-    grids = np.meshgrid(*found.values, indexing="xy") if len(found.values) > 1 else found.values
-    cells = [np.ravel(values) for values in (*grids, *found.found)]
+    grids = np.meshgrid(*swept.values, indexing="xy") if len(swept.values) > 1 else swept.values
+    cells = [np.ravel(values) for values in (*grids, *swept.found)]
     for row in zip(*(column.tolist() for column in cells), strict=True):
         yield [*row]
 
 
-def columns(found: Sweep) -> list[tuple[str, str]]:
+def columns(swept: InputSweep) -> list[tuple[str, str]]:
     """Names and units of the columns: inputs, then results."""
-    inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in found.inputs)
-    return [*zip(inputs, found.units, strict=True), *zip(found.results, found.result_units, strict=True)]
+    inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in swept.inputs)
+    return [*zip(inputs, swept.units, strict=True), *zip(swept.results, swept.result_units, strict=True)]

@@ -1,9 +1,9 @@
-"""Each input described once: files, command line, forms and documentation take it from there."""
+"""Tables of inputs: each input is described once, for files, command line, forms and documentation."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import KW_ONLY, dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
@@ -11,7 +11,8 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.common.checks import real
-from beamdyn.common.edge.units import quantity, show
+from beamdyn.common.described import Described
+from beamdyn.common.edge.units import InvalidInput, quantity
 
 
 class Section(BaseModel):
@@ -21,72 +22,36 @@ class Section(BaseModel):
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """Description of a number, for `Annotated[float, Quantity("m", symbol="L", meaning="length")]`.
+class Quantity(Described):
+    """A number of a file, for ``Annotated[float, Quantity("m", "L", "length")]``.
 
-    A pydantic model then takes it as text with a unit ("50 mm") and holds the value in SI.
-
-    Parameters
-    ----------
-    unit : str
-        SI unit; "" for a plain number, which is given bare.
-    symbol : str
-        Symbol in formulas.
-    meaning : str
-        What it is, for people: a phrase without a full stop.
-    above, below : float, optional
-        Bounds that the value must not reach [unit].
-    least, most : float, optional
-        Smallest and largest value [unit].
-    remedy : str
-        What to do about a value out of bounds.
+    A pydantic model takes it as text with a unit ("50 mm"), or bare where its unit is "", and holds the
+    value in SI.
     """
 
-    unit: str = ""
-    _: KW_ONLY
-    symbol: str = ""
-    meaning: str = ""
-    above: float | None = None
-    below: float | None = None
-    least: float | None = None
-    most: float | None = None
-    remedy: str = ""
-
-    @property
-    def bounds(self) -> str:
-        """Bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
-        words = {
-            "greater than": self.above,
-            "at least": self.least,
-            "below": self.below,
-            "at most": self.most,
-        }
-        return ", ".join(f"{word} {bound:g}" for word, bound in words.items() if bound is not None)
-
     def parse(self, given: object) -> float:
-        """The value in SI of what was given.
+        """Convert to SI and check the bounds.
 
         Raises
         ------
-        ValueError
-            If it is not such a quantity or out of bounds; the message begins with what was given.
+        InvalidInput
+            If it is not such a quantity or out of bounds; its field is empty.
         """
         return self.within_bounds(given, self.convert(given))
 
     def convert(self, given: object) -> float:
-        """The value in SI, whatever the bounds."""
+        """Convert to SI without checking the bounds."""
         return quantity(given, self.unit) if self.unit else _plain(given)
 
     def within_bounds(self, given: object, value: float) -> float:
-        """The value, if it is within the bounds."""
+        """Refuse a value out of bounds."""
         if (
             (self.above is not None and value <= self.above)
             or (self.below is not None and value >= self.below)
             or (self.least is not None and value < self.least)
             or (self.most is not None and value > self.most)
         ):
-            unit, remedy = self.unit and f" {self.unit}", self.remedy and f"; {self.remedy}"
-            raise ValueError(f"{show(given)}: it must be {self.bounds}{unit}{remedy}")
+            raise InvalidInput("", given, f"it must be {self.bounds} {self.unit}".rstrip(), self.remedy)
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -95,7 +60,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Input:
-    """One input of a model, as documentation and forms need it.
+    """Description of one input of a model, for forms and documentation.
 
     Parameters
     ----------
@@ -137,7 +102,12 @@ class Input:
         return f"{q.meaning}{unit}{bounds}"
 
 
-def describe(model: type[BaseModel], prefix: str = "") -> list[Input]:
+Choice = Callable[[str, Sequence[type[BaseModel]]], Sequence[type[BaseModel]]]
+
+
+def describe(
+    model: type[BaseModel], prefix: str = "", choose: Choice = lambda _, models: models
+) -> list[Input]:
     """All inputs of a model and of the models within it, in their order.
 
     Parameters
@@ -146,24 +116,27 @@ def describe(model: type[BaseModel], prefix: str = "") -> list[Input]:
         Its fields are quantities, plain types with a `description`, or further models.
     prefix : str
         Put before each path.
+    choose : callable
+        Where a table has alternatives (two kinds of beam), its path and the models of all in, those to
+        describe out.
 
     Returns
     -------
     list of Input
-        Where a field has alternatives (two kinds of beam), the inputs of all.
     """
     return [
-        found
+        entry
         for name, field in model.model_fields.items()
-        for found in _describe(model, prefix + name, field)
+        for entry in _describe(model, prefix + name, field, choose)
     ]
 
 
-def _describe(section: type[BaseModel], path: str, field: FieldInfo) -> list[Input]:
-    parts = [*_parts(field.annotation), *field.metadata]
+def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Choice) -> list[Input]:
+    parts = [*parts_of(field.annotation), *field.metadata]
     models = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
     if models:
-        return [found for model in models for found in describe(model, path + ".")]
+        chosen = choose(path, models) if len(models) > 1 else models
+        return [entry for model in chosen for entry in describe(model, path + ".", choose)]
     described = next((p for p in parts if isinstance(p, Quantity)), Quantity(meaning=field.description or ""))
     choices = next((get_args(p) for p in parts if get_origin(p) is Literal), ())
     required = field.is_required()
@@ -171,11 +144,11 @@ def _describe(section: type[BaseModel], path: str, field: FieldInfo) -> list[Inp
     return [Input(path, section, field.annotation, described, choices, required, default)]
 
 
-def _parts(annotation: Any) -> Iterator[Any]:
-    """An annotation and all that it is made of."""
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """An annotation and its parts, recursively."""
     yield annotation
     for part in get_args(annotation):
-        yield from _parts(part)
+        yield from parts_of(part)
 
 
 def _plain(given: object) -> float:
@@ -185,4 +158,4 @@ def _plain(given: object) -> float:
             return real("", given)
     except (ValueError, OverflowError):
         pass
-    raise ValueError(f"{show(given)}: give a finite number, without a unit or quotes")
+    raise InvalidInput("", given, "give a finite number, without a unit or quotes")

@@ -68,17 +68,17 @@ NO_FILES = Outputs()
 
 
 def write(
-    found: Result,
+    result: Result,
     outputs: Outputs,
     rows: Iterable[Sequence[object]] = (),
     draw: Callable[[], Figure] | None = None,
     report: Report | None = None,
 ) -> None:
-    """Write what was asked for; `rows` are those of the CSV file, `draw` makes the picture."""
+    """Write the requested files; `rows` are those of the CSV file, `draw` makes the picture."""
     if outputs.json is not None:
         from beamdyn.common.results import to_json
 
-        outputs.json.write_text(to_json(found.to_dict()), encoding="utf-8")
+        outputs.json.write_text(to_json(result.to_dict()), encoding="utf-8")
     if outputs.csv is not None:
         with outputs.csv.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
@@ -91,7 +91,7 @@ def write(
 
 
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
-    """What makes a figure of its own for something that draws on axes."""
+    """Turn a function that draws on axes into one that makes a figure."""
 
     def made() -> Figure:
         from matplotlib.figure import Figure

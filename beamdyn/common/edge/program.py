@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, and what is said when something is wrong."""
+"""Running a command: exit codes and messages of failure."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 
 
 def _refused(name: str, error: Exception) -> int:
-    """Tell bad input from a linear system that numpy, by a kind of ValueError, gives up."""
+    """Exit code of a ValueError: bad input, or no answer if a linear system is singular."""
     from numpy.linalg import LinAlgError
 
     if isinstance(error, LinAlgError):

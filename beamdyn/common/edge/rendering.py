@@ -40,7 +40,7 @@ def _saved(figure: Figure, kind: str) -> bytes:
 
 
 def drawing(draw: Callable[[], Figure]) -> str:
-    """The SVG of a drawing, or the sentence why there is none: of numbers too large to draw."""
+    """The SVG of a drawing, or a sentence if it cannot be drawn (numbers too large)."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
@@ -50,7 +50,7 @@ def drawing(draw: Callable[[], Figure]) -> str:
 
 
 def picture(text: str, words: str) -> str:
-    """An SVG as an HTML element that runs nothing; a sentence in its place as a paragraph.
+    """An SVG as an HTML image, which runs no scripts; a sentence in its place as a paragraph.
 
     Parameters
     ----------
@@ -61,11 +61,11 @@ def picture(text: str, words: str) -> str:
     """
     if not text.startswith("<?xml"):
         return f"<p>{escape(text)}</p>"
-    return f'<img class="drawing" alt="{escape(words)}" src="{address(text)}">'
+    return f'<img class="drawing" alt="{escape(words)}" src="{data_url(text)}">'
 
 
-def address(text: str) -> str:
-    """An SVG as an address that holds it all."""
+def data_url(text: str) -> str:
+    """An SVG as a data URL."""
     return f"data:image/svg+xml;base64,{base64.b64encode(text.encode()).decode()}"
 
 

@@ -1,8 +1,7 @@
-"""Tables for people: numbers with the digits they deserve, on the console."""
+"""Tables on the console, and a progress bar."""
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,12 +11,13 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-_DIGITS = 10  # most that a table shows
+from beamdyn.common.comparison import Comparison
+
 _PIPE_WIDTH = 120  # of tables that go to a file or another program
 
 
 def console() -> Console:
-    """Where reports are printed: standard output, without markup."""
+    """The console on standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     return Console(width=width, markup=False, highlight=False, emoji=False)
 
@@ -39,40 +39,6 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
     with Progress(*columns, console=screen, transient=True, disable=not screen.is_terminal) as bar:
         task = bar.add_task(what)
         yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
-def supported(value: float, error: float, most: int = _DIGITS) -> str:
-    """A number with the digits that its error leaves: half a unit of the last one is not below the error.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    error : float
-        Its absolute error.
-    most : int
-        Most significant digits.
-
-    Returns
-    -------
-    str
-        "0 ± error" where no digit is sure, "unresolved" where the error is not known.
-    """
-    if not math.isfinite(value):
-        return "none" if math.isnan(value) else str(value)
-    if not math.isfinite(error):
-        return "unresolved"
-    if value == 0 and error == 0:
-        return "0"
-    if 2 * error >= abs(value):
-        return f"0 ± {abs(value) + error:.1g}"
-    lead = math.floor(math.log10(abs(value)))
-    decimals = most - 1 - lead
-    if error > 0:
-        decimals = min(decimals, math.floor(-math.log10(2 * error)))
-    if decimals + lead < 0:
-        return f"0 ± {abs(value) + error:.1g}"
-    return f"{value:.{decimals}f}" if lead > -4 and decimals >= 0 else f"{value:.{decimals + lead}e}"
 
 
 def table(
@@ -105,3 +71,22 @@ def table(
         else:
             made.add_section()
     return Group(Text(title, style="bold"), made)
+
+
+def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
+    """The table of comparisons, with a line where the first two words of `what` change."""
+    cells: list[list[str]] = []
+    for row in rows:
+        if cells and _topic(cells[-1][0]) != _topic(row.what):
+            cells.append([])
+        cells.append(row.cells())
+    return table(
+        title,
+        ("what", "published by", "published", "ours", "deviation", "verdict"),
+        cells,
+        (0, 1, 5),
+    )
+
+
+def _topic(what: str) -> list[str]:
+    return what.replace(",", "").split()[:2]

@@ -9,6 +9,8 @@ from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING
 
+from beamdyn.common.checks import InvalidValue
+
 if TYPE_CHECKING:  # pint costs 0.3 s: it is loaded with the first quantity
     from pint import Unit, UnitRegistry
 
@@ -46,6 +48,15 @@ _KINDS = {
 _USUAL = {"m": "mm", "kg": "g", "rad": "deg", "rad/s": "rpm", "Pa": "GPa", "kg m2": "g mm2"}
 
 
+class InvalidInput(InvalidValue):
+    """A value of a file, form or command that is refused: its message shows it as TOML writes it."""
+
+    @property
+    def shown(self) -> str:
+        """The value in the message."""
+        return super().shown if isinstance(self.value, float) else show(self.value)
+
+
 def quantity(text: object, unit: str) -> float:
     """The value of a number with a unit.
 
@@ -64,19 +75,19 @@ def quantity(text: object, unit: str) -> float:
 
     Raises
     ------
-    ValueError
-        If it is not a finite number with a unit of the same kind as `unit`; the message begins with
-        the value and ends with the remedy.
+    InvalidInput
+        If it is not a finite number with a unit of the same kind as `unit`; its field is empty.
     """
     number, given = _split(text, unit)
     kind, wanted = _parse(given), _parse(unit)
     if kind is None or wanted is None:
-        raise ValueError(f"{show(text)}: unknown unit {given}; give {_kind(unit)}, e.g. in {_usual(unit)}")
+        advice = f"give {_kind(unit)}, e.g. in {_usual(unit)}"
+        raise InvalidInput("", text, f"unknown unit {given}", advice)
     if _root(kind) != _root(wanted):
-        raise ValueError(f"{show(text)}: {_mismatch(number, kind, unit)}")
+        raise InvalidInput("", text, _mismatch(number, kind, unit))
     value = _convert(number, kind, wanted)
     if not math.isfinite(value):
-        raise ValueError(f"{show(text)}: out of range; give a finite number in {unit}")
+        raise InvalidInput("", text, "out of range", f"give a finite number in {unit}")
     return value
 
 
@@ -116,11 +127,11 @@ def _split(given: object, unit: str) -> tuple[str, str]:
     text = str(given) if bare or isinstance(given, str) else ""
     match = _TEXT.fullmatch(text.translate(_PLAIN))
     if match is None:
-        raise ValueError(f'{show(given)}: not a number with a unit; give e.g. "1 {_usual(unit)}"')
+        raise InvalidInput("", given, "not a number with a unit", f'give e.g. "1 {_usual(unit)}"')
     number, name = match.groups()
     if unit and not name:
         choices = dict.fromkeys((f'"{number} {unit}"', f'"{number} {_usual(unit)}"'))
-        raise ValueError(f"{show(given)}: give a unit, e.g. {' or '.join(choices)}")
+        raise InvalidInput("", given, f"give a unit, e.g. {' or '.join(choices)}")
     return number, name
 
 
@@ -152,8 +163,8 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
     if unit == "rad/s" and names.get(_root(kind)) == "frequency":
         turns = f'"{60 * float(number):g} rpm"' if f"{kind:~}" == "Hz" else "rpm"
         return f"ambiguous for an angular speed; give {turns} if turns are meant, rad/s if radians"
-    found = names.get(_root(kind), f"{kind:~C}")
-    return f"a unit of {found} where {_kind(unit)} is wanted; give e.g. {_usual(unit)}"
+    kind_of = names.get(_root(kind), f"{kind:~C}")
+    return f"a unit of {kind_of} where {_kind(unit)} is wanted; give e.g. {_usual(unit)}"
 
 
 def _kind(unit: str) -> str:

@@ -1,1 +1,1 @@
-"""Worker processes, and a store of finished parts of long work."""
+"""Worker processes, and a store of finished parts of a long computation."""

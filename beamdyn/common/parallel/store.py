@@ -1,4 +1,4 @@
-"""A directory that keeps finished parts of long work, one file each, named by what was asked."""
+"""A directory of finished parts of a long computation, one file each, named by a hash of the request."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _REMEDY = "name a directory that does not exist yet, or an earlier store"
 
 
 class Store:
-    """A directory of records, each written at once and for ever.
+    """A directory of records; each is written in one step and never changed.
 
     Opening it makes the directory, or checks that it is an earlier store and can be written.
 
@@ -94,7 +94,7 @@ class Store:
 
 
 def fingerprint(*values: object) -> str:
-    """A name for values: the same in every process, another if a single bit differs.
+    """A hash of values: the same in every process, different if a single bit differs.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def fingerprint(*values: object) -> str:
 
 
 def _pieces(value: Any) -> Iterator[bytes]:
-    """A value as a sequence of bytes that tells it from every other."""
+    """A value as a sequence of bytes, different for different values."""
     value = value.item() if isinstance(value, np.generic) else value
     yield f"{type(value).__module__}.{type(value).__qualname__}".encode()
     if isinstance(value, float):
@@ -141,7 +141,7 @@ def _pieces(value: Any) -> Iterator[bytes]:
 
 
 def _parts(value: Any) -> list[Any]:
-    """What a container holds; anything else as its pickle."""
+    """The items of a container; anything else as its pickle."""
     if isinstance(value, list | tuple):
         return list(value)
     if isinstance(value, dict):
@@ -155,7 +155,7 @@ def _parts(value: Any) -> list[Any]:
 
 
 def _code(code: CodeType) -> Iterator[bytes]:
-    """What a function does, wherever it stands."""
+    """The code of a function, independent of its place in the file."""
     yield code.co_code
     yield repr(code.co_names).encode()
     for constant in code.co_consts:

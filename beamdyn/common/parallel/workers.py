@@ -28,7 +28,7 @@ class WorkerDied(BrokenExecutor):
 
 
 class Workers(ThreadPoolExecutor):
-    """An executor with processes: each of its threads drives one and replaces it if it dies.
+    """An executor of worker processes: each of its threads drives one, and replaces it if it dies.
 
     Only the task that was in flight in the dead process is run again.  The processes are new
     interpreters: safe if the caller has threads, and, unlike those of `multiprocessing`, they do not
@@ -54,7 +54,7 @@ class Workers(ThreadPoolExecutor):
         return super().submit(self._run, pickle.dumps((fn, args, kwargs)))
 
     def stop(self) -> None:
-        """End all processes now, whatever they do, and drop all tasks."""
+        """Kill all processes and drop all tasks."""
         with self._lock:
             self._stopped = True
             for process in self._processes:

@@ -16,7 +16,16 @@ from beamdyn.scene.motion.rotations import (
     SteadyRotation,
 )
 
+KINDS: dict[str, type[Motion]] = {
+    "steady": SteadyRotation,
+    "spin_up": SpinUp,
+    "sampled": SampledRotation,
+    "rolling": RollingWheel,
+}
+"""Motions that files and forms offer, by their kind; a table that names no kind is of the first."""
+
 __all__ = [
+    "KINDS",
     "Line",
     "Motion",
     "MotionSample",

@@ -7,7 +7,7 @@ import pickle
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self, get_args
+from typing import Self
 
 import numpy as np
 
@@ -156,12 +156,6 @@ def within(t: np.ndarray, end: float) -> np.ndarray:
 def as_breakpoints(given: Sequence[float]) -> tuple[float, ...]:
     """Breakpoints [s] in ascending order, each once."""
     return tuple(np.unique(real_array("breakpoints", given)).tolist())
-
-
-def check_choice(name: str, given: object, choices: object) -> None:
-    """Refuse what is not among the values of a Literal."""
-    if given not in get_args(choices):
-        raise ValueError(f"{name} = {given!r}: give {' or '.join(map(repr, get_args(choices)))}")
 
 
 def keep(instance: object, **values: object) -> None:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from beamdyn.common.checks import kind, positive, real
+from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, keep, within
 from beamdyn.scene.motion.checks import check_consistent
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
@@ -34,9 +36,13 @@ class RoadWave:
         If the wavelength is not positive, or not exactly one of the amplitudes is given.
     """
 
-    wavelength: float
-    velocity_amplitude: float | None = None
-    height: float | None = None
+    wavelength: Annotated[float, Described("m", "lambda", "wavelength of the road", above=0)]
+    velocity_amplitude: Annotated[
+        float | None, Described("m/s", "C", "amplitude of the wheel's vertical velocity; or height")
+    ] = None
+    height: Annotated[
+        float | None, Described("m", "A", "amplitude of the road's height; or velocity_amplitude")
+    ] = None
 
     def __post_init__(self) -> None:
         keep(self, wavelength=positive("wavelength", self.wavelength, "m"))
@@ -99,8 +105,8 @@ class RollingWheel(Motion):
         If the radius is not positive, or the speed is neither a number nor a rotation.
     """
 
-    rolling_radius: float
-    speed: float | Rotation
+    rolling_radius: Annotated[float, Described("m", "R", "distance travelled per angle turned", above=0)]
+    speed: Annotated[float | Rotation, Described(key="rotation")]
     road: RoadWave | None = None
 
     def __post_init__(self) -> None:

@@ -7,17 +7,17 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import positive, real, real_array
+from beamdyn.common.checks import InvalidValue, one_of, positive, real, real_array, refuse
+from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import (
     Motion,
     MotionSample,
     Turning,
     as_breakpoints,
-    check_choice,
     keep,
     within,
 )
@@ -50,7 +50,7 @@ class SteadyRotation(Rotation):
         Speed [rad/s].
     """
 
-    speed: float
+    speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
 
     def __post_init__(self) -> None:
         keep(self, speed=real("speed", self.speed, "rad/s"))
@@ -96,12 +96,12 @@ class SpinUp(Rotation):
         If the duration is not positive or there is no such law.
     """
 
-    speed: float
-    duration: float
-    law: Law = "smooth"
+    speed: Annotated[float, Described("rad/s", "omega_s", "angular speed of the carrier")]
+    duration: Annotated[float, Described("s", "T", "time that the spin-up takes", above=0)]
+    law: Annotated[Law, Described(meaning="law of the spin-up")] = "smooth"
 
     def __post_init__(self) -> None:
-        check_choice("law", self.law, Law)
+        one_of("law", self.law, get_args(Law))
         remedy = "for a constant speed from the start give SteadyRotation(speed)"
         duration = positive("duration", self.duration, "s", remedy)
         keep(self, speed=real("speed", self.speed, "rad/s"), duration=duration)
@@ -186,12 +186,14 @@ class SampledRotation(Rotation):
         If the times do not ascend from 0, or there are not as many speeds as times.
     """
 
-    times: Sequence[float]
-    speeds: Sequence[float]
-    interpolation: Interpolation = "cubic"
+    times: Sequence[Annotated[float, Described("s", "t", "times of the table, from 0")]]
+    speeds: Sequence[Annotated[float, Described("rad/s", "omega", "speeds at these times")]]
+    interpolation: Annotated[
+        Interpolation, Described(meaning="cubic spline, or cubics that do not overshoot")
+    ] = "cubic"
 
     def __post_init__(self) -> None:
-        check_choice("interpolation", self.interpolation, Interpolation)
+        one_of("interpolation", self.interpolation, get_args(Interpolation))
         times, speeds = _table(self.times, self.speeds)
         keep(self, times=tuple(times.tolist()), speeds=tuple(speeds.tolist()))
 
@@ -244,12 +246,16 @@ def _table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray,
     t, v = real_array("times", times), real_array("speeds", speeds)
     if len(t) != len(v) or len(t) < 2:
         raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
-    late = np.diff(t) <= 0
-    if late.any():
-        k = int(late.argmax())
-        raise ValueError(f"times: {t[k]:g} is followed by {t[k + 1]:g} s; sort the table, drop repeats")
-    if t[0] != 0:
-        raise ValueError(f"times begin at {t[0]:g} s; a motion begins at t = 0: subtract {t[0]:g} s from all")
+    refuse(
+        np.diff(t) <= 0,
+        "times",
+        t[1:],
+        "s",
+        "it follows {limit}",
+        "sort the table, drop repeats",
+        limit=t[:-1],
+    )
+    refuse(t[0] != 0, "times", t[0], "s", "a motion begins at t = 0", f"subtract {t[0]:g} s from all")
     return t, v
 
 
@@ -294,7 +300,7 @@ class RotationFunction(Rotation):
     def __post_init__(self) -> None:
         for name in ("angle", "speed", "acceleration"):
             if not callable(getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)!r}: give a function of the time")
+                raise InvalidValue(name, getattr(self, name), "give a function of the time")
         t_end, scale = positive("t_end", self.t_end, "s"), real("scale", self.scale)
         keep(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
         check_consistent(self, t_end)

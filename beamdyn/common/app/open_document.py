@@ -1,28 +1,27 @@
-"""One person's designs and what is shown of them: entries, last good answers, mistakes, what is stale."""
+"""A document that one client has open: its entries, the latest answers, mistakes, and which are stale."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any
 
-from beamdyn.common.app.documents import Document, Screen
-from beamdyn.common.app.entries import Entries, by_field, tables_of, toml_of
-from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.app.form_entries import Entries, by_field, tables_of, toml_of
+from beamdyn.common.app.screens import Document, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 
 
 @dataclass(frozen=True)
 class Answered:
-    """A good answer, and the entries that it follows from."""
+    """An answer, and the entries that it belongs to."""
 
     answer: Any
     entries: Entries
 
 
 @dataclass
-class Work:
-    """A document that is worked on: a state, which each client has for itself.
+class OpenDocument:
+    """A document that a client has open; each client has its own.
 
     Parameters
     ----------
@@ -44,18 +43,18 @@ class Work:
         return self.document.inputs(self.entries)
 
     def open(self, text: str, source: str) -> None:
-        """Put the text of a file in place of the design; raises `ConfigError`, and then nothing changes."""
+        """Replace the design by the text of a file; on `ConfigError` nothing changes."""
         opened = self.document.opened(text, source)
-        asked = {path: self.entries[path] for path in self.document.aside}
-        self.entries, self.mistakes = opened | asked, {}
+        options = {path: self.entries[path] for path in self.document.aside}
+        self.entries, self.mistakes = opened | options, {}
 
     def text(self) -> str:
-        """The design as a TOML file, mistakes and all."""
+        """The design as TOML, including entries with mistakes."""
         tables = tables_of(self.entries, self.inputs)
         return toml_of({name: value for name, value in tables.items() if name not in self.document.beside})
 
     def put(self, path: str, text: str) -> None:
-        """Change one entry; where that changes which inputs there are, those that are gone are forgotten."""
+        """Change one entry; entries of inputs that no longer exist are dropped."""
         changed = self.entries | {path: text}
         self.entries = {entry.path: changed.get(entry.path, "") for entry in self.document.inputs(changed)}
 
@@ -68,24 +67,22 @@ class Work:
         }
 
     def stale(self, screen: Screen) -> bool:
-        """Whether the answer shown is no longer that of the entries."""
+        """Whether there is no answer to the present entries."""
         last = self.answered.get(screen.name)
         return last is None or last.entries != self.needed(screen)
 
     def outdated(self, screen: Screen) -> bool:
-        """Whether there is an answer, but to other entries."""
+        """Whether there is an answer, but to earlier entries."""
         return screen.name in self.answered and self.stale(screen)
 
     def solve(self, screen: Screen) -> bool:
-        """Answer anew; if that fails the last good answer stays, and `mistakes` says why."""
+        """Solve the present entries; on failure the last answer is kept, and `mistakes` says why."""
         entries, inputs = self.needed(screen), self.inputs
         self.mistakes[screen.name] = {}
         try:
             answer = screen.solve(tables_of(entries, inputs, screen.needs))
-        except ConfigError as error:
-            self.mistakes[screen.name] = by_field(error.mistakes, inputs)
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            self.mistakes[screen.name] = by_field([str(error)], inputs)
+            self.mistakes[screen.name] = by_field(error, inputs)
         else:
             self.answered[screen.name] = Answered(answer, entries)
             return True

@@ -1,4 +1,4 @@
-"""What an interactive program consists of: documents, each a TOML file with screens on it. No page here."""
+"""Descriptions of an interactive program: its documents (kinds of TOML file) and their screens."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.app.entries import Entries, entries_of
+from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
 
-    from beamdyn.common.edge.input_sweep import Sweep
+    from beamdyn.common.edge.input_sweep import InputSweep
 
 
 @dataclass(frozen=True)
 class Sweeps:
-    """Any input of a screen against any of its results.
+    """The sweeps that a screen offers: any input against any result.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ class Sweeps:
     names: Callable[[Mapping[str, Any]], Sequence[str]]
     example: str
     results: str
-    run: Callable[[Mapping[str, Any], str, str], Sweep]
+    run: Callable[[Mapping[str, Any], str, str], InputSweep]
 
 
 @dataclass(frozen=True)
 class Slider:
-    """A number that the drawing alone follows.
+    """A slider above the drawing, which changes the drawing only.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Slider:
 
 @dataclass(frozen=True)
 class Drag:
-    """A slider below a field, which writes into it.
+    """A slider below a field of the form, which writes into the field.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Drag:
 
 @dataclass(frozen=True)
 class Handle:
-    """A point of a drawing that is moved in it, which writes into fields.
+    """A draggable point of a drawing, which writes into fields of the form.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Handle:
     step : float
         How far an arrow key moves it [m].
     grain : float
-        To what a length is rounded [m].
+        Step to which a length is rounded [m].
     """
 
     label: str
@@ -111,7 +111,7 @@ class Handle:
 
 @dataclass(frozen=True)
 class Screen:
-    """A form, what follows from it, and its tables and drawing: pure functions.
+    """A screen: a form, and pure functions that solve its tables and show the answer.
 
     Parameters
     ----------
@@ -122,10 +122,10 @@ class Screen:
     sections : tuple of str
         Tables whose inputs stand on its form; "" for inputs outside any table.
     needs : tuple of str
-        Tables, or inputs outside any, that its result follows from.
+        Tables, or inputs outside any, that the answer depends on.
     solve : callable
         Tables in, answer out.
-    report : callable
+    tables : callable
         The answer as tables and sentences.
     draw : callable
         Answer and place of the slider in, figure out.
@@ -150,7 +150,7 @@ class Screen:
     sections: tuple[str, ...]
     needs: tuple[str, ...]
     solve: Callable[[Mapping[str, Any]], Any]
-    report: Callable[[Any], Sequence[RenderableType]]
+    tables: Callable[[Any], Sequence[RenderableType]]
     draw: Callable[[Any, float], Figure]
     notes: Callable[[Any], Sequence[str]]
     rows: Callable[[Any], Iterable[Sequence[object]]]
@@ -183,7 +183,7 @@ class Document:
     screens : tuple of Screen
         In the order in which results are handed on.
     aside : mapping
-        Entries on opening that are not in the file, such as options of a command.
+        Initial entries that are not part of the file, such as options of a command.
     """
 
     name: str

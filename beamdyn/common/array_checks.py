@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue, in_unit, refuse
+
 Numbers = Any  # a float, or an array of floats: one value a case
 
 
@@ -16,7 +18,8 @@ def numbers(name: str, value: Any, unit: str = "") -> Numbers:
             raise TypeError
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} = {value!r}: give a finite number, or an array{_in(unit)}") from None
+        bound = "give a finite number, or an array" + in_unit(unit)
+        raise InvalidValue(name, value, bound, unit=unit) from None
     refuse(~np.isfinite(array), name, array, unit, "it must be a finite number")
     return array if array.ndim else float(array)
 
@@ -36,47 +39,19 @@ def not_negative(name: str, value: Any, unit: str = "", remedy: str = "") -> Num
 
 
 def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
-    """Two finite floats or arrays."""
+    """Two finite floats or arrays; a message names them by index, such as "tip[0]"."""
     try:
         first, second = value
     except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: give two numbers{_in(unit)}") from None
+        raise InvalidValue(name, value, "give two numbers" + in_unit(unit), unit=unit) from None
     return numbers(f"{name}[0]", first, unit), numbers(f"{name}[1]", second, unit)
 
 
-def one_of(name: str, value: object, known: tuple[str, ...]) -> None:
-    """A ValueError unless the value is one of the known words."""
-    if value not in known:
-        raise ValueError(f"{name} = {value!r}: give one of {', '.join(map(repr, known))}")
-
-
 def together(**values: Any) -> None:
-    """A ValueError unless the shapes broadcast."""
+    """Raise a ValueError unless the shapes broadcast."""
     shapes = {name: np.shape(value) for name, value in values.items()}
     try:
         np.broadcast_shapes(*shapes.values())
     except ValueError:
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
         raise ValueError(f"shapes do not broadcast: {listed}; give numbers, or arrays of one shape") from None
-
-
-def refuse(bad: Any, name: str, value: Any, unit: str, bound: str, remedy: str = "") -> None:
-    """A ValueError that names the first bad value and how many there are."""
-    bad = np.asarray(bad)
-    if not bad.any():
-        return
-    first = np.broadcast_to(value, bad.shape)[bad][0]
-    more = f" (and {int(bad.sum()) - 1} more of {bad.size} cases)" if bad.sum() > 1 else ""
-    space = f" {unit}" if unit else ""
-    end = f"; {remedy}" if remedy else ""
-    raise ValueError(f"{name} = {first:.6g}{space}{more}: {bound}{end}")
-
-
-def first_where(bad: Any, values: Any) -> float:
-    """The value of the first bad case, for a message; nan if there is none."""
-    bad = np.asarray(bad)
-    return float(np.broadcast_to(values, bad.shape)[bad][0]) if bad.any() else np.nan
-
-
-def _in(unit: str) -> str:
-    return f" in {unit}" if unit else ""

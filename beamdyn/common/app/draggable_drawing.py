@@ -1,4 +1,4 @@
-"""A drawing on the page, with handles over it that the pointer, a finger or the arrow keys move."""
+"""A drawing on the page with handles, which are moved by pointer, finger or arrow keys."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.documents import Handle
 from beamdyn.common.app.handles import Place, Sheet, View
-from beamdyn.common.edge.rendering import address
+from beamdyn.common.app.screens import Handle
+from beamdyn.common.edge.rendering import data_url
 
 STYLE = """
 .board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
@@ -24,8 +24,8 @@ STYLE = """
 .handle:hover { background: rgb(86 180 233 / 0.6); }
 .handle:active { cursor: grabbing; background: rgb(86 180 233 / 0.9); }
 """
-_OFTEN = 0.1  # least time between two places of a moving handle that are sent [s]
-_PAUSE = 0.01  # time in which what was drawn is sent, and later places come in [s]
+_OFTEN = 0.1  # least time between two messages of a moving handle [s]
+_PAUSE = 0.01  # pause after a drawing, for it to be sent and later places to arrive [s]
 _FAR = 10  # arrow keys' steps with shift
 
 # Sends where in the picture, in parts of its width and height, the handle would be under the pointer that
@@ -57,7 +57,7 @@ _KEY = """(event) => {
 }"""
 
 
-class Board:
+class DraggableDrawing:
     """A drawing with its handles.
 
     Parameters
@@ -65,12 +65,12 @@ class Board:
     words : str
         What the drawing shows, for those who do not see it.
     moved : callable
-        Called when a handle is to be elsewhere: handle, its new place (x, y) [m], whether it is let go.
+        Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
 
     Attributes
     ----------
     held : View, optional
-        How the drawing is to stay while a handle is held.
+        View that the drawing keeps while a handle is held.
     """
 
     def __init__(self, words: str, moved: Callable[[Handle, Place, bool], object]) -> None:
@@ -92,7 +92,7 @@ class Board:
         self._how.set_visibility(False)
 
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
-        """Show a drawing, and say by a function where each of its handles is."""
+        """Show a drawing; `words` describes the position of each handle for screen readers."""
         self._show(sheet)
         self._how.set_visibility(bool(sheet.handles))
         for element in self._handles:
@@ -109,10 +109,10 @@ class Board:
         self._board.set_visibility(drawn)
         if drawn:
             self._board.style(f"--ratio: {sheet.ratio:.6g}")
-            self._picture.props["src"] = address(sheet.text)
+            self._picture.props["src"] = data_url(sheet.text)
 
     def _make(self, labels: list[str]) -> None:
-        """Handles for these points; where they are there already, they stay."""
+        """Make handles for these points; existing ones are kept."""
         if labels == [handle.label for handle in self._sheet.handles]:
             return
         for element in self._handles:
@@ -141,7 +141,7 @@ class Board:
         self._moved(handle, (handle.at[0] + step * across, handle.at[1] + step * up), True)
 
     async def _pulled(self, i: int, event: Any) -> None:
-        """Follow to the place that is wanted last: those that come in meanwhile are left out."""
+        """Move to the latest place received; places that arrive while one is drawn are skipped."""
         x, y, done = event.args
         self._wanted = (i, (x, y), done)
         if self._follows:

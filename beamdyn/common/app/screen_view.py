@@ -1,4 +1,4 @@
-"""One screen on the page: its form on the left, what follows from it on the right."""
+"""One screen on the page: the form on the left, the results on the right."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.board import Board
-from beamdyn.common.app.documents import Handle, Screen
-from beamdyn.common.app.entries import Entries
+from beamdyn.common.app.draggable_drawing import DraggableDrawing
+from beamdyn.common.app.folded_drawing import FoldedDrawing
 from beamdyn.common.app.form import Form
-from beamdyn.common.app.further import Further
-from beamdyn.common.app.handles import Place, sheet, told, written
-from beamdyn.common.app.session import Work
+from beamdyn.common.app.form_entries import Entries
+from beamdyn.common.app.handles import Place, changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.app.sweep_panel import SweepPanel
 from beamdyn.common.edge.rendering import csv_text, html, png
 
 
-class Panel:
-    """A screen of a document that is worked on.
+class ScreenView:
+    """The view of one screen of an open document.
 
     Parameters
     ----------
-    work : Work
+    work : OpenDocument
         The document.
     screen : Screen
         Which of its screens.
@@ -32,7 +32,7 @@ class Panel:
         Called after a field of this screen has changed.
     """
 
-    def __init__(self, work: Work, screen: Screen, edited: Callable[[], object]) -> None:
+    def __init__(self, work: OpenDocument, screen: Screen, edited: Callable[[], object]) -> None:
         self.work, self.screen, self._edited = work, screen, edited
         self._drawn = ""
         with ui.element("div").classes("screen"):
@@ -48,9 +48,9 @@ class Panel:
         self._good: Any = ui.column().classes("w-full gap-2 shown")
         with self._good:
             self._slider()
-            self.board = Board(f"{self.screen.name}: drawing of the result", self._moved)
+            self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
             self._tables: Any = ui.html("", sanitize=False).classes("w-full")
-            self._more = [Further(title, draw) for title, draw in self.screen.more]
+            self._more = [FoldedDrawing(title, draw) for title, draw in self.screen.more]
         self._exports()
         sweeps = self.screen.sweeps
         self._sweep = None if sweeps is None else SweepPanel(self.work, self.screen, sweeps)
@@ -75,7 +75,7 @@ class Panel:
                 )
 
     def rebuild(self) -> None:
-        """The form anew, as after another file has been opened."""
+        """Make the form again, for instance after another file has been opened."""
         self._left.clear()
         with self._left:
             self.form = Form(
@@ -95,12 +95,12 @@ class Panel:
         self._edited()
 
     def enter(self) -> None:
-        """Answer anew if what is shown is stale: done when the screen comes to the front."""
+        """Solve if the answer shown is stale; called when the screen comes to the front."""
         if self.work.stale(self.screen) or self.work.mistakes.get(self.screen.name) or not self._drawn:
             self.solve()
 
     def solve(self) -> None:
-        """Answer and show it, or say why there is no answer and leave the last good one, greyed."""
+        """Solve and show the answer; on failure say why and leave the last answer, greyed."""
         self.work.solve(self.screen)
         mistakes = self.work.mistakes[self.screen.name]
         self.form.mark(mistakes)
@@ -110,7 +110,7 @@ class Panel:
         self._say(mistakes)
 
     def state(self) -> None:
-        """Grey what is shown while it is not the answer to the entries."""
+        """Grey the answer shown while it is stale."""
         stale = self.work.stale(self.screen)
         self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
         failed = self.work.mistakes.get(self.screen.name)
@@ -123,7 +123,7 @@ class Panel:
             self._sweep.state()
 
     def _say(self, mistakes: dict[str, list[str]]) -> None:
-        """Sentences about no field of this form, and the warnings of a good answer."""
+        """Show the mistakes outside this form, and the warnings of the answer."""
         self._said.clear()
         answered = self.work.answered.get(self.screen.name)
         elsewhere = [s for path, said in mistakes.items() if path not in self.form.fields for s in said]
@@ -136,7 +136,7 @@ class Panel:
 
     def _show(self) -> None:
         answer = self.work.answered[self.screen.name].answer
-        self._tables.set_content(html(self.screen.report(answer)))
+        self._tables.set_content(html(self.screen.tables(answer)))
         self._draw()
         if self.board.held is None:  # while a point is moved, its drawing alone follows
             for more in self._more:
@@ -146,20 +146,20 @@ class Panel:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        made = sheet(self.screen, answered.answer, self.progress, self.board.held)
+        made = draw_sheet(self.screen, answered.answer, self.progress, self.board.held)
         self._drawn = made.text
-        self.board.show(made, partial(told, entries=self.work.entries, inputs=self.work.inputs))
+        self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
-        """A point of the drawing is to be elsewhere: write that into the fields, and answer."""
-        texts = written(handle, target, self.work.entries, self.work.inputs)
+        """Write the new place of a handle into the fields, and solve."""
+        texts = changed_texts(handle, target, self.work.entries, self.work.inputs)
         if texts:
             self._write(texts)
         if done and (not texts or self.work.mistakes.get(self.screen.name)):
             self._show()  # all of what it shows again, where there is no new answer
 
     def _write(self, texts: Entries) -> None:
-        """Write into fields and answer once; a field that says already what stands there is left alone."""
+        """Write into several fields and solve once."""
         for path, text in texts.items():
             self.work.put(path, text)
         for path, text in texts.items():

@@ -1,18 +1,15 @@
-"""Published values beside ours, with deviations and verdicts."""
+"""Comparison of published values with computed ones: deviation and verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
-from rich.console import Group
-
-from beamdyn.common.edge.tables import supported, table
+from beamdyn.common.digits import supported
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published value beside ours.
+    """A published value and the computed one.
 
     Parameters
     ----------
@@ -89,22 +86,3 @@ class Comparison:
             return "inside"
         text = supported(self.deviation, self.error, 2)
         return text if self.deviation <= 0 or "±" in text else f"+{text}"
-
-
-def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """The table of comparisons, with a line where the first two words of `what` change."""
-    cells: list[list[str]] = []
-    for row in rows:
-        if cells and _topic(cells[-1][0]) != _topic(row.what):
-            cells.append([])
-        cells.append(row.cells())
-    return table(
-        title,
-        ("what", "published by", "published", "ours", "deviation", "verdict"),
-        cells,
-        (0, 1, 5),
-    )
-
-
-def _topic(what: str) -> list[str]:
-    return what.replace(",", "").split()[:2]

@@ -1,4 +1,4 @@
-"""Entries of a form and tables of a TOML file: the same inputs, one as text by path, one nested."""
+"""Conversion between the entries of a form (text by path) and the nested tables of a TOML file."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, get_args, get_origin
 
+from beamdyn.common.edge.config import ConfigError, path_of
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import quantity
 
-Entries = dict[str, str]  # what stands in each field, by the path of its input; "" where nothing does
+Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
 
 _UNITS = {
     "m": ("m", "cm", "mm", "in"),
@@ -28,7 +29,7 @@ _UNITS = {
 
 
 def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
-    """What the fields say for these tables; values that no field is for are entries, too."""
+    """The entries for these tables; values without a field are kept as entries, too."""
     leaves = {entry.path for entry in inputs}
     return {entry.path: "" for entry in inputs} | dict(_flat(tables, leaves, ""))
 
@@ -56,7 +57,7 @@ def _is_tables(value: Any) -> bool:
 def tables_of(
     entries: Mapping[str, str], inputs: Sequence[Input], names: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """The tables that entries stand for, as the parser of files gives them; fields left empty are left out.
+    """The tables for these entries, as tomllib would read them; empty fields are left out.
 
     Parameters
     ----------
@@ -80,7 +81,7 @@ def tables_of(
 
 
 def _value(text: str, entry: Input | None) -> Any:
-    """What TOML has for a text: a number, list or table where one is meant, else the text as a string."""
+    """The text as a TOML value: a number, list or table if the input is one, else a string."""
     if entry is not None and (entry.choices or _is_text(entry.kind)):
         return text
     if entry is not None and entry.quantity.unit and text[0] not in "[{":
@@ -132,31 +133,30 @@ def toml_value(value: Any) -> str:
     return repr(value)
 
 
-def by_field(mistakes: Sequence[str], inputs: Sequence[Input]) -> dict[str, list[str]]:
-    """Sentences by the path of the field that each is about; "" for those about no single field."""
-    paths = sorted((entry.path for entry in inputs), key=len, reverse=True)
-    found: dict[str, list[str]] = {}
-    for sentence in mistakes:
-        found.setdefault(_field(sentence, paths), []).append(sentence)
-    return found
+def by_field(error: Exception, inputs: Sequence[Input]) -> dict[str, list[str]]:
+    """The sentences of an error by the path of the field that each is about; "" for no single field."""
+    paths = [entry.path for entry in inputs]
+    if not isinstance(error, ConfigError):
+        return {path_of(error, paths): [str(error)]}
+    sentences: dict[str, list[str]] = {}
+    for sentence, place in zip(error.mistakes, error.paths, strict=True):
+        sentences.setdefault(_field(place, paths), []).append(sentence)
+    return sentences
 
 
-def _field(sentence: str, paths: Sequence[str]) -> str:
-    """The field of a mistake: by its path, by table and name ("shoe: alpha = ..."), by a name alone."""
-    said = re.sub(r"^([\w.]+): (\w+) = ", r"\1.\2 = ", sentence.removeprefix("model: "))
-    found = next((path for path in paths if re.match(rf"{re.escape(path)}(\[|\.| =|:)", said)), "")
-    name = re.match(r"(\w+) = ", said)
-    named = [path for path in paths if name and path.rpartition(".")[2] == name[1]]
-    return found or (named[0] if len(named) == 1 else "")
+def _field(place: str, paths: Sequence[str]) -> str:
+    """The field in which a place lies, which may be a key within an input."""
+    around = [path for path in paths if f"{place}.".startswith(f"{path}.")]
+    return max(around, key=len, default="")
 
 
 def units_for(unit: str) -> tuple[str, ...]:
-    """Units that people use for a quantity of a unit in SI."""
+    """Units in common use for an SI unit."""
     return _UNITS.get(unit, (unit,) if unit else ())
 
 
 def in_unit(text: str, unit: str, target: str) -> str:
-    """The same quantity, or list of them, in another unit; the text itself where it is none of this kind."""
+    """The quantity, or list of quantities, in another unit; the text unchanged if it is no such quantity."""
     try:
         if text.startswith("["):
             return toml_value([in_unit(part, unit, target) for part in tomllib.loads(f"v = {text}")["v"]])

@@ -1,4 +1,4 @@
-"""Further drawings on the page: folded, and drawn only while they are open."""
+"""Additional drawings on the page: folded, and drawn only while they are open."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Further:
+class FoldedDrawing:
     """A folded drawing of an answer.
 
     Parameters

@@ -1,0 +1,240 @@
+"""Commands on natural frequencies: at one speed, over speed, and where the beam buckles."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from beamdyn.cli.program import app, deliver, warn
+from beamdyn.cli.values import Discretization, SceneFile, Text, parse_positive, parse_speeds, speed_or_final
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
+from beamdyn.common.edge.program import NoAnswer
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from beamdyn.spectrum.modes import Locus, Modes
+
+
+@app.command
+def modes(
+    scene: SceneFile,
+    /,
+    *,
+    speed: Text | None = None,
+    modes: int = 3,
+    discretization: Discretization = "ritz",
+    tolerance: float | None = None,
+    shapes: Path | None = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Natural frequencies at one speed, with their errors and stability.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    speed
+        Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion,
+        or 0 without one.
+    modes
+        Number of modes, from the lowest.
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    tolerance
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+    shapes
+        Write the mode shapes into this file for ParaView: .vtu or .vtk.
+    outputs
+        Output files.
+    """
+    from beamdyn import load_scene, natural_modes
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.result_tables import modes_csv, modes_table
+
+    outputs.check(shapes=shapes)
+    loaded = load_scene(scene)
+    question = Question.on_file(
+        "beamdyn modes", scene, speed=speed, modes=modes, discretization=discretization, tolerance=tolerance
+    )
+    result = natural_modes(loaded, speed_or_final(loaded, speed), modes, discretization, tolerance)
+    if shapes is not None:
+        _write_shapes(result, shapes, outputs.force)
+    warnings, refusal = [w for w in result.warnings if not w.startswith("unstable")], _unstable(result)
+    tables, rows, draw = [modes_table(result)], modes_csv(result), on_axes(result.plot)
+    deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
+
+
+@app.command
+def locus(
+    scene: SceneFile,
+    /,
+    *,
+    speeds: Text,
+    modes: int = 3,
+    discretization: Discretization = "ritz",
+    tolerance: float | None = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Natural frequencies over speed; each mode is tracked through crossings.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    speeds
+        Speeds with their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50, 100 rad/s".
+    modes
+        Number of modes, from the lowest.
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    tolerance
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+    outputs
+        Output files.
+    """
+    from beamdyn import frequency_locus, load_scene
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.result_tables import locus_csv, locus_table
+
+    outputs.check()
+    given = parse_speeds(speeds)
+    question = Question.on_file(
+        "beamdyn locus", scene, speeds=speeds, modes=modes, discretization=discretization, tolerance=tolerance
+    )
+    result = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
+    tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
+    deliver(result, outputs, question, tables, rows, draw, result.warnings)
+
+
+@app.command
+def critical(
+    scene: SceneFile,
+    /,
+    *,
+    discretization: Discretization = "ritz",
+    json: Path | None = None,
+    force: Flag = False,
+) -> None:
+    """Critical speed, at which the rotating beam buckles.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    json
+        Write the result with its error estimate and provenance into this file.
+    force
+        Overwrite a file that exists.
+    """
+    from beamdyn import critical_point, load_scene
+    from beamdyn.common.digits import supported
+    from beamdyn.common.edge.tables import console
+
+    outputs = Outputs(json=json, force=force)
+    outputs.check()
+    result = critical_point(load_scene(scene), discretization)
+    value = supported(result.speed, result.error * result.speed, 12)
+    none = "no critical speed: the beam buckles at no speed"
+    console().print(none if value == "inf" else f"critical speed: {value} rad/s; above it the beam buckles")
+    write(result, outputs)
+
+
+@app.command
+def limits(
+    scene: SceneFile,
+    /,
+    *,
+    top_speed: Text,
+    discretization: Discretization = "ritz",
+    json: Path | None = None,
+    force: Flag = False,
+) -> None:
+    """Setting angles that separate a first frequency that falls with speed from one that rises.
+
+    Parameters
+    ----------
+    scene
+        The scene; its own setting angle is not used.
+    top_speed
+        Speed up to which the frequency must rise for the second limit, with its unit, e.g. "400 rad/s".
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    json
+        Write the result with its error estimate and provenance into this file.
+    force
+        Overwrite a file that exists.
+    """
+    from math import isnan
+
+    from beamdyn import load_scene, setting_angle_limits
+    from beamdyn.common.edge.tables import console
+    from beamdyn.result_tables import limits_table
+
+    outputs = Outputs(json=json, force=force)
+    outputs.check()
+    top = parse_positive("--top-speed", top_speed, "rad/s")
+    result = setting_angle_limits(load_scene(scene), top, discretization)
+    write(result, outputs)
+    if isnan(result.first) or isnan(result.second):
+        raise NoAnswer(result.warnings[0])
+    console().print(limits_table(result))
+    warn(result.warnings)
+
+
+@app.command
+def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False) -> None:
+    """Terms of the equations of motion: which of them the scene has, and why.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    json
+        Write the list into this file.
+    force
+        Overwrite a file that exists.
+    """
+    from beamdyn import load_scene
+    from beamdyn.common.edge.tables import console, table
+    from beamdyn.equations.terms import terms
+
+    outputs = Outputs(json=json, force=force)
+    outputs.check()
+    result = terms(load_scene(scene))
+    heads = ("", "term", "symbol", "largest", "reason")
+    console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
+    console().print(result.excited())
+    write(result, outputs)
+
+
+def _draw_locus(result: Locus, ax: Axes) -> None:
+    from beamdyn import critical_speed
+    from beamdyn.output.plots import mark_critical
+
+    mark_critical(result.plot(ax), critical_speed(result.scene))
+
+
+def _write_shapes(result: Modes, path: Path, force: bool) -> None:
+    import numpy as np
+
+    from beamdyn.output.export import write_shapes
+
+    x = np.linspace(0, result.scene.beam.length, 101)
+    write_shapes(path, x, np.real(result.shape(x)), result.labels(), force=force)
+
+
+def _unstable(result: Modes) -> str:
+    """The sentence that names the unstable modes and the critical speed; empty if all are stable."""
+    from beamdyn import critical_speed
+
+    unstable = [i for i, status in enumerate(result.status) if status in ("divergence", "flutter")]
+    if not unstable:
+        return ""
+    which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
+    critical = critical_speed(result.scene)
+    where = f"; the critical speed is {critical:.6g} rad/s" if critical <= result.speed else ""
+    return f"unstable at {result.speed:g} rad/s: {which}{where}"
