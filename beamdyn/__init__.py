@@ -10,87 +10,38 @@ from typing import TYPE_CHECKING, Any
 
 from beamdyn._version import __version__ as __version__
 
-__all__ = [
-    "Beam",
-    "Crossing",
-    "Crossings",
-    "Fem",
-    "FrequencyBounds",
-    "GaussCollocation",
-    "Locus",
-    "Modes",
-    "Mount",
-    "Ritz",
-    "RoadWave",
-    "RollingWheel",
-    "RotationFunction",
-    "SampledRotation",
-    "Scene",
-    "SpinUp",
-    "SteadyResponse",
-    "SteadyRotation",
-    "Sweep",
-    "SweepInterrupted",
-    "Table",
-    "TipMass",
-    "Tradeoff",
-    "Transient",
-    "UserMotion",
-    "critical_point",
-    "critical_speed",
-    "frequency_bounds",
-    "frequency_locus",
-    "load_scene",
-    "natural_modes",
-    "resonance_speeds",
-    "setting_angle_limits",
-    "simulate",
-    "steady_response",
-    "sweep",
-    "terms",
-    "tradeoff",
-]
-
-_HOME = {
-    "Beam": "scene.beam",
-    "Crossing": "steady.resonance",
-    "Crossings": "steady.resonance",
-    "Fem": "equations.fem",
-    "FrequencyBounds": "spectrum.bounds",
-    "GaussCollocation": "transient.gauss",
-    "Locus": "spectrum.modes",
-    "Modes": "spectrum.modes",
-    "Mount": "scene.mount",
-    "Ritz": "equations.ritz",
-    "RoadWave": "scene.motion",
-    "RollingWheel": "scene.motion",
-    "RotationFunction": "scene.motion",
-    "SampledRotation": "scene.motion",
-    "Scene": "scene.scene",
-    "SpinUp": "scene.motion",
-    "SteadyResponse": "steady.response",
-    "SteadyRotation": "scene.motion",
-    "Sweep": "transient.sweep",
-    "SweepInterrupted": "transient.chunk_collector",
-    "Table": "scene.profile",
-    "TipMass": "scene.beam",
-    "Tradeoff": "tradeoffs",
-    "Transient": "transient.simulate",
-    "UserMotion": "scene.motion",
-    "critical_point": "spectrum.critical",
-    "critical_speed": "spectrum.critical",
-    "frequency_bounds": "spectrum.bounds",
-    "frequency_locus": "spectrum.modes",
-    "load_scene": "config",
-    "natural_modes": "spectrum.modes",
-    "resonance_speeds": "steady.resonance",
-    "setting_angle_limits": "spectrum.critical",
-    "simulate": "transient.simulate",
-    "steady_response": "steady.response",
-    "sweep": "transient.sweep",
-    "terms": "equations.terms",
-    "tradeoff": "tradeoffs",
+# The public names by their module.
+_NAMES = {
+    "config": ("load_scene",),
+    "equations.fem": ("Fem",),
+    "equations.ritz": ("Ritz",),
+    "equations.terms": ("terms",),
+    "scene.beam": ("Beam", "TipMass"),
+    "scene.motion": (
+        "RoadWave",
+        "RollingWheel",
+        "RotationFunction",
+        "SampledRotation",
+        "SpinUp",
+        "SteadyRotation",
+        "UserMotion",
+    ),
+    "scene.mount": ("Mount",),
+    "scene.profile": ("Table",),
+    "scene.scene": ("Scene",),
+    "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
+    "spectrum.critical": ("critical_point", "critical_speed", "setting_angle_limits"),
+    "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
+    "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
+    "steady.response": ("SteadyResponse", "steady_response"),
+    "tradeoffs": ("Tradeoff", "tradeoff"),
+    "transient.chunk_collector": ("SweepInterrupted",),
+    "transient.gauss": ("GaussCollocation",),
+    "transient.simulate": ("Transient", "simulate"),
+    "transient.sweep": ("Sweep", "sweep"),
 }
+_MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
+__all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
 
 if TYPE_CHECKING:
     from beamdyn.config import load_scene
@@ -124,10 +75,10 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     """Load a public name from its module."""
-    if name not in _HOME:
+    if name not in _MODULE_OF:
         raise AttributeError(f"module 'beamdyn' has no attribute {name!r}")
-    return getattr(import_module(f"beamdyn.{_HOME[name]}"), name)
+    return getattr(import_module(f"beamdyn.{_MODULE_OF[name]}"), name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+    return sorted({*globals(), *__all__})

@@ -184,7 +184,7 @@ def real_array(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
     except (TypeError, ValueError, OverflowError):
         raise InvalidValue(name, values, "give a sequence of numbers") from None
     if array.ndim != 1:
-        raise InvalidValue(name, values, "give a one-dimensional sequence")
+        raise InvalidValue(name, values, f"give a one-dimensional sequence; its shape is {array.shape}")
     refuse(~np.isfinite(array), name, array, "", "every value must be finite")
     return array
 
