@@ -15,7 +15,7 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import SAMPLES
 
 _KNOWN_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
-_IMPLICIT_METHODS = ("Radau", "BDF", "LSODA")
+_JACOBIAN_METHODS = ("Radau", "BDF", "LSODA")
 _SCALING_TOLERANCE = 1e-2  # of the run that gives the magnitudes of the coordinates
 
 
@@ -97,7 +97,7 @@ def integrate_by_solve_ivp(
     options = {"rtol": tolerance, "atol": _absolute_tolerance(system, y0, t_end, tolerance), **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
         options = {"system": system, **options}
-    elif method in _IMPLICIT_METHODS:
+    elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}
     result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=method, dense_output=True, **options)
     if not result.success:
