@@ -1,4 +1,4 @@
-"""Tables of results: for people with the digits that the error leaves, and for CSV files in full."""
+"""Tables of results: for reading, with the digits that the error supports, and for CSV files in full."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
 
-_SHOWN = 16  # rows of a locus, apart from those where a mode turns unstable
+_MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
 
 
 def modes_table(result: Modes) -> Group:
-    """The table of natural modes."""
+    """Table of natural modes."""
     rows = []
     size = np.abs(result.eigenvalue) * result.error  # absolute error of the eigenvalues
     for i, status in enumerate(result.status):
@@ -39,34 +39,35 @@ def modes_table(result: Modes) -> Group:
 
 
 def locus_table(result: Locus) -> Group:
-    """The table of a locus at some of its speeds: frequencies, or growth rates of unstable modes."""
+    """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes."""
     rows = []
     size = np.abs(result.eigenvalue) * result.error
-    for s in (shown := _shown(result)):
-        cells = [_cell(result, size, s, mode) for mode in range(result.frequency.shape[1])]
-        sure = f"{result.confidence[s].min():.2f}"
-        rows.append((f"{result.speeds[s]:.8g}", *cells, f"{result.error[s].max():.0e}", sure))
+    for s in (shown := _select_speeds(result)):
+        cells = [_locus_cell(result, size, s, mode) for mode in range(result.frequency.shape[1])]
+        confidence = f"{result.confidence[s].min():.2f}"
+        rows.append((f"{result.speeds[s]:.8g}", *cells, f"{result.error[s].max():.0e}", confidence))
     heads = [f"mode {mode} [Hz]" for mode in range(1, result.frequency.shape[1] + 1)]
-    title = f"Natural frequencies, by {result.provenance.method}{_part(shown, result.speeds)}"
+    title = f"Natural frequencies, by {result.provenance.method}{_selection_note(shown, result.speeds)}"
     return table(title, ("speed [rad/s]", *heads, "largest error", "tracking"), rows, ())
 
 
-def _shown(result: Locus) -> np.ndarray:
-    """Indices of speeds for people: evenly spread, and those before and after a change of status."""
+def _select_speeds(result: Locus) -> np.ndarray:
+    """Select indices of speeds to print: evenly spread, and before and after each change of status."""
     count = len(result.speeds)
-    spread = np.linspace(0, count - 1, min(count, _SHOWN)).round().astype(int)
-    change = np.flatnonzero((result.status[1:] != result.status[:-1]).any(axis=1))[:_SHOWN]
+    spread = np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int)
+    change = np.flatnonzero((result.status[1:] != result.status[:-1]).any(axis=1))[:_MOST_ROWS]
     return np.unique(np.concatenate([spread, change, change + 1]))
 
 
-def _cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
+def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
+    """Frequency of a mode at speed s, or its status and growth rate; `size` is the absolute error [rad/s]."""
     if result.status[s, mode] == "stable":
         return supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
     return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
 
 
 def limits_table(result: SettingAngleLimits) -> Group:
-    """The table of setting-angle limits."""
+    """Table of setting-angle limits."""
     degrees = [supported(float(np.degrees(limit)), float(np.degrees(result.error))) for limit in result]
     meaning = (
         "below it the first frequency falls with speed; above it, it rises from rest",
@@ -79,58 +80,59 @@ def limits_table(result: SettingAngleLimits) -> Group:
 
 # Motion in time and resonance -------------------------------------------------------------------------
 
-_MODEL_DIGITS = 6  # most of a deflection: the modal truncation error allows no more
-_UNKNOWN = 5e-4  # relative error assumed for the digits of a deflection whose error is not estimated
+_MODEL_DIGITS = 6  # most digits of a deflection, which the modal truncation error allows
+_ASSUMED_ERROR = 5e-4  # relative error assumed for the digits of a deflection whose error is not estimated
 
 
 def transient_table(run: Transient, window: tuple[float, float] | None = None) -> Group:
-    """The table of a transient: its largest deflections, its error, its warnings."""
+    """Table of a transient: its largest deflections, errors and warnings."""
     start, end = run.path.start, run.path.end
-    stretches = {"whole run": (start, end)}
+    windows = {"whole run": (start, end)}
     if window is not None:
-        stretches[f"{window[0]:g} to {window[1]:g} s"] = window
-    rows = [(name, *_peak_cells(run, *stretch)) for name, stretch in stretches.items()]
+        windows[f"{window[0]:g} to {window[1]:g} s"] = window
+    rows = [(name, *_peak_cells(run, *bounds)) for name, bounds in windows.items()]
     shown = table(
         f"Largest tip deflection in {end:g} s, by {run.provenance.method}",
         ("", "tip deflection [mm]", "over the length", "at [s]"),
         rows,
     )
-    return Group(shown, Text(_errors(run)), *(Text(f"warning: {w}") for w in run.warnings))
+    return Group(shown, Text(_describe_errors(run)), *(Text(f"warning: {w}") for w in run.warnings))
 
 
 def time_of_peak(run: Transient, start: float, end: float) -> tuple[float, float]:
-    """Time of the largest tip deflection between two times, by the samples, and their distance [s]."""
+    """Time of the largest tip deflection in a window, and its uncertainty, the sampling interval [s]."""
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     if len(inside) < 2:
         return (start + end) / 2, (end - start) / 2
-    place = inside[np.abs(run.tip[inside]).argmax()]
-    return float(run.t[place]), float(np.diff(run.t[inside]).max())
+    index = inside[np.abs(run.tip[inside]).argmax()]
+    return float(run.t[index]), float(np.diff(run.t[inside]).max())
 
 
 def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str]:
+    """Largest tip deflection in a window [mm], over the length, and its time [s]."""
     size, length = run.peak(start, end), run.scene.beam.length
-    error = _UNKNOWN * size if math.isnan(run.time_error) else run.time_error
+    error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error if math.isfinite(run.mode_error) else 0.0
-    deflection, share = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
-    return deflection, share, supported(*time_of_peak(run, start, end)) if size else "-"
+    deflection, ratio = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
+    return deflection, ratio, supported(*time_of_peak(run, start, end)) if size else "-"
 
 
-def _errors(run: Transient) -> str:
-    """Time-integration error and modal truncation error in words."""
+def _describe_errors(run: Transient) -> str:
+    """Describe the time-integration error and the modal truncation error in words."""
     known = math.isfinite(run.mode_error)
     modes = (
         f"modal truncation error {1e3 * run.mode_error:.1g} mm" if known else "modal truncation error unknown"
     )
     if math.isnan(run.time_error):
         return (
-            "The time-integration error is not estimated: this integrator bounds that of each step only. "
+            "The time-integration error is not estimated: this integrator bounds that of single steps only. "
             f"Estimated {modes}."
         )
     return f"Estimated time-integration error {1e3 * run.time_error:.1g} mm, {modes}."
 
 
 def crossings_table(result: Crossings) -> Group:
-    """The table of resonance speeds."""
+    """Table of resonance speeds."""
     rows = [
         (
             supported(c.speed, c.error * c.speed),
@@ -146,32 +148,32 @@ def crossings_table(result: Crossings) -> Group:
 
 
 def steady_table(result: SteadyResponse) -> Group:
-    """The table of a steady response: some of its speeds, its peaks among them."""
+    """Table of a steady response at some of its speeds, the peaks included."""
     with np.errstate(divide="ignore"):
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
-    shown = _shown_response(result.status, peaks_at)
+    shown = _select_response_speeds(result.status, peaks_at)
     error = result.error * result.bound
     sizes = [_millimetres(values, error) for values in (result.amplitude, result.bound)]
     columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
-    return table(title + _part(shown, result.speeds), heads, _rows(columns, shown), (3,))
+    return table(title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (3,))
 
 
 def sweep_table(result: Sweep) -> Group:
-    """The table of a sweep: some of its speeds, its peaks among them."""
+    """Table of a sweep at some of its speeds, the peaks included."""
     peaks_at = sweep_peaks(result)
-    shown = _shown_response(np.array(result.status), peaks_at)
+    shown = _select_response_speeds(np.array(result.status), peaks_at)
     sizes = _millimetres(result.peaks, result.time_error)
     columns = _speed_cells(result.speeds), sizes, _status_cells(result.status, peaks_at)
     start, end = result.window
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
     heads = ("speed [rad/s]", "largest tip deflection [mm]", "status")
-    return table(title + _part(shown, result.speeds), heads, _rows(columns, shown), (2,))
+    return table(title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (2,))
 
 
 def sweep_peaks(result: Sweep) -> np.ndarray:
-    """Indices of the speeds at which a sweep peaks: by a quarter of its largest deflection."""
+    """Find the indices of the peaks of a sweep, more prominent than a quarter of its largest deflection."""
     return peaks(result.peaks, 0.25 * np.nanmax(result.peaks, initial=0.0))
 
 
@@ -193,22 +195,22 @@ def _rows(columns: Sequence[list[str]], shown: np.ndarray) -> Iterator[list[str]
     return ([column[s] for column in columns] for s in shown)
 
 
-def _shown_response(status: np.ndarray, peaks_at: np.ndarray) -> np.ndarray:
-    """Indices of speeds for people: evenly spread, the peaks, and where the status changes."""
-    spread = np.linspace(0, len(status) - 1, min(len(status), _SHOWN)).round().astype(int)
-    change = np.flatnonzero(status[1:] != status[:-1])[:_SHOWN]
-    return np.unique(np.concatenate([spread, peaks_at[:_SHOWN], change, change + 1]))
+def _select_response_speeds(status: np.ndarray, peaks_at: np.ndarray) -> np.ndarray:
+    """Select indices of speeds to print: evenly spread, the peaks, and at changes of status."""
+    spread = np.linspace(0, len(status) - 1, min(len(status), _MOST_ROWS)).round().astype(int)
+    change = np.flatnonzero(status[1:] != status[:-1])[:_MOST_ROWS]
+    return np.unique(np.concatenate([spread, peaks_at[:_MOST_ROWS], change, change + 1]))
 
 
 def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
-    """Indices of the local maxima of at least this prominence; values that are not finite are skipped."""
+    """Find the indices of local maxima of at least a prominence; values that are not finite are skipped."""
     from scipy.signal import find_peaks
 
     known = np.flatnonzero(np.isfinite(values))
     return known[find_peaks(values[known], prominence=prominence)[0]]
 
 
-def _part(shown: np.ndarray, all_: np.ndarray) -> str:
+def _selection_note(shown: np.ndarray, all_: np.ndarray) -> str:
     if len(shown) == len(all_):
         return ""
     return f" ({len(shown)} of {len(all_)} speeds; CSV and JSON have all)"
@@ -226,7 +228,7 @@ def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
 
 
 def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
-    """The same for each mode over speed, one row a speed."""
+    """Frequency, error, growth rate, status and tracking confidence of each mode, one row per speed."""
     names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
     columns = result.frequency, result.error, result.growth_rate, result.status, result.confidence
     numbers = range(1, result.frequency.shape[1] + 1)
@@ -242,13 +244,13 @@ def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
 
 
 def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
-    """Largest deflection over speed."""
+    """Largest deflection and time-integration error over speed."""
     yield "speed_rad_per_s", "largest_deflection_m", "time_error_m"
     yield from zip(result.speeds.tolist(), result.peaks.tolist(), result.time_error.tolist(), strict=True)
 
 
 def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
-    """Speeds of resonance, one row each."""
+    """Resonance speeds, one row each."""
     first = "speed_rad_per_s", "relative_error", "frequency_Hz"
     yield *first, "line", "multiple", "mode", "second_mode", "kind"
     for c in result:
@@ -257,7 +259,7 @@ def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
 
 
 def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
-    """Steady amplitude over speed."""
+    """Steady amplitude, error, growth rate and status over speed."""
     yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", "growth_rate_per_s", "status"
     columns = result.speeds, result.amplitude, result.bound, result.error, result.growth_rate, result.status
     yield from zip(*(column.tolist() for column in columns), strict=True)

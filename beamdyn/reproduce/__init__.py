@@ -1,4 +1,4 @@
-"""The published numbers again: each beside ours, with its deviation and a verdict."""
+"""Reproduction of the published numbers: each beside ours, with its deviation and a verdict."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
     Parameters
     ----------
     screen : Console
-        Where to print.
+        Console to print on.
     folder : Path
-        Where to draw.
+        Folder for the figures.
     tables : bool
-        Compare with the tables of other sources too.
+        Whether to compare with the tables of other sources too.
 
     Returns
     -------
     list of Comparison and Summary
-        All that was compared.
+        All comparisons, in the order of printing.
     """
     paper = load("lee_yoo_2019")
     screen.print(
@@ -48,48 +48,48 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
     )
     screen.print(_INTRODUCTION)
     with progress_bar("Fig. 6") as progress:
-        swept = motion.sweep_of_speeds(progress)
-    compared = _compare(screen, swept)
+        fig_6_sweep = motion.run_sweep(progress)
+    all_comparisons = _print_comparisons(screen, fig_6_sweep)
     for note in (*frequencies.notes(), *motion.notes()):
         screen.print(note)
     screen.print("")
-    if others_too := [*others.summaries()] if tables else []:
-        screen.print(others.summary_table(others_too))
-    for path in draw(folder, swept):
+    if summaries := [*others.summarize_sources()] if tables else []:
+        screen.print(others.summary_table(summaries))
+    for path in draw(folder, fig_6_sweep):
         screen.print(f"drawn: {path}", soft_wrap=True)
-    return [*compared, *others_too]
+    return [*all_comparisons, *summaries]
 
 
-def _compare(screen: Console, swept: Sweep) -> list[Comparison]:
-    """Print the tables, one a section of the paper."""
-    compared: list[Comparison] = []
-    for title, rows in sections(swept).items():
-        made = [*rows]
-        screen.print(comparison_table(title, made))
-        compared += made
-    return compared
+def _print_comparisons(screen: Console, fig_6_sweep: Sweep) -> list[Comparison]:
+    """Print the tables of comparisons, one per section of the paper."""
+    all_comparisons: list[Comparison] = []
+    for title, rows in sections(fig_6_sweep).items():
+        comparisons = [*rows]
+        screen.print(comparison_table(title, comparisons))
+        all_comparisons += comparisons
+    return all_comparisons
 
 
-def sections(swept: Sweep) -> dict[str, list[Comparison]]:
-    """Comparisons by the titles of their tables."""
+def sections(fig_6_sweep: Sweep) -> dict[str, list[Comparison]]:
+    """Comparisons, by the titles of their tables."""
     return {
         "Table 2: first natural frequency, beam pointing inward [Hz]": [*frequencies.first_frequencies()],
         "Table 3: largest tip deflection in 20 to 30 s [mm]": [*motion.largest_deflections()],
         "Table 3, continued: steady amplitude at the same speed [mm]": [*motion.steady_amplitudes()],
-        "Fig. 6: peaks over speed [rad/s]": [*motion.peaks_of_sweep(swept)],
+        "Fig. 6: peaks over speed [rad/s]": [*motion.sweep_peak_comparisons(fig_6_sweep)],
         "Fig. 7: speeds of resonance [rad/s]": [*motion.resonances()],
         "Section 3.3: limits of the setting angle [deg]": [*frequencies.limits_of_setting_angle()],
         "Section 4: speed of buckling, beam pointing inward [rad/s]": [*frequencies.buckling_speed()],
     }
 
 
-def draw(folder: Path, swept: Sweep) -> list[Path]:
-    """Draw Fig. 4 to 9 into a folder, which is made if needed; files of the same names are replaced."""
+def draw(folder: Path, fig_6_sweep: Sweep) -> list[Path]:
+    """Draw Fig. 4 to 9 into a folder, created if needed; existing files are replaced."""
     folder.mkdir(parents=True, exist_ok=True)
     pictures: dict[int, Callable[[], Figure]] = {
         4: frequencies.fig_4,
         5: motion.fig_5,
-        6: lambda: motion.fig_6(swept),
+        6: lambda: motion.fig_6(fig_6_sweep),
         7: motion.fig_7,
         8: frequencies.fig_8,
         9: frequencies.fig_9,

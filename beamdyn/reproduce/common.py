@@ -1,4 +1,4 @@
-"""What the sections share: the published scene, the names of sources."""
+"""Scenes of Lee and Yoo (2019), Table 1, and names of the sources of values."""
 
 from __future__ import annotations
 
@@ -13,29 +13,30 @@ from beamdyn.scene.motion import RoadWave, RollingWheel, SpinUp
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 
-PAPER, OWN = "paper", "independent (5)"
-TOP = 150.0  # rad/s: Fig. 6 ends here; Fig. 8 and 9 do not say where they end
+PAPER, OWN = "paper", "independent (5)"  # sources of the values compared with; (5) is a note
+TOP = 150.0  # highest speed [rad/s]: the end of Fig. 6; Fig. 8 and 9 do not say where they end
 
 
 def published_scene() -> Scene:
-    """The scene of Lee and Yoo (2019), Table 1, without its motion."""
-    given = _input()
+    """Scene of Lee and Yoo (2019), Table 1, without its motion."""
+    inputs = _input()
     names = ("length", "width", "thickness", "youngs_modulus", "density")
-    return Scene(Beam.rectangular(**{name: given[name] for name in names}), Mount(given["radius"]))
+    return Scene(Beam.rectangular(**{name: inputs[name] for name in names}), Mount(inputs["radius"]))
 
 
 def rolling_scene() -> Scene:
-    """The same on a wheel that spins up and rolls over the wavy road: Table 3, Fig. 5 to 7."""
-    given, paper = _input(), load("lee_yoo_2019")
-    road = RoadWave(given["road_wavelength"], given["road_velocity_amplitude"])
+    """Published scene on a wheel that spins up and rolls over the wavy road: Table 3, Fig. 5 to 7."""
+    inputs, paper = _input(), load("lee_yoo_2019")
+    road = RoadWave(inputs["road_wavelength"], inputs["road_velocity_amplitude"])
     spin_up = SpinUp(paper["largest_deflection"]["speed"]["value"], paper["scene"]["duration"]["value"])
-    return replace(published_scene(), motion=RollingWheel(given["rolling_radius"], spin_up, road))
+    return replace(published_scene(), motion=RollingWheel(inputs["rolling_radius"], spin_up, road))
 
 
 def _input() -> dict[str, Any]:
+    """Values of Table 1, in SI units."""
     return {name: entry["value"] for name, entry in load("lee_yoo_2019")["input"].items()}
 
 
 def decimals(value: float) -> int:
-    """Decimals with which a value is written."""
+    """Number of decimals of a value as Python prints it."""
     return len(np.format_float_positional(value).partition(".")[2])

@@ -19,12 +19,12 @@ from beamdyn.spectrum.critical import critical_point, setting_angle_limits
 from beamdyn.spectrum.modes import frequency_locus, natural_modes
 
 _ANSYS = "ANSYS (4)"
-_ROUNDING = 1e-12  # relative, of a value that is defined by a basis of given size
+_ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly
 _OUTSIDE = "(linear equations, outside their range)"
 
 
 def first_frequencies() -> Iterator[Comparison]:
-    """Table 2: the first frequency at three speeds, by the paper and ANSYS, against three models of ours."""
+    """Compare with Table 2: the first frequency at three speeds, by three models of ours."""
     paper, scene = load("lee_yoo_2019"), published_scene()
     models = (
         ("Ritz", scene, "ritz"),
@@ -34,9 +34,9 @@ def first_frequencies() -> Iterator[Comparison]:
     for row, exact in zip(paper["first_frequency"], paper["reference"]["first_frequency"], strict=True):
         speed = row["speed"]["value"]
         for name, model, discretization in models:
-            found = natural_modes(model, speed, 1, discretization)
-            ours = float(found.frequency[0])
-            error = float(found.error[0]) * ours
+            result = natural_modes(model, speed, 1, discretization)
+            ours = float(result.frequency[0])
+            error = float(result.error[0]) * ours
             what = f"{speed:g} rad/s, {name}"
             for source, entry in ((PAPER, row["proposed"]), (_ANSYS, row["ansys"])):
                 reason = "unexplained (1)" if source == PAPER and speed == 0 else ""
@@ -46,7 +46,7 @@ def first_frequencies() -> Iterator[Comparison]:
 
 
 def limits_of_setting_angle() -> Iterator[Comparison]:
-    """Section 3.3: the two setting-angle limits."""
+    """Compare with Section 3.3: the two setting-angle limits [deg]."""
     paper, scene = load("lee_yoo_2019"), published_scene()
     yield from _first_limit(paper, scene)
     yield from _second_limit_of_modes(paper, scene)
@@ -54,50 +54,51 @@ def limits_of_setting_angle() -> Iterator[Comparison]:
 
 
 def buckling_speed() -> Iterator[Comparison]:
-    """The speed at which the inward beam buckles, of which the paper has no number."""
+    """Compare the speed at which the inward beam buckles with our own reference: the paper prints none."""
     entry = load("lee_yoo_2019")["reference"]["critical_speed"]
     for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
-        found = critical_point(published_scene(), discretization)
+        point = critical_point(published_scene(), discretization)
         yield Comparison(
-            f"critical speed, {name}", OWN, entry["value"], found.speed, found.error * found.speed, 4
+            f"critical speed, {name}", OWN, entry["value"], point.speed, point.error * point.speed, 4
         )
 
 
 def _first_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
+    """Compare the first setting-angle limit."""
     printed, exact = paper["setting_angle_limits"]["first"], paper["reference"]["first_setting_angle_limit"]
     for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
-        found = setting_angle_limits(scene, TOP, discretization)
+        limits = setting_angle_limits(scene, TOP, discretization)
         what, ours, error = (
             f"first limit, {name}",
-            float(np.degrees(found.first)),
-            float(np.degrees(found.error)),
+            float(np.degrees(limits.first)),
+            float(np.degrees(limits.error)),
         )
         yield Comparison(what, PAPER, tuple(printed["value"]), ours, error, 2)
         yield Comparison(what, OWN, exact["value"], ours, error, 5)
 
 
 def _second_limit_of_modes(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
-    """Of a basis of N eigenfunctions, whose limit at any speed is a number of that basis."""
+    """Compare the second limit of bases of N eigenfunctions, without a top speed."""
     printed, exact = (
         paper["setting_angle_limits"]["second"],
         paper["reference"]["second_setting_angle_limit_of_modes"],
     )
     for modes, value in zip(exact["modes"], exact["value"], strict=True):
-        found = setting_angle_limits(scene, np.inf, Ritz(modes, "eigenfunctions"))
-        what, ours = f"second limit of {modes} modes", float(np.degrees(found.second))
+        limits = setting_angle_limits(scene, np.inf, Ritz(modes, "eigenfunctions"))
+        what, ours = f"second limit of {modes} modes", float(np.degrees(limits.second))
         if modes == 5:
             yield Comparison(what, PAPER, tuple(printed["value"]), ours, ours * _ROUNDING, 2)
         yield Comparison(what, OWN, value, ours, ours * _ROUNDING, decimals(value))
 
 
 def _second_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
-    """Converged, for several top speeds."""
+    """Compare the converged second limit for several top speeds."""
     printed = tuple(paper["setting_angle_limits"]["second"]["value"])
     exact = [(e["top_speed"]["value"], e["value"]) for e in paper["reference"]["second_setting_angle_limit"]]
     for top, value in [(TOP, None), *exact]:
-        found = setting_angle_limits(scene, top)
-        what, ours = f"second limit, to {top:g} rad/s", float(np.degrees(found.second))
-        error = float(np.degrees(found.error))
+        limits = setting_angle_limits(scene, top)
+        what, ours = f"second limit, to {top:g} rad/s", float(np.degrees(limits.second))
+        error = float(np.degrees(limits.error))
         if value is None:
             yield Comparison(what, PAPER, printed, ours, error, 2, "top speed (2)")
         else:
@@ -105,31 +106,31 @@ def _second_limit(paper: dict[str, Any], scene: Scene) -> Iterator[Comparison]:
 
 
 def notes() -> Iterator[str]:
-    """What the tables do not say."""
+    """Notes on the tables."""
     scene = published_scene()
     rest = natural_modes(scene, 0.0, 1)
-    second = setting_angle_limits(scene, 400.0)
+    limits = setting_angle_limits(scene, 400.0)
     yield (
         "(1) The paper prints 65.231 Hz at rest; its own input gives "
         f"{rest.frequency[0]:.6f} Hz, as ANSYS does. The cause of the difference is unknown."
     )
     yield (
         "(2) Above the second limit the first frequency rises up to the top speed, so the limit depends on "
-        "where one stops. The paper does not say where; 150 rad/s is the end of its Fig. 6. Its 89.62 to "
+        "the top speed. The paper does not state it; 150 rad/s is the end of its Fig. 6. Its 89.62 to "
         "89.63 deg is what exactly five clamped-free modes give; with more modes the limit tends to 90 deg."
     )
     yield (
         "(3) The limits are results of the linear equations outside their range: at the second limit for "
-        f"400 rad/s the rotation would bend the tip by {second.static_deflection:.2g} lengths of the beam."
+        f"400 rad/s the rotation would bend the tip by {limits.static_deflection:.2g} lengths of the beam."
     )
     yield (
         "(4) As printed in the paper. (5) Computed apart from this program, not in the paper: frequencies by "
-        "40-digit Rayleigh-Ritz and power series. A deviation '0 ± e' is lost in our estimated error."
+        "40-digit Rayleigh-Ritz and power series. A deviation '0 ± e' is within our estimated error e."
     )
 
 
 def fig_4() -> Figure:
-    """First frequency over speed, with ANSYS."""
+    """Draw the first frequency over speed, with the values of ANSYS."""
     rows = load("lee_yoo_2019")["first_frequency"]
     scene, figure = published_scene(), Figure(figsize=(7.5, 4.8), layout="constrained")
     critical = critical_point(scene).speed
@@ -145,14 +146,14 @@ def fig_4() -> Figure:
 
 
 def fig_8() -> Figure:
-    """First frequency on either side of the first setting-angle limit."""
+    """Draw the first frequency over speed on either side of the first setting-angle limit."""
     angles = load("lee_yoo_2019")["figures"]["fig_8"]["setting_angle"]
     figure = Figure(figsize=(12, 4.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     speeds = np.linspace(0, TOP, 301)
-    plot_loci_by_angle(speeds, _first_by_angle(angles, speeds), angles, left)
+    plot_loci_by_angle(speeds, _first_frequencies_by_angle(angles, speeds), angles, left)
     speeds = np.linspace(0, 17, 171)
-    first = _first_by_angle(angles, speeds)
+    first = _first_frequencies_by_angle(angles, speeds)
     plot_loci_by_angle(speeds, (first - first[:, :1]) * 1e6, angles, right)
     right.set(ylim=(-0.5, 0.5), ylabel="change from rest [µHz]")
     left.set_title("over speed")
@@ -164,7 +165,7 @@ def fig_8() -> Figure:
 
 
 def fig_9() -> Figure:
-    """First frequency on either side of the second setting-angle limit."""
+    """Draw the first frequency over speed on either side of the second setting-angle limit."""
     angles = load("lee_yoo_2019")["figures"]["fig_9"]["setting_angle"]
     figure = Figure(figsize=(12, 4.8), layout="constrained")
     cases = (
@@ -173,16 +174,16 @@ def fig_9() -> Figure:
     )
     for ax, (top, discretization, title) in zip(figure.subplots(1, 2), cases, strict=True):
         speeds = np.linspace(0, top, 501)
-        plot_loci_by_angle(speeds, _first_by_angle(angles, speeds, discretization), angles, ax)
+        plot_loci_by_angle(speeds, _first_frequencies_by_angle(angles, speeds, discretization), angles, ax)
         ax.set_title(title)
     figure.suptitle(f"Fig. 9: first natural frequency on either side of the paper's second limit {_OUTSIDE}")
     return figure
 
 
-def _first_by_angle(
+def _first_frequencies_by_angle(
     angles: Sequence[float], speeds: np.ndarray, discretization: str | Ritz = "ritz"
 ) -> np.ndarray:
-    """First frequency at setting angles [deg] over speeds: shape (angles, speeds)."""
+    """First frequency [Hz] at setting angles [deg] over speeds [rad/s]: shape (angles, speeds)."""
     scene = published_scene()
     mounts = [replace(scene.mount, setting_angle=float(np.radians(angle))) for angle in angles]
     loci = [frequency_locus(replace(scene, mount=mount), speeds, 1, discretization) for mount in mounts]

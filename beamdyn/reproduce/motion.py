@@ -21,15 +21,15 @@ from beamdyn.steady.response import steady_response
 from beamdyn.transient.simulate import Transient, simulate
 from beamdyn.transient.sweep import Sweep, sweep
 
-_MODES = 5
-_TOLERANCE = 1e-6
+_MODES = 5  # of the published run
+_TOLERANCE = 1e-6  # of the time integration
 _SPEEDS = np.linspace(0, TOP, 151)  # of Fig. 6
-_DAMPING = 0.01  # ratio with which ring-down dies away
-_MM = 1e3
+_DAMPING = 0.01  # damping ratio with which the ring-down decays before 20 s
+_MM = 1e3  # millimetres in a metre
 
 
 def largest_deflections() -> Iterator[Comparison]:
-    """Table 3: the largest tip deflection [mm] in 20 to 30 s, by one to six modes and by finite elements."""
+    """Compare with Table 3: the largest tip deflection [mm] in 20 to 30 s, by 1 to 6 modes and by FE."""
     paper = load("lee_yoo_2019")
     printed, exact = paper["largest_deflection"], paper["reference"]["largest_deflection"]
     known = dict(zip(exact["modes"], exact["in_window"]["value"], strict=True))
@@ -46,51 +46,50 @@ def largest_deflections() -> Iterator[Comparison]:
 
 
 def resonances() -> Iterator[Comparison]:
-    """Fig. 7: speeds [rad/s] at which an excited frequency meets the first natural one."""
+    """Compare with Fig. 7: speeds [rad/s] at which an excited frequency equals the first natural one."""
     reference = load("lee_yoo_2019")["reference"]
     further = reference["further_resonance_speeds"]
     forced, parametric = reference["resonance_speeds"]["value"], further["parametric"]["value"]
     for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
-        found = _crossings(rolling_scene(), discretization)
-        yield from _crossing_rows(found, "forced", forced, name)
-        yield from _crossing_rows(found, "parametric", parametric, name)
+        crossings = _crossings(rolling_scene(), discretization)
+        yield from _crossing_rows(crossings, "forced", forced, name)
+        yield from _crossing_rows(crossings, "parametric", parametric, name)
     heavy = _crossings(replace(rolling_scene(), gravity=9.81))
     yield from _crossing_rows(heavy, "forced", [*forced, further["gravity"]["value"]], "gravity")
 
 
-def _crossing_rows(found: Crossings, kind: str, values: list[float], name: str) -> Iterator[Comparison]:
-    ours = [c for c in found if c.kind == kind]
+def _crossing_rows(crossings: Crossings, kind: str, values: list[float], name: str) -> Iterator[Comparison]:
+    """Compare the crossings of a kind with reference values [rad/s]."""
+    ours = [c for c in crossings if c.kind == kind]
     for c, value in zip(ours, values, strict=True):
         if name != "gravity" or value == values[-1]:
             what = f"{kind} {c.line.name}, {name}"
             yield Comparison(what, OWN, value, c.speed, c.error * c.speed, decimals(value))
 
 
-def sweep_of_speeds(
-    progress: Callable[[int, int], object] | None = None, speeds: np.ndarray = _SPEEDS
-) -> Sweep:
-    """Fig. 6: the largest deflection in 20 to 30 s over speed."""
+def run_sweep(progress: Callable[[int, int], object] | None = None, speeds: np.ndarray = _SPEEDS) -> Sweep:
+    """Compute Fig. 6: the largest deflection in 20 to 30 s over speed."""
     workers = min(2, os.cpu_count() or 1)
     return sweep(rolling_scene(), speeds, _window(), modes=_MODES, workers=workers, progress=progress)
 
 
-def peaks_of_sweep(swept: Sweep) -> Iterator[Comparison]:
-    """Fig. 6: how many peaks there are, and that they lie [rad/s] where Fig. 7 has its crossings."""
-    paper, found = load("lee_yoo_2019"), sweep_peaks(swept)
+def sweep_peak_comparisons(result: Sweep) -> Iterator[Comparison]:
+    """Compare the peaks of Fig. 6: their number, and their speeds [rad/s] with the crossings of Fig. 7."""
+    paper, indices = load("lee_yoo_2019"), sweep_peaks(result)
     count = paper["figures"]["fig_6"]["peaks"]
-    yield Comparison("number of peaks", PAPER, count, len(found), 0.0, 0)
-    forced, half = paper["reference"]["resonance_speeds"]["value"], float(np.diff(swept.speeds).max()) / 2
-    for i, (place, value) in enumerate(zip(found, forced, strict=False), 1):
-        yield Comparison(f"speed of peak {i}", OWN, value, float(swept.speeds[place]), half, 4)
+    yield Comparison("number of peaks", PAPER, count, len(indices), 0.0, 0)
+    forced, half = paper["reference"]["resonance_speeds"]["value"], float(np.diff(result.speeds).max()) / 2
+    for i, (index, value) in enumerate(zip(indices, forced, strict=False), 1):
+        yield Comparison(f"speed of peak {i}", OWN, value, float(result.speeds[index]), half, 4)
 
 
 def steady_amplitudes() -> Iterator[Comparison]:
-    """The steady response [mm] at the speed of Table 3, of which the paper has no number."""
+    """Compare the steady amplitude [mm] at the speed of Table 3; the paper prints none."""
     paper = load("lee_yoo_2019")
     exact, printed = paper["reference"]["steady_response"], paper["largest_deflection"]["proposed"]
-    found = steady_response(rolling_scene(), [_speed()], _MODES)
-    largest, bound = float(_MM * found.amplitude[0]), float(_MM * found.bound[0])
-    error = float(found.error[0]) * bound
+    response = steady_response(rolling_scene(), [_speed()], _MODES)
+    largest, bound = float(_MM * response.amplitude[0]), float(_MM * response.bound[0])
+    error = float(response.error[0]) * bound
     what = "steady amplitude, undamped"
     yield Comparison(what, PAPER, _MM * printed["value"], largest, error, 2, "ring-down (8)")
     yield Comparison(what, OWN, _MM * exact["largest_deflection"]["value"], largest, error, 6)
@@ -103,7 +102,7 @@ def steady_amplitudes() -> Iterator[Comparison]:
 
 
 def notes() -> Iterator[str]:
-    """What the tables do not say."""
+    """Notes on the tables."""
     run = _published_run()
     passage, line = _passage()
     start, end = _window()
@@ -119,14 +118,14 @@ def notes() -> Iterator[str]:
     yield "(7) Three modes and more give the digits of the paper; one and two do not."
     yield (
         f"(8) The {peak:.2f} mm of Table 3 are ring-down: on its way to {_speed():g} rad/s the wheel passes "
-        f"the resonance at {line:.2f} rad/s at {passage:.2f} s, and without damping what was excited there "
-        f"stays. The steady amplitude at {_speed():g} rad/s is {steady:.2f} mm, {peak / steady:.1f} times "
-        f"less; with a damping ratio of {_DAMPING:g} the transient ends there."
+        f"the resonance at {line:.2f} rad/s at {passage:.2f} s, and without damping the vibration excited "
+        f"there remains. The steady amplitude at {_speed():g} rad/s is {steady:.2f} mm, {peak / steady:.1f} "
+        f"times less; with a damping ratio of {_DAMPING:g} the transient decays to it."
     )
 
 
 def _passage() -> tuple[float, float]:
-    """When the spin-up passes the first resonance [s], and its speed [rad/s]."""
+    """Time [s] at which the spin-up passes the first resonance, and its speed [rad/s]."""
     scene = rolling_scene()
     first = next(c.speed for c in _crossings(scene) if c.kind == "forced")
     motion = scene.motion
@@ -136,7 +135,7 @@ def _passage() -> tuple[float, float]:
 
 
 def fig_5() -> Figure:
-    """Tip deflection over time."""
+    """Draw the tip deflection over time."""
     figure = Figure(figsize=(7.5, 4.8), layout="constrained")
     ax = _published_run().plot(figure.subplots())
     passage, line = _passage()
@@ -148,26 +147,26 @@ def fig_5() -> Figure:
     return figure
 
 
-def fig_6(swept: Sweep) -> Figure:
-    """Largest deflection over speed, with the steady amplitude."""
+def fig_6(result: Sweep) -> Figure:
+    """Draw the largest deflection over speed, with the steady amplitude."""
     figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-    ax = swept.plot(figure.subplots())
+    ax = result.plot(figure.subplots())
     ax.lines[0].set_label("undamped transient, 20 to 30 s")
     speeds = np.linspace(1, TOP, 1000)
     steady = _MM * steady_response(rolling_scene(), speeds, 3).amplitude
     ax.plot(speeds, steady, color=COLOURS[1], linewidth=1.2, label="steady amplitude")
-    ax.set_ylim(0, 1.1 * _MM * float(swept.peaks.max()))
+    ax.set_ylim(0, 1.1 * _MM * float(result.peaks.max()))
     ax.legend(fontsize=10, loc="upper right")
     ax.set_title("Fig. 6: largest tip deflection over speed")
     return figure
 
 
 def fig_7() -> Figure:
-    """First natural frequency and the two excited ones over speed."""
+    """Draw the first natural frequency and the two excited frequencies over speed."""
     figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-    found = _crossings(rolling_scene())
-    ax = found.plot(figure.subplots())
-    for c in found:
+    crossings = _crossings(rolling_scene())
+    ax = crossings.plot(figure.subplots())
+    for c in crossings:
         if c.kind == "forced":
             label, at = f"{c.speed:.2f} rad/s", (c.speed, c.frequency)
             ax.annotate(label, at, (13, 3), textcoords="offset points", fontsize=9)

@@ -1,4 +1,4 @@
-"""Rotating beams of other sources."""
+"""Comparison with the published tables of rotating beams of other sources."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from beamdyn.spectrum.modes import natural_modes
 
 @dataclass(frozen=True)
 class Summary:
-    """Many values of one source against one discretization.
+    """Comparison of all values of one source with one discretization.
 
     Parameters
     ----------
     source, discretization : str
-        Of which values, by which discretization.
+        Source of the values, and discretization of ours.
     values : int
-        How many.
+        Number of values.
     printed : float
-        Largest relative half unit of the last digit printed.
+        Largest relative rounding of the printed values: half a unit of the last digit.
     deviation, error : float
         Largest relative deviation and largest estimated relative error.
     outside : int
-        How many deviate by more than both together.
+        Number of values that deviate by more than rounding and error together.
     """
 
     source: str
@@ -52,14 +52,14 @@ class Summary:
         return not self.outside
 
     def cells(self) -> list[str]:
-        """Its row of the table."""
+        """Row of the table."""
         numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
         verdict = f"differs: {self.outside} value(s)" if self.outside else "agrees"
         return [self.source, self.discretization, str(self.values), *numbers, verdict]
 
 
-def summaries() -> Iterator[Summary]:
-    """All cases of the published tables, and the critical speeds, by source and discretization."""
+def summarize_sources() -> Iterator[Summary]:
+    """Compare all cases of the published tables, and critical speeds, by source and discretization."""
     data = load("rotating_beams")
     groups: dict[str, list[dict[str, Any]]] = {}
     for case in data["case"]:
@@ -67,11 +67,11 @@ def summaries() -> Iterator[Summary]:
     groups["critical speeds, computed"] = [c for c in data["critical"] if np.isfinite(c["gamma"])]
     for source, cases in groups.items():
         for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
-            yield summary(source, name, [solved(case, discretization) for case in cases])
+            yield summarize(source, name, [solve_case(case, discretization) for case in cases])
 
 
 def summary_table(rows: Sequence[Summary]) -> Group:
-    """The table of summaries."""
+    """Table of summaries."""
     heads = (
         "source",
         "discretization",
@@ -85,10 +85,10 @@ def summary_table(rows: Sequence[Summary]) -> Group:
     return table(title, heads, (row.cells() for row in rows), (0, 1, 6))
 
 
-def summary(
+def summarize(
     source: str, discretization: str, parts: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> Summary:
-    """Many values against ours; `parts` are as from `solved`."""
+    """Summarize the comparison of several cases; `parts` are the results of `solve_case`."""
     printed, ours, error = (np.concatenate(column) for column in zip(*parts, strict=True))
     rounding = np.array([0.5 * 10.0 ** -decimals(value) for value in printed]) / printed
     deviation = np.abs(ours / printed - 1)
@@ -96,18 +96,18 @@ def summary(
     return Summary(source, discretization, len(ours), rounding.max(), deviation.max(), error.max(), outside)
 
 
-def solved(case: dict[str, Any], discretization: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Published values, ours, and our relative errors."""
-    scene = nondimensional(case)
+def solve_case(case: dict[str, Any], discretization: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Solve a case: the published values, ours, and our relative errors."""
+    scene = nondimensional_scene(case)
     if "frequency" in case:
-        found = natural_modes(scene, case["gamma"], len(case["frequency"]), discretization)
-        return np.array(case["frequency"]), np.abs(found.eigenvalue), found.error
+        modes = natural_modes(scene, case["gamma"], len(case["frequency"]), discretization)
+        return np.array(case["frequency"]), np.abs(modes.eigenvalue), modes.error
     point = critical_point(scene, discretization)
     return np.array([case["gamma"]]), np.array([point.speed]), np.array([point.error])
 
 
-def nondimensional(case: dict[str, Any]) -> Scene:
-    """The scene of a nondimensional case: root stiffness, root mass per length and length are 1.
+def nondimensional_scene(case: dict[str, Any]) -> Scene:
+    """Build the scene of a nondimensional case: root stiffness, root mass per length and length are 1.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def nondimensional(case: dict[str, Any]) -> Scene:
     Returns
     -------
     Scene
-        Its eigenvalues at gamma rad/s are lambda in size.
+        Scene whose eigenvalues at gamma rad/s have the magnitude lambda.
     """
     delta, alpha = case["delta"], case.get("alpha")
     beam = Beam.from_stiffness(

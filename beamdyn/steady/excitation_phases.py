@@ -1,6 +1,7 @@
 """The equations of motion at steady speed, as functions of the two phases of the excitation.
 
-They are the angle theta of rotation and the phase chi = kappa theta + const of the road.
+The phases are the angle theta of rotation and chi = kappa theta + const of the road, where kappa is the
+motion's `road_multiple`.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
 from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, fourier_coefficients, is_resolved
 
 _STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")  # of a motion
-_GRIDS = (8, 16, 32, 64)  # samples of each phase: the coefficients are trigonometric polynomials
+_GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
 
 
 def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndarray) -> PeriodicSystem:
@@ -21,9 +22,9 @@ def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndar
     Parameters
     ----------
     equations : Equations
-        The equations.
+        The equations of motion.
     motion : Motion or None
-        What knows its `steady_acceleration` and `road_multiple`; None for rotation about a fixed centre.
+        A motion with `steady_acceleration` and `road_multiple`; None for rotation about a fixed centre.
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
 
@@ -34,7 +35,7 @@ def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndar
     Raises
     ------
     ValueError
-        If nothing is known of the motion's steady state, or it is not smooth in the phases.
+        If the motion's steady state is not known, or is not smooth in the phases.
     """
     motion = check_steady_state(motion)
     spectra = _expand_quantities(equations, motion, speeds)
@@ -51,7 +52,13 @@ def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndar
 
 
 def check_steady_state(motion: Motion | None) -> Motion:
-    """The motion, or a ValueError if its steady state is not known; None is rotation about a fixed centre."""
+    """Return the motion, or rotation about a fixed centre for None.
+
+    Raises
+    ------
+    ValueError
+        If the steady state of the motion is not known.
+    """
     motion = SteadyRotation(0.0) if motion is None else motion
     missing = [n for n in _STEADY_STATE if not hasattr(motion, n)]
     if missing:
@@ -63,7 +70,7 @@ def check_steady_state(motion: Motion | None) -> Motion:
 
 
 def _expand_quantities(equations: Equations, motion: Motion, speeds: np.ndarray) -> dict[str, np.ndarray]:
-    """Harmonics (S, N, N) of every quantity of the root's motion that the equations use."""
+    """Expand each quantity of the root's motion that the equations use in harmonics, shape (S, N, N)."""
     used = {part.quantity for part in (*equations.terms, *equations.loads)}
     for N in _GRIDS:
         phase = 2 * np.pi * np.arange(N) / N
@@ -80,13 +87,14 @@ def _expand_quantities(equations: Equations, motion: Motion, speeds: np.ndarray)
 
 
 def _without_mean(spectrum: np.ndarray) -> np.ndarray:
+    """Spectrum with its constant part set to 0."""
     spectrum = spectrum.copy()
     spectrum[:, 0, 0] = 0
     return spectrum
 
 
 def name_line(motion: Motion, harmonic: Pair) -> Line:
-    """The line of a harmonic, by the motion's own name where it has one."""
+    """Line of a harmonic (j, k), with the motion's name for it or else one such as "2 road - rotation"."""
     multiple = abs(harmonic[0] + harmonic[1] * (motion.road_multiple or 0.0))
     for line in motion.lines:
         if abs(line.multiple - multiple) <= 1e-12 * (1 + multiple):

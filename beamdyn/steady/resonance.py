@@ -1,4 +1,4 @@
-"""Resonance speeds: where the lines of the excitation meet natural frequencies."""
+"""Resonance speeds: speeds at which a line of the excitation equals a natural frequency."""
 
 from __future__ import annotations
 
@@ -23,36 +23,36 @@ from beamdyn.modal.tracking import track
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
-from beamdyn.steady.harmonic_balance import list_reached
+from beamdyn.steady.harmonic_balance import generate_harmonics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_NODES = 400  # speeds at which roots are bracketed; extrema between them are refined
-_TIGHT = 4 * np.finfo(float).eps
+_NODES = 400  # intervals of speed in which roots are bracketed
+_ROUNDING = 4 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """A speed at which a line meets a natural frequency.
+    """Speed at which a line of the excitation equals a natural frequency.
 
     Parameters
     ----------
     line : Line
-        The line.
+        Line of the excitation.
     mode : int
-        The mode, numbered at rest from 1.
+        Number of the mode, from 1, in the order at rest.
     speed : float
         Speed [rad/s].
     frequency : float
         Natural frequency of the mode [Hz].
     kind : {"forced", "parametric"}
-        "forced": natural frequency = line.  "parametric": twice the natural frequency, or the sum of
-        that of `mode` and of `second_mode`, = line; the periodic stiffness makes the beam unstable.
+        "forced": natural frequency = line.  "parametric": twice the natural frequency, or the sum of the
+        frequencies of `mode` and `second_mode`, = line; the periodic stiffness makes the beam unstable.
     error : float
         Estimated relative error of the speed.
     second_mode : int or None
-        The other mode of a combination.
+        Number of the other mode of a combination resonance.
     """
 
     line: Line
@@ -66,7 +66,7 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Crossings(Result, Sequence[Crossing]):
-    """Crossings by ascending speed: a sequence.
+    """Sequence of crossings, by ascending speed.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ class Crossings(Result, Sequence[Crossing]):
     frequency : ndarray, shape (S, m)
         Natural frequencies [Hz], numbered at rest.
     warnings : tuple of str
-        What limits the answer.
+        Limitations of the result.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
     """
 
     crossings: tuple[Crossing, ...]
@@ -99,7 +99,7 @@ class Crossings(Result, Sequence[Crossing]):
         return len(self.crossings)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw natural frequencies and lines over speed, the crossings marked: Campbell's diagram."""
+        """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
         from beamdyn.output.plots import plot_campbell
 
         lines = {line.name: line.multiple for line in self.lines}
@@ -117,24 +117,24 @@ def resonance_speeds(
     order: int = 1,
     discretization: DiscretizationChoice = "ritz",
 ) -> Crossings:
-    """Speeds at which the lines that the scene forces meet natural frequencies.
+    """Find the speeds at which lines of the excitation equal natural frequencies.
 
     The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are
-    bracketed on the continuous loci and refined to rounding; extrema between the brackets are sought,
-    so that two roots close together are both found.  Damping is left out.
+    bracketed on the continuous loci and refined to rounding error; minima of the distance between the
+    brackets are sought too, so that two close roots are both found.  Damping is neglected.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its motion gives the lines, and gravity adds that of the rotation.
+        The scene; its motion defines the lines, and gravity adds the line of the rotation.
     top_speed : float
-        Top speed [rad/s]; above the critical speed none are sought.
+        Top speed [rad/s]; the search ends at the critical speed.
     modes : int
-        How many modes.
+        Number of modes.
     order : int
-        1: the lines of the load, and 2 lambda_i = a line of the stiffness.  n: also the lines that the
-        load makes with the stiffness in n - 1 interactions, and lambda_i + lambda_j = sums and
-        differences of up to n lines of the stiffness.
+        1: the lines of the load, and 2 lambda_i = a line of the stiffness.  n: also the lines that up to
+        n - 1 interactions of the load with the periodic stiffness add, and lambda_i + lambda_j = sums
+        and differences of up to n lines of the stiffness.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -154,11 +154,11 @@ def resonance_speeds(
     model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     locus = _Loci(model, min(top, critical), modes)
-    forced, parametric = _lines(model.equations, scene.motion, top, order)
-    wanted = [("forced", line, (i,)) for line in forced for i in range(modes)]
+    forced, parametric = _excitation_lines(model.equations, scene.motion, top, order)
+    candidates = [("forced", line, (i,)) for line in forced for i in range(modes)]
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
-    wanted += [("parametric", line, pair) for line in parametric for pair in pairs]
-    crossings = [c for kind, line, places in wanted for c in locus.crossings(kind, line, places)]
+    candidates += [("parametric", line, pair) for line in parametric for pair in pairs]
+    crossings = [c for kind, line, indices in candidates for c in locus.crossings(kind, line, indices)]
     names = str(model.discretization), str(model.coarser.discretization)
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
@@ -171,30 +171,30 @@ def resonance_speeds(
     )
 
 
-def _lines(
+def _excitation_lines(
     equations: Equations, motion: Motion | None, speed: float, order: int
 ) -> tuple[list[Line], list[Line]]:
-    """Lines of the load, and of the stiffness, up to an order."""
+    """Lines of the load and of the stiffness at a speed [rad/s], up to an order."""
     system = periodic_system(equations, motion, np.array([speed]))
-    known = check_steady_state(motion)
-    forced = list_reached(system.forced, system.coupling, order - 1)
-    parametric = list_reached([(0, 0)], system.coupling, order)
+    motion = check_steady_state(motion)
+    forced = generate_harmonics(system.load_harmonics, system.coupling, order - 1)
+    parametric = generate_harmonics([(0, 0)], system.coupling, order)
     return tuple(
-        _distinct(name_line(known, h) for level in levels for h in level) for levels in (forced, parametric)
+        _distinct(name_line(motion, h) for level in levels for h in level) for levels in (forced, parametric)
     )  # pyright: ignore[reportReturnType]
 
 
 def _distinct(lines: Iterable[Line]) -> list[Line]:
-    """One line of each frequency, without the static one, ascending."""
-    kept: dict[float, Line] = {}
+    """One line of each frequency, ascending, without the static one."""
+    distinct: dict[float, Line] = {}
     for line in lines:
         if line.multiple > 1e-12:
-            kept.setdefault(round(line.multiple, 12), line)
-    return [kept[multiple] for multiple in sorted(kept)]
+            distinct.setdefault(round(line.multiple, 12), line)
+    return [distinct[multiple] for multiple in sorted(distinct)]
 
 
 class _Loci:
-    """Natural frequencies as continuous functions of speed: in ascending order they have kinks, no jumps.
+    """Natural frequencies over speed, in ascending order: continuous, with kinks where they cross.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ class _Loci:
     top : float
         Top speed [rad/s].
     modes : int
-        How many modes.
+        Number of modes.
     """
 
     def __init__(self, model: Model, top: float, modes: int) -> None:
@@ -218,38 +218,39 @@ class _Loci:
         """Angular frequencies [rad/s], ascending: shape (S, m)."""
         return np.abs(np.imag(self.solver.eigenvalues(speeds, self.modes)))
 
-    def crossings(self, kind: str, line: Line, places: tuple[int, ...]) -> Iterator[Crossing]:
-        """Crossings of one line with the sum of the frequencies at one or two places."""
+    def crossings(self, kind: str, line: Line, indices: tuple[int, ...]) -> Iterator[Crossing]:
+        """Find the crossings of a line with a natural frequency, or with the sum of two, given by indices."""
 
-        def miss(speed: float) -> float:
-            return float(self.frequencies(np.array([speed]))[0, places].sum()) - line.multiple * speed
+        def detuning(speed: float) -> float:
+            return float(self.frequencies(np.array([speed]))[0, indices].sum()) - line.multiple * speed
 
-        misses = self.values[:, places].sum(axis=1) - line.multiple * self.speeds
-        for a, b in _brackets(miss, self.speeds, misses):
-            speed = brentq(miss, a, b, xtol=_TIGHT * b, rtol=_TIGHT)  # pyright: ignore[reportArgumentType]
-            yield self._crossing(kind, line, places, float(speed), (miss(b) - miss(a)) / (b - a))
+        detunings = self.values[:, indices].sum(axis=1) - line.multiple * self.speeds
+        for a, b in _bracket(detuning, self.speeds, detunings):
+            speed = brentq(detuning, a, b, xtol=_ROUNDING * b, rtol=_ROUNDING)  # pyright: ignore[reportArgumentType]
+            yield self._crossing(kind, line, indices, float(speed), (detuning(b) - detuning(a)) / (b - a))
 
     def _crossing(
-        self, kind: str, line: Line, places: tuple[int, ...], speed: float, slope: float
+        self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float
     ) -> Crossing:
+        """Crossing at a root `speed`; the detuning's slope turns errors of frequency into speed."""
         solution = solve_with_error(self.model, np.array([speed]), self.modes)
-        own = self.frequencies(np.array([speed]))[0]
-        wrong = np.abs(np.abs(solution.eigen.eigenvalue[0]) - own) + solution.error[0] * own
+        omega = self.frequencies(np.array([speed]))[0]
+        error = np.abs(np.abs(solution.eigen.eigenvalue[0]) - omega) + solution.error[0] * omega
         node = int(np.searchsorted(self.speeds, speed)) - 1
-        numbers = [int(np.flatnonzero(self.order[node] == place)[0]) + 1 for place in places]
+        numbers = [int(np.flatnonzero(self.order[node] == index)[0]) + 1 for index in indices]
         return Crossing(
             line=line,
             mode=min(numbers),
             speed=speed,
-            frequency=float(own[places[0]] / (2 * np.pi)),
+            frequency=float(omega[indices[0]] / (2 * np.pi)),
             kind=kind,
-            error=float(wrong[list(places)].sum() / abs(slope * speed)) + _TIGHT,
+            error=float(error[list(indices)].sum() / abs(slope * speed)) + _ROUNDING,
             second_mode=max(numbers) if len(set(numbers)) > 1 else None,
         )
 
 
-def _brackets(miss: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
-    """Intervals in which a function changes its sign, also where it only dips between two nodes."""
+def _bracket(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
+    """Bracket the roots of a function f with values y at x, also pairs of roots between two nodes."""
     for k in range(len(x) - 1):
         if y[k] * y[k + 1] < 0 or (y[k + 1] == 0 and y[k] != 0):
             yield float(x[k]), float(x[k + 1])
@@ -259,6 +260,6 @@ def _brackets(miss: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> I
     )
     for k in np.flatnonzero(dips) + 1:
         a, b, sign = float(x[k - 1]), float(x[k + 1]), np.sign(y[k])
-        least = minimize_scalar(lambda v, s=sign: s * miss(v), bounds=(a, b), method="bounded")
-        if least.fun < 0:
-            yield from ((a, float(least.x)), (float(least.x), b))
+        minimum = minimize_scalar(lambda v, s=sign: s * f(v), bounds=(a, b), method="bounded")
+        if minimum.fun < 0:
+            yield from ((a, float(minimum.x)), (float(minimum.x), b))

@@ -1,4 +1,4 @@
-"""The steady response over speed, by harmonic balance in the two phases of the excitation."""
+"""Steady response over speed, by harmonic balance in the two phases of the excitation."""
 
 from __future__ import annotations
 
@@ -23,59 +23,59 @@ from beamdyn.steady.excitation_phases import check_steady_state, name_line, peri
 from beamdyn.steady.harmonic_balance import (
     Pair,
     PeriodicSystem,
+    generate_harmonics,
     growth_rate,
     largest_over_phases,
-    list_reached,
-    solve_balance,
+    solve_harmonic_balance,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_INTERACTIONS = 2  # with the periodic coefficients, kept for the stability
-_MOST_INTERACTIONS = 5  # kept for the response
-_ENTRIES = 10**7  # of the matrices solved at once
-_BELOW = 0.99  # of the critical speed: where the fastest modes are taken at most
-_MOST_MODES = 13  # at each of two speeds, that "auto" tries
-_EXACT = 1e-15  # error where no harmonic is neglected
+_INTERACTIONS = 2  # with the periodic coefficients, for the stability
+_MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
+_MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
+_HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
+_MOST_MODES = 13  # of "auto", at each of two speeds
+_ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 
 @dataclass(frozen=True)
 class SteadyResponse(Result):
-    """Steady response over speed, when all that the start set in motion has died away.
+    """Steady response over speed, after the free vibration from the start has decayed.
 
     Parameters
     ----------
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
     amplitude : ndarray, shape (S,)
-        Largest |tip deflection| over both free phases [m]; nan where there is no steady response.
+        Largest |tip deflection| over both phases [m]; nan where there is no steady response.
     bound : ndarray, shape (S,)
         Sum of the amplitudes of all lines, the static one included [m].
     stable : ndarray of bool, shape (S,)
-        Whether free motion dies away, or without damping stays bounded.
+        Whether free vibration decays, or without damping stays bounded.
     status : ndarray of str, shape (S,)
         "stable", "parametric instability" or "past the critical speed".
     growth_rate : ndarray, shape (S,)
-        Largest rate of growth of free motion [1/s].
+        Largest growth rate of free vibration [1/s].
     error : ndarray, shape (S,)
-        Estimated error by the neglected harmonics, relative to the bound.
+        Estimated truncation error of the harmonics, relative to the bound.
     lines : tuple of Line, length l
         The lines of the response.
     line_frequency : ndarray, shape (S, l)
-        Their frequencies [Hz].
+        Frequencies of the lines [Hz].
     line_amplitude : ndarray of complex, shape (S, l)
-        Tip deflection of each line [m]: the sum of Re(a exp(i (j theta + k chi))) is that of the tip.
+        Complex tip deflection a of each line [m]: the tip's is the sum of Re(a exp(i (j theta + k chi))).
     harmonics : ndarray of int, shape (l, 2)
         j and k of each line.
     warnings : tuple of str
-        What limits the answer.
+        Limitations of the result.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
 
     Notes
     -----
-    The modal truncation error is `mode_error`, which takes a second solution when first asked for.
+    The modal truncation error is `mode_error`, which takes a second solution at its first use.
     """
 
     speeds: np.ndarray
@@ -95,27 +95,27 @@ class SteadyResponse(Result):
 
     @property
     def scene(self) -> Scene:
-        """The scene."""
+        """Scene."""
         return self.request.scene
 
     @cached_property
     def refined(self) -> SteadyResponse | None:
-        """The same with half as many modes more, at least two; None if there is no larger model."""
+        """Response with 1.5 times as many modes, at least two more; None if there is no larger model."""
         return self.request.run_refined()
 
     @cached_property
     def mode_error(self) -> np.ndarray:
-        """Estimated modal truncation error, relative to the bound: twice the distance of `refined`, (S,).
+        """Estimated modal truncation error, relative to the bound, (S,): twice the distance from `refined`.
 
         Infinite where only one of the two has a steady response, or if there is no larger model.
         """
         if self.refined is None:
             return np.full(len(self.speeds), np.inf)
         with np.errstate(invalid="ignore", divide="ignore"):
-            added = 2 * np.abs(self.refined.amplitude - self.amplitude) / self.bound
+            difference = 2 * np.abs(self.refined.amplitude - self.amplitude) / self.bound
         neither = np.isnan(self.amplitude) & np.isnan(self.refined.amplitude)
         return np.where(
-            neither | (self.refined.amplitude == self.amplitude), 0.0, np.nan_to_num(added, nan=np.inf)
+            neither | (self.refined.amplitude == self.amplitude), 0.0, np.nan_to_num(difference, nan=np.inf)
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -145,11 +145,11 @@ def steady_response(
 ) -> SteadyResponse:
     """Compute the steady response at given speeds by harmonic balance in the phases of rotation and road.
 
-    The speeds are solved as one batch in the coordinates of a few modes of the beam.  The two
-    phases count as free, whether or not their rates are commensurate: the amplitude is the largest
-    that the response reaches in time if they are not, and the largest over the phase between road
-    and rotation if they are.  Stability is decided by the exponents of free motion over the same
-    phases: see `beamdyn.steady.harmonic_balance.growth_rate`.
+    The speeds are solved as one batch in the coordinates of a few modes of the beam.  The two phases are
+    treated as independent, whether or not their rates are commensurate: the amplitude is the largest in
+    time if they are not, and the largest over time and over the phase between road and rotation if they
+    are.  Stability is decided by the exponents of free motion over the same phases: see
+    `beamdyn.steady.harmonic_balance.growth_rate`.
 
     Parameters
     ----------
@@ -161,11 +161,11 @@ def steady_response(
         Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
         speed: the smallest modal basis whose truncation error meets the tolerance.
     harmonics : int, optional
-        Interactions of the response with the periodic stiffness that are kept: 0 keeps the lines of
-        the load, 1 also those that the stiffness makes of them, and so on.  As many as the tolerance
-        asks for, up to 5, if not given.
+        Number of interactions with the periodic stiffness whose lines are kept: 0 keeps the lines of the
+        load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
+        as the tolerance needs, up to 5.
     tolerance : float
-        Largest estimated error by neglected harmonics, and with ``modes="auto"`` also the modal
+        Truncation error of the harmonics aimed at, and with ``modes="auto"`` also the modal
         truncation error, each relative to the bound.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
@@ -185,12 +185,12 @@ def steady_response(
     tolerance = positive("tolerance", tolerance)
     smallest = basis or ModalBasis(FEWEST_MODES)
     request = ResponseRequest(scene, speeds, smallest, steps, tolerance, discretization)
-    return request.run() if basis else request.run_cheapest()
+    return request.run() if basis else request.run_smallest_basis()
 
 
 @dataclass(frozen=True)
 class ResponseRequest:
-    """The arguments of `steady_response`, checked, with the modal basis in place of the number of modes."""
+    """Checked arguments of `steady_response`, with the modal basis in place of the number of modes."""
 
     scene: Scene
     speeds: np.ndarray
@@ -200,18 +200,18 @@ class ResponseRequest:
     discretization: DiscretizationChoice
 
     def run(self) -> SteadyResponse:
-        """Solve with this basis."""
+        """Solve with the modal basis of the request."""
         start = perf_counter()
         scene, speeds, model = self.scene, self.speeds, self._model
         equations = model.modal_equations(self.basis)
         system = periodic_system(equations, scene.motion, speeds)
         rate, status = _stability(system, speeds, model.solver.critical_speed)
-        used, c, error = _tip_harmonics(system, equations.tip, self.harmonics, self.tolerance)
+        used, c, error = _solve_harmonics(system, equations.tip, self.harmonics, self.tolerance)
         stable = (status == "stable") & np.isfinite(c).all(axis=1)
         c[~stable], error[~stable] = np.nan, np.nan
         amplitude = np.full(len(speeds), np.nan)
         motion = check_steady_state(scene.motion)
-        harmonic, line = _pair_lines(c, used, motion)
+        harmonic, line = _combine_pairs(c, used, motion)
         amplitude[stable] = largest_over_phases(line[stable], harmonic)
         road = np.array([motion.road_acceleration(v) for v in speeds])
         return SteadyResponse(
@@ -243,9 +243,9 @@ class ResponseRequest:
             return None
         return replace(self, basis=basis, discretization=with_room(self.discretization, basis.modes)).run()
 
-    def run_cheapest(self) -> SteadyResponse:
-        """Solve with the smallest basis that meets the tolerance, or else with the largest tried."""
-        speed = np.minimum(np.abs(self.speeds), _BELOW * self._model.solver.critical_speed)
+    def run_smallest_basis(self) -> SteadyResponse:
+        """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""
+        speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self._model.solver.critical_speed)
         ends = tuple(np.unique([speed.min(), speed.max()]).tolist())
         response = replace(self, basis=ModalBasis(FEWEST_MODES, ends)).run()
         while (response.mode_error > self.tolerance).any():
@@ -260,49 +260,49 @@ class ResponseRequest:
 
 
 def _stability(system: PeriodicSystem, speeds: np.ndarray, critical: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rates of growth, and status."""
+    """Growth rates [1/s] and status at each speed."""
     rate = growth_rate(system, _INTERACTIONS)
     status = np.where(rate > 0, "parametric instability", "stable")
     return rate, np.where(np.abs(speeds) >= critical, "past the critical speed", status)
 
 
-def _tip_harmonics(
+def _solve_harmonics(
     system: PeriodicSystem, tip: np.ndarray, steps: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), their tip deflections (S, H) and errors (S); each speed has as many as it needs."""
-    if not system.forced:
-        return [], np.zeros((len(system.rates), 0), dtype=complex), np.full(len(system.rates), _EXACT)
+    """Harmonics (H), tip deflections (S, H) and errors (S); each speed solved with as many as it needs."""
+    if not system.load_harmonics:
+        return [], np.zeros((len(system.rates), 0), dtype=complex), np.full(len(system.rates), _ROUNDING)
     most = _MOST_INTERACTIONS if steps is None else steps
-    levels = list_reached(system.forced, system.coupling, most + 1)
-    closed, levels = len(levels) <= most + 1, levels[: most + 1]
+    levels = generate_harmonics(system.load_harmonics, system.coupling, most + 1)
+    complete, levels = len(levels) <= most + 1, levels[: most + 1]
     sizes = np.cumsum([len(level) for level in levels])
     c = np.zeros((len(system.rates), sizes[-1]), dtype=complex)
     error = np.full(len(c), np.inf)
     for used in range(min(3 if steps is None else most + 1, len(levels)), len(levels) + 1):
-        exact = closed and used == len(levels)
-        todo = np.flatnonzero(~(error <= tolerance))
-        for part in _parts(todo, system.size * sizes[used - 1]):
+        exact = complete and used == len(levels)
+        unconverged = np.flatnonzero(~(error <= tolerance))
+        for part in _split_by_memory(unconverged, system.size * sizes[used - 1]):
             c[part, : sizes[used - 1]], error[part] = _solve_tip(system[part], tip, levels[:used])
-            error[part] = _EXACT if exact else error[part]
+            error[part] = _ROUNDING if exact else error[part]
     return [h for level in levels for h in level], c, error
 
 
-def _parts(todo: np.ndarray, size: int) -> list[np.ndarray]:
-    """The speeds, in parts whose matrices fit into memory."""
-    return [p for p in np.array_split(todo, 1 + len(todo) * size**2 // _ENTRIES) if len(p)]
+def _split_by_memory(unconverged: np.ndarray, size: int) -> list[np.ndarray]:
+    """Split indices of speeds into parts whose matrices fit into memory."""
+    return [p for p in np.array_split(unconverged, 1 + len(unconverged) * size**2 // _MOST_ENTRIES) if len(p)]
 
 
 def _solve_tip(
     system: PeriodicSystem, tip: np.ndarray, levels: list[list[Pair]]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Tip deflections (S, H), and how far they are from those without the last level, over their sum."""
-    c, shorter = (q @ tip for q in solve_balance(system, levels))
+    """Tip deflections (S, H), and their distance from those without the last level, over their sum."""
+    c, truncated = (q @ tip for q in solve_harmonic_balance(system, levels))
     total = np.abs(c).sum(axis=1)
-    return c, np.abs(c - shorter).sum(axis=1) / np.where(total == 0, 1, total)
+    return c, np.abs(c - truncated).sum(axis=1) / np.where(total == 0, 1, total)
 
 
-def _pair_lines(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Of each pair h, -h the one that turns forwards, shape (l, 2), with its amplitude (S, l)."""
+def _combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Combine each pair h, -h into the line of positive frequency: harmonics (l, 2), amplitudes (S, l)."""
     kappa = motion.road_multiple or 0.0
     forward = [i for i, h in enumerate(harmonics) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
     harmonic = np.array([harmonics[i] for i in forward], dtype=int).reshape(-1, 2)

@@ -1,7 +1,7 @@
-"""Error against time: what each digit costs, measured on a scene.
+"""Work-precision diagrams: error against computing time, measured on a scene.
 
-`measurements` has what is measured and what follows from it; `timing` runs cases within a budget;
-`frequencies`, `transients` and `steady` know what there is to choose; `study` puts it together.
+`measurements` has the results, their Pareto front and the cost per digit; `timing` measures settings within a
+budget; `frequencies`, `transients` and `steady` list the settings to choose from; `study` combines them.
 """
 
 from beamdyn.tradeoffs.frequencies import frequency_diagram

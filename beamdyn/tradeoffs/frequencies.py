@@ -1,4 +1,4 @@
-"""Natural frequencies: bases and elements over their number."""
+"""Work-precision of natural frequencies: bases and elements over their number."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.bounds import frequency_bounds
 from beamdyn.spectrum.modes import frequency_locus, natural_modes
-from beamdyn.tradeoffs.measurements import Diagram, counted
+from beamdyn.tradeoffs.measurements import Diagram, number_of
 from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 
 Basis = Literal["legendre", "eigenfunctions"]
@@ -25,17 +25,17 @@ _LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
 _EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _TOLERANCES = tuple(10.0**-k for k in range(1, 13))
-_REFERENCES = (40, 80, 160)  # functions of the reference: more where these do not resolve it
-_RESOLVED = 1e-10
+_REFERENCES = (40, 80, 160)  # numbers of functions of the reference, tried in turn
+_RESOLVED = 1e-10  # relative error of a reference that is accurate enough
 
 
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 10.0) -> Diagram:
-    """Error against time of the natural frequencies at one speed, or over a batch of them.
+    """Measure error against time of the natural frequencies at one speed or a batch of speeds.
 
-    The time of a basis is that of its matrices and eigenvalues; extrapolated finite elements are
-    solved twice, with half the elements too; ``tolerance=`` is the whole call, which also finds the
-    basis and the error.
+    The time of a basis is that of its matrices and eigenvalues; extrapolated finite elements are solved
+    twice, also with half the elements; ``tolerance=`` is the time of the whole call, which also chooses
+    the basis and estimates the error.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     speeds : ndarray, shape (S,)
         Speeds [rad/s], ascending.
     modes : int
-        How many of the lowest.
+        Number of the lowest modes.
     budget : float
         Time for all measurements [s].
 
@@ -73,8 +73,8 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
         else f"at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s"
     )
     reference = f"{exact.model.discretization}; {_compare_with_bounds(exact, float(speeds[-1]), modes)}"
-    return Diagram.of(
-        f"{counted(modes, 'frequency', 'frequencies')} {at}",
+    return Diagram.make(
+        f"{number_of(modes, 'frequency', 'frequencies')} {at}",
         "the worst frequency, relative",
         reference,
         resolved,
@@ -84,12 +84,12 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
 
 
 def _sizes(eigenvalues: np.ndarray) -> np.ndarray:
-    """|s| in ascending order: shape (S, m)."""
+    """Magnitudes of eigenvalues in ascending order, shape (S, m)."""
     return np.sort(np.abs(eigenvalues), axis=-1)
 
 
 def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
-    """Modes by many functions: as many as resolve them."""
+    """Compute reference modes, with as many Ritz functions as resolve them."""
     segments = len(scene.beam.breakpoints) - 1
     for functions in _REFERENCES[:-1]:
         solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
@@ -99,11 +99,12 @@ def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
 
 
 def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> EstimatedModes:
+    """Solve for modes and their errors with a number of Ritz functions on each segment."""
     return solve_with_error(Model(scene, Ritz(max(functions, 12, modes + 3))), speeds, modes)
 
 
 def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str:
-    """Check that the reference lies within the guaranteed bounds at a speed, and say so."""
+    """Check the reference against the guaranteed bounds at a speed; return the outcome in words."""
     try:
         bounds = frequency_bounds(exact.model.scene, speed, modes)
     except ValueError:  # stretch or damping
@@ -120,26 +121,28 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
 
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
+    """All families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
     segments = len(scene.beam.breakpoints) - 1
-    least = -(-modes // segments)  # of Legendre functions there are as many on each segment
-    yield _functions(scene, speeds, modes, "legendre", [n for n in _LEGENDRE if n >= least])
-    yield _functions(scene, speeds, modes, "eigenfunctions", [n for n in _EIGENFUNCTIONS if n >= modes])
+    least = -(-modes // segments)  # Legendre functions are counted per segment
+    yield _ritz_family(scene, speeds, modes, "legendre", [n for n in _LEGENDRE if n >= least])
+    yield _ritz_family(scene, speeds, modes, "eigenfunctions", [n for n in _EIGENFUNCTIONS if n >= modes])
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
-        yield from _elements(scene, speeds, modes, mesh, segments)
-    if not scene.stretch:  # with it modes may cross, and a tracked locus then has others than the lowest
-        called = (Setting(f"tolerance={t:.0e}", t, _call(scene, speeds, modes, t)) for t in _TOLERANCES)
-        yield Family("tolerance=", tuple(called))
+        yield from _fem_pair(scene, speeds, modes, mesh, segments)
+    if not scene.stretch:  # with stretch modes may cross: a tracked locus then differs from the lowest modes
+        cases = (Setting(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
+        yield Family("tolerance=", tuple(cases))
 
 
-def _functions(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
+def _ritz_family(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
+    """Family of a Ritz basis, over its number of functions."""
     each = "functions a segment" if basis == "legendre" and len(scene.beam.breakpoints) > 2 else "functions"
     cases = (Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
     return Family(f"Ritz, {basis}", tuple(cases))
 
 
-def _elements(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
-    """Finite elements as they are, and extrapolated."""
+def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
+    """Families of finite elements, plain and extrapolated."""
     from beamdyn.equations.fem import Fem  # loads scikit-fem
 
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
@@ -155,13 +158,14 @@ def _elements(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments
 def _solve(
     scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
 ) -> Callable[[float], Any]:
+    """Computation of the eigenvalues by a discretization."""
     return lambda deadline: Model(scene, discretization).solver.eigenvalues(speeds, modes)
 
 
 def _extrapolate(
     scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
 ) -> Callable[[float], Any]:
-    """Richardson's extrapolation from half the elements."""
+    """Richardson extrapolation from half the elements."""
     fine, coarse = (_solve(scene, d, speeds, modes) for d in (discretization, discretization.coarser()))
     gain = 2 ** (discretization.order or 4) - 1
 
@@ -172,7 +176,8 @@ def _extrapolate(
     return run
 
 
-def _call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -> Callable[[float], Any]:
+def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -> Callable[[float], Any]:
+    """Whole call of `natural_modes` or `frequency_locus` with a tolerance."""
     if len(speeds) == 1:
         return lambda deadline: natural_modes(scene, speeds[0], modes, tolerance=tolerance).eigenvalue[None]
     return lambda deadline: frequency_locus(scene, speeds, modes, tolerance=tolerance).eigenvalue

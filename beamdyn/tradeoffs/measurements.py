@@ -1,4 +1,4 @@
-"""Measured errors and times, the Pareto front among them, and the cost of a digit."""
+"""Measured errors and times, their Pareto front, and the cost per digit."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from beamdyn.common.results import Result
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_DIGITS = 14
+_MOST_DIGITS = 14  # of `cost_per_digit`; double precision has 16
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """One way to the answer.
+    """Error and time of one setting.
 
     Parameters
     ----------
     family : str
-        The method: a basis, a kind of element, an integrator.
+        A basis, a kind of element, an integrator.
     setting : str
-        Its setting, in words.
+        Setting of the family, in words.
     size : float
-        The number that is varied: functions, elements, modes, harmonics or a tolerance.
+        Varied number: functions, elements, modes, harmonics or a tolerance.
     error : float
-        Relative error of the answer; inf if it is not a number.
+        Relative error of the result; inf where the result is not a number.
     time : float
         Shortest processor time of several runs, in one thread [s].
     """
@@ -45,18 +45,18 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Digit:
-    """The cheapest way to a number of digits.
+    """Cheapest measurement with a number of correct digits.
 
     Parameters
     ----------
     error : float
-        Largest error that is allowed.
+        Largest allowed error.
     family, setting : str
-        The cheapest measurement that keeps it.
+        Family and setting of the cheapest measurement within this error.
     time : float
-        Its time [s].
+        Time of this measurement [s].
     ratio : float
-        Its time over that of one digit less; nan for the first.
+        Ratio of the time to that of one digit less; nan for the first digit.
     """
 
     error: float
@@ -66,40 +66,40 @@ class Digit:
     ratio: float
 
 
-def counted(number: int, one: str, many: str) -> str:
-    """A number of things, in words."""
+def number_of(number: int, one: str, many: str) -> str:
+    """Number with its noun, in the singular or the plural."""
     return f"{number} {one if number == 1 else many}"
 
 
 def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
-    """The measurements that none beats: none is as good in error and in time and better in one of them.
+    """Find the Pareto front: the measurements than which none is better in error or time and as good in both.
 
     Parameters
     ----------
     measurements : sequence of Measurement
-        In any order; those without a finite error are never in the front.
+        Measurements in any order; those without a finite error are never in the front.
 
     Returns
     -------
     tuple of Measurement
-        The quickest first.
+        The front, the fastest first.
     """
-    front, best, when = [], inf, nan
+    front, best, best_time = [], inf, nan
     for m in sorted(measurements, key=lambda m: (m.time, m.error)):
-        if isfinite(m.error) and (m.error < best or (m.error, m.time) == (best, when)):
+        if isfinite(m.error) and (m.error < best or (m.error, m.time) == (best, best_time)):
             front.append(m)
-            best, when = m.error, m.time
+            best, best_time = m.error, m.time
     return tuple(front)
 
 
 def cost_per_digit(measurements: Sequence[Measurement]) -> tuple[Digit, ...]:
-    """The shortest time for errors of at most 1e-1, 1e-2, ..., as far as they are reached."""
+    """Find the cheapest measurements with errors of at most 1e-1, 1e-2, ..., down to the smallest reached."""
     digits: list[Digit] = []
     for k in range(1, _MOST_DIGITS + 1):
-        good = [m for m in measurements if m.error <= 10.0**-k]
-        if not good:
+        candidates = [m for m in measurements if m.error <= 10.0**-k]
+        if not candidates:
             break
-        m = min(good, key=lambda m: m.time)
+        m = min(candidates, key=lambda m: m.time)
         ratio = m.time / digits[-1].time if digits else nan
         digits.append(Digit(10.0**-k, m.family, m.setting, m.time, ratio))
     return tuple(digits)
@@ -107,26 +107,26 @@ def cost_per_digit(measurements: Sequence[Measurement]) -> tuple[Digit, ...]:
 
 @dataclass(frozen=True)
 class Diagram(Result):
-    """A work-precision diagram: error against time of every way to one answer.
+    """Work-precision diagram: error against time of all settings that compute the same result.
 
     Parameters
     ----------
     title : str
-        What is computed.
+        Computed quantity.
     error_of : str
-        What the error is of, and relative to what.
+        Quantity whose error is measured, and what the error is relative to.
     reference : str
-        The answer that the others are compared with, and how it was checked.
+        Reference result, and how it was checked.
     resolved : float
-        Relative error of the reference: smaller errors are counted as this large.
+        Relative error of the reference: no measured error is reported below it.
     measurements : tuple of Measurement
-        Family by family, the cheapest first.
+        All measurements, by family, the cheapest first.
     front : tuple of Measurement
-        The Pareto front, the quickest first.
+        Pareto front, the fastest first.
     per_digit : tuple of Digit
-        What each digit costs.
+        Cheapest measurement for each number of digits.
     skipped : tuple of str
-        What was not measured, and why.
+        Settings that were not measured, and why.
     """
 
     title: str
@@ -139,7 +139,7 @@ class Diagram(Result):
     skipped: tuple[str, ...]
 
     @classmethod
-    def of(
+    def make(
         cls,
         title: str,
         error_of: str,
@@ -148,7 +148,7 @@ class Diagram(Result):
         measurements: Sequence[Measurement],
         skipped: Sequence[str] = (),
     ) -> Diagram:
-        """The diagram with its front and its cost per digit."""
+        """Make a diagram, with its front and cost per digit."""
         front, per_digit = pareto_front(measurements), cost_per_digit(measurements)
         return cls(
             title, error_of, reference, resolved, tuple(measurements), front, per_digit, tuple(skipped)
@@ -156,7 +156,7 @@ class Diagram(Result):
 
     @property
     def summary(self) -> str:
-        """The front in a line: its families and settings in the order of their times."""
+        """Front as one line of text: families and settings by ascending time."""
         parts = []
         for family, members in groupby(self.front, key=lambda m: m.family):
             settings = [m.setting for m in members]
@@ -164,7 +164,7 @@ class Diagram(Result):
         return ", then ".join(parts)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw error against time, a line a family, and the front."""
+        """Draw error against time, one line per family, and the front."""
         from beamdyn.output.plots import plot_work_precision
 
         lines: dict[str, list[tuple[float, float]]] = {}

@@ -1,4 +1,4 @@
-"""The trade of a scene between error and time, in all that the scene asks for."""
+"""Trade-off of a scene between error and computing time, over all of its computations."""
 
 from __future__ import annotations
 
@@ -25,30 +25,29 @@ from beamdyn.tradeoffs.transients import integrators_diagram, transient_modes_di
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0
-_PERIODS = 100  # of the first mode, after the start, in a run whose length is not given
-_LONG_START = 900  # periods of a start that is too long for that
-_LOCUS, _STEADY = 101, 50  # speeds
+LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # [s]
+_DEFAULT_PERIODS = 100  # of the first mode, after the start, in a run whose length is not given
+_LONGEST_START = 900  # periods of the first mode; a longer start is not waited for
+_LOCUS, _STEADY = 101, 50  # numbers of speeds
 _SHARES = {"frequencies": 0.05, "locus": 0.07, "integrators": 0.72, "transient modes": 0.06, "steady": 0.05}
 
 
 @dataclass(frozen=True)
 class Tradeoff(Result):
-    """Error against time in everything that a scene asks for.
+    """Error against computing time of frequencies, transients and steady response of a scene.
 
     Parameters
     ----------
     speed : float
-        Speed of the frequencies, and the highest of the loci [rad/s].
+        Speed of the frequencies, and highest speed of the locus and of the steady response [rad/s].
     t_end : float
         End of the transients [s]; nan if the scene has no motion.
     diagrams : tuple of Diagram
-        Frequencies, transients, steady response: each with its Pareto front, the cost of its digits, and
-        what the budget left out.
+        Diagrams of frequencies, transients and steady response.
     warnings : tuple of str
-        Diagrams that there are not, and why.
+        Diagrams that are missing, and why.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
     """
 
     speed: float
@@ -59,7 +58,7 @@ class Tradeoff(Result):
     scene: Scene = field(repr=False)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw all diagrams side by side in the place of the axes."""
+        """Draw all diagrams side by side, in place of the axes."""
         from beamdyn.output.plots import panels
 
         ax, places = panels(len(self.diagrams), ax)
@@ -76,23 +75,23 @@ def tradeoff(
     budget: float = 60.0,
     progress: Callable[[int, int], None] | None = None,
 ) -> Tradeoff:
-    """Measure what accuracy costs on a scene: bases, elements, integrators, modes, harmonics.
+    """Measure error against computing time on a scene: bases, elements, integrators, modes, harmonics.
 
     Parameters
     ----------
     scene : Scene
         The scene; transients and the steady response are measured if it has a motion.
     speed : float, optional
-        Speed of the frequencies [rad/s]; if not given, that at which the motion ends, or rest.
+        Speed of the frequencies [rad/s]; by default the final speed of the motion, or 0.
     modes : int
-        Modes that are wanted.
+        Number of modes.
     t_end : float, optional
-        End of the transients [s]; a hundred periods of the first mode
-        after the start, if that is not too long, or from the start, if not given.
+        End of the transients [s]; by default a hundred periods of the first mode after the motion has
+        settled, or from its start if settling takes too long.
     budget : float
-        Time that all of it may take, about [s]; what does not fit is left out, and named.
+        Approximate time for all measurements [s]; the diagrams name the settings that did not fit.
     progress : callable, optional
-        Called with the number of diagrams that are done, and of all.
+        Called with the number of finished diagrams and of all.
 
     Returns
     -------
@@ -104,19 +103,19 @@ def tradeoff(
         If an argument is out of its range, or `t_end` is given for a scene without motion.
     """
     start = perf_counter()
-    modes, budget = count("modes", modes), _checked_budget(budget)
+    modes, budget = count("modes", modes), _check_budget(budget)
     if t_end is not None and scene.motion is None:
         raise ValueError(
             f"t_end = {t_end!r}: the scene has no motion, so there is no transient; add one, or leave it out"
         )
-    speed = _final_speed(scene) if speed is None else real("speed", speed, "rad/s")
+    speed = _default_speed(scene) if speed is None else real("speed", speed, "rad/s")
     end = np.nan if scene.motion is None else _end(scene) if t_end is None else positive("t_end", t_end, "s")
-    parts = list(_parts(scene, speed, modes, end, budget))
+    tasks = list(_list_diagrams(scene, speed, modes, end, budget))
     diagrams = []
-    for done, part in enumerate(parts):
+    for done, task in enumerate(tasks):
         if progress is not None:
-            progress(done, len(parts))
-        diagrams.append(part())
+            progress(done, len(tasks))
+        diagrams.append(task())
     return Tradeoff(
         speed=speed,
         t_end=end,
@@ -127,36 +126,36 @@ def tradeoff(
     )
 
 
-def _checked_budget(budget: float) -> float:
+def _check_budget(budget: float) -> float:
     budget = positive("budget", budget, "s", "give a time such as 60")
     if not LEAST_BUDGET <= budget <= LARGEST_BUDGET:
         raise ValueError(f"budget = {budget:g} s: give {LEAST_BUDGET:g} to {LARGEST_BUDGET:g} s, such as 60")
     return budget
 
 
-def _final_speed(scene: Scene) -> float:
+def _default_speed(scene: Scene) -> float:
     final = 0.0 if scene.motion is None else scene.motion.final_speed
     return final if isfinite(final) else 0.0
 
 
 def _end(scene: Scene) -> float:
-    """A hundred periods of the first mode after the start, if that is not too long [s]."""
+    """Default end [s]: a hundred periods of the first mode, after the motion has settled if that is soon."""
     assert scene.motion is not None
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
-    settled = scene.motion.settled if scene.motion.settled <= _LONG_START * period else 0.0
-    return min(_rounded(settled + _PERIODS * period), scene.motion.end)
+    settled = scene.motion.settled if scene.motion.settled <= _LONGEST_START * period else 0.0
+    return min(_round_to_two_digits(settled + _DEFAULT_PERIODS * period), scene.motion.end)
 
 
-def _rounded(value: float) -> float:
-    """A value with two digits."""
+def _round_to_two_digits(value: float) -> float:
+    """Round to two significant digits."""
     return float(f"{value:.1e}")
 
 
-def _parts(
+def _list_diagrams(
     scene: Scene, speed: float, modes: int, t_end: float, budget: float
 ) -> Iterator[Callable[[], Diagram]]:
-    """The diagrams that the scene asks for, each with its share of the budget."""
+    """List the diagrams that apply to the scene, each with its share of the budget."""
     time = {name: share * budget for name, share in _SHARES.items()}
     yield partial(frequency_diagram, scene, np.array([speed]), modes, time["frequencies"])
     if speed:
@@ -166,13 +165,13 @@ def _parts(
         return
     yield partial(integrators_diagram, scene, t_end, modes, time["integrators"])
     yield partial(transient_modes_diagram, scene, t_end, time["transient modes"])
-    if _has_steady(scene) and speed > 0:
+    if _has_known_steady_state(scene) and speed > 0:
         speeds = np.linspace(0, speed, _STEADY + 1)[1:]
         yield partial(harmonics_diagram, scene, speeds, modes, time["steady"])
         yield partial(steady_modes_diagram, scene, speeds, time["steady"])
 
 
-def _has_steady(scene: Scene) -> bool:
+def _has_known_steady_state(scene: Scene) -> bool:
     try:
         check_steady_state(scene.motion)
     except ValueError:
@@ -183,7 +182,7 @@ def _has_steady(scene: Scene) -> bool:
 def _warnings(scene: Scene, diagrams: list[Diagram]) -> Iterator[str]:
     if scene.motion is None:
         yield "the scene has no motion: transients and the steady response are not measured"
-    elif not _has_steady(scene):
+    elif not _has_known_steady_state(scene):
         yield "the motion has no known steady state: the steady response is not measured"
     for diagram in diagrams:
         if not diagram.measurements:

@@ -1,4 +1,4 @@
-"""Measure error and time of settings within a budget of time."""
+"""Measurement of error and time of settings within a time budget."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numpy.linalg import LinAlgError
 
 from beamdyn.tradeoffs.measurements import Measurement
 
-RUNS = 7  # the shortest counts: what else the machine does can only add
-_ENOUGH = 0.4  # share of a setting's time that its repetitions may take
+RUNS = 7  # of a setting; the shortest counts, because other programs can only add time
+_REPEATS = 0.4  # of a setting's share of the budget, for repetitions
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class Setting:
     Parameters
     ----------
     name : str
-        In words.
+        Name, in words.
     size : float
-        The number that is varied.
+        Varied number.
     run : callable
-        Computes the answer; it is given the time of the clock [s] at which it may give up by a
-        TimeoutError that says where.
+        Computes the result; its argument is the deadline on the clock `perf_counter` [s], past which
+        it may raise a TimeoutError that says how far it came.
     """
 
     name: str
@@ -38,14 +38,14 @@ class Setting:
 
 @dataclass(frozen=True)
 class Family:
-    """Settings of one method, the cheapest first.
+    """Settings of one basis, kind of element or integrator, the cheapest first.
 
     Parameters
     ----------
     name : str
-        The method.
+        Name.
     settings : tuple of Setting
-        Its settings.
+        Settings.
     """
 
     name: str
@@ -55,75 +55,75 @@ class Family:
 def measure_families(
     families: Sequence[Family], error: Callable[[Any], float], resolved: float, budget: float
 ) -> tuple[list[Measurement], list[str]]:
-    """Measure all settings of all families, each family with an equal share of the budget left.
+    """Measure all settings of all families, each family with an equal share of the remaining budget.
 
     Parameters
     ----------
     families : sequence of Family
-        What is measured.
+        Families to measure.
     error : callable
-        Relative error of an answer.
+        Computes the relative error of a result.
     resolved : float
-        The least error that can be told from zero.
+        Lower bound of the errors: that of the reference.
     budget : float
-        Time for all [s].
+        Time for all measurements [s].
 
     Returns
     -------
     list of Measurement
-        One for each setting that was measured.
+        Measurements, one per measured setting.
     list of str
-        Sentences on those left out, and why.
+        Sentences on the settings that were left out, and why.
     """
     end = perf_counter() + budget
     measurements: list[Measurement] = []
     skipped: list[str] = []
     for i, family in enumerate(families):
         share = max(0.0, (end - perf_counter()) / (len(families) - i))
-        own, why = _measure_family(family, error, resolved, share)
-        measurements += own
-        skipped += [f"{family.name}: {why}"] if why else []
+        measured, reason = _measure_family(family, error, resolved, share)
+        measurements += measured
+        skipped += [f"{family.name}: {reason}"] if reason else []
     return measurements, skipped
 
 
 def _measure_family(
     family: Family, error: Callable[[Any], float], resolved: float, share: float
 ) -> tuple[list[Measurement], str]:
-    """Measurements of a family, and why the rest was left out."""
+    """Measure a family: the measurements, and why the rest was left out."""
     start, last = perf_counter(), 0.0
     measurements: list[Measurement] = []
     for setting in family.settings:
-        left = share - (perf_counter() - start)
-        if left < last:
+        rest = share - (perf_counter() - start)
+        if rest < last:
             return measurements, f"left out from {setting.name} on, its {share:.2g} s being used up"
         try:
-            answer, last, shortest = _time_shortest(setting, left, _ENOUGH * share / len(family.settings))
+            result, last, shortest = _time_runs(setting, rest, _REPEATS * share / len(family.settings))
         except TimeoutError as stop:
-            return measurements, f"{setting.name} given up after {left:.2g} s {stop}, and the rest left out"
+            return measurements, f"{setting.name} given up after {rest:.2g} s {stop}, and the rest left out"
         except (ArithmeticError, LinAlgError) as failure:
             return measurements, f"{setting.name} failed ({failure}), and the rest left out"
-        e = error(answer)
-        bounded = inf if isnan(e) else max(e, resolved)
+        relative_error = error(result)
+        bounded = inf if isnan(relative_error) else max(relative_error, resolved)
         measurements.append(Measurement(family.name, setting.name, setting.size, bounded, shortest))
     return measurements, ""
 
 
-def _time_shortest(setting: Setting, left: float, spare: float) -> tuple[Any, float, float]:
-    """The answer, the time that the first run took, and the shortest processor time of some runs [s].
+def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, float, float]:
+    """Run a setting several times: the result, the first run's wall time, the shortest processor time [s].
 
-    Processor time, because in it other programs hardly show; all runs in one thread.
+    Other programs hardly influence the processor time; all runs are in one thread.
     """
     start = perf_counter()
     times: list[float] = []
-    answer, first = None, 0.0
+    result, first = None, 0.0
     while not times or (len(times) < RUNS and perf_counter() - start < spare):
-        began = process_time()
-        answer = setting.run(start + left)
-        times.append(process_time() - began)
+        cpu_start = process_time()
+        result = setting.run(start + rest)
+        times.append(process_time() - cpu_start)
         first = first or perf_counter() - start
-    return answer, first, min(times)
+    return result, first, min(times)
 
 
 def remaining_budget(budget: float, start: float) -> float:
-    """Budget left [s] by a reference that was begun at `start`, at least half of it."""
+    """Budget [s] that remains after a reference begun at `start` [s], at least half of it."""
     return max(budget / 2, budget - (perf_counter() - start))

@@ -1,4 +1,4 @@
-"""Transients: integrators over their tolerance, and the number of modes."""
+"""Work-precision of transients: integrators over their tolerance, and the number of modes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.modal.choice import choose_model
 from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.scene.scene import Scene
-from beamdyn.tradeoffs.measurements import Diagram, counted
+from beamdyn.tradeoffs.measurements import Diagram, number_of
 from beamdyn.tradeoffs.timing import Family, Setting, measure_families, remaining_budget
 from beamdyn.transient.simulate import Transient, TransientRequest, simulate
 
@@ -21,15 +21,15 @@ OURS = "Gauss collocation"
 STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _TOLERANCES = tuple(10.0**-k for k in range(1, 11))
 _STOCK_TOLERANCES = tuple(10.0**-k for k in range(2, 10))
-_TIGHTEST = 1e-11
-_SECOND = 1e-11  # rtol of the second route
-_PART = 0.05  # of the run that the second route follows
-_SECOND_SHARE = 0.15  # of the budget
-_INSTANTS = 20_001
+_TIGHTEST = 1e-11  # tolerance of the reference
+_CHECK_RTOL = 1e-11  # of DOP853, which checks the reference
+_CHECKED_PART = 0.05  # of the run, from its start
+_CHECK_SHARE = 0.15  # of the budget
+_INSTANTS = 20_001  # times at which tip deflections are compared
 AT_REST, AT_ENDS = "modes at rest", "modes at the slowest and the fastest speed"
 _MODES = tuple(range(1, 11))
 _MODES_AT_ENDS = (1, 2, 3, 4, 6)
-_ALL_MODES = 8  # at each of two speeds
+_ALL_MODES = 8  # of the reference, at each of two speeds
 _MODES_TOLERANCE = 1e-7
 _ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
 _TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
@@ -38,10 +38,10 @@ _STILL = "nothing moves the beam"
 
 @one_blas_thread()
 def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: float = 30.0) -> Diagram:
-    """Error against time of our integrator and the stock ones, over their tolerances.
+    """Measure error against time of Gauss collocation and the methods of `solve_ivp`, over tolerances.
 
-    All integrate the same equations, in the same modes of the same basis, through `simulate`, whose
-    right-hand side serves any scene: one written by hand for a scene would speed the stock methods up.
+    All integrate the same modal equations through `simulate`, whose right-hand side serves any scene: one
+    written by hand for a scene would be faster with the methods of `solve_ivp`.
 
     Parameters
     ----------
@@ -60,21 +60,21 @@ def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: floa
     """
     start = perf_counter()
     basis = choose_model(scene, "ritz", np.zeros(1), modes).discretization
-    title = f"transient of {t_end:g} s, {counted(modes, 'mode', 'modes')}"
+    title = f"transient of {t_end:g} s, {number_of(modes, 'mode', 'modes')}"
     exact = simulate(scene, t_end, modes, _TIGHTEST, discretization=basis)
     if not exact.largest:
-        return Diagram.of(title, _ERROR_OF, _TIGHT, 0.0, (), (_STILL,))
-    second = _second_route(scene, exact, modes, basis, _SECOND_SHARE * budget)
+        return Diagram.make(title, _ERROR_OF, _TIGHT, 0.0, (), (_STILL,))
+    check = _check_by_dop853(scene, exact, modes, basis, _CHECK_SHARE * budget)
     families = list(_integrators(scene, t_end, modes, basis))
     left = remaining_budget(budget, start)
     error, resolved = _tip_error(exact, t_end), _relative(exact.time_error, exact.largest)
     measurements, skipped = measure_families(families, error, resolved, left)
-    return Diagram.of(title, _ERROR_OF, f"{_TIGHT}; {second}", resolved, measurements, skipped)
+    return Diagram.make(title, _ERROR_OF, f"{_TIGHT}; {check}", resolved, measurements, skipped)
 
 
 @one_blas_thread()
 def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> Diagram:
-    """Error against time of a transient over the number of modes: at rest, or at two speeds.
+    """Measure error against time of a transient over the number of modes, at rest or at two speeds.
 
     Parameters
     ----------
@@ -106,49 +106,51 @@ def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> 
     exact = run(ModalBasis(_ALL_MODES, ends))
     reference = f"{exact.request.basis}, all with a time-integration tolerance of {_MODES_TOLERANCE:g}"
     if not exact.largest:
-        return Diagram.of(title, _ERROR_OF, reference, 0.0, (), (_STILL,))
+        return Diagram.make(title, _ERROR_OF, reference, 0.0, (), (_STILL,))
     resolved = _relative(exact.time_error, exact.largest)
     families = [family(AT_REST, (0.0,), _MODES), family(AT_ENDS, ends, _MODES_AT_ENDS)]
     measurements, skipped = measure_families(
         families, _tip_error(exact, t_end), resolved, remaining_budget(budget, start)
     )
-    return Diagram.of(title, _ERROR_OF, reference, resolved, measurements, skipped)
+    return Diagram.make(title, _ERROR_OF, reference, resolved, measurements, skipped)
 
 
 def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
-    """Largest difference of the tip deflection at common times, relative to the largest deflection."""
+    """Error measure: largest difference of the tip deflection at common times, over the largest."""
     t = np.linspace(0, t_end, _INSTANTS)
     true = exact.deflection(t)
     return lambda run: _relative(float(np.abs(run.deflection(t) - true).max()), exact.largest)
 
 
 def _relative(difference: float, largest: float) -> float:
+    """Difference over the largest deflection; absolute where that is 0."""
     return difference / largest if largest else difference
 
 
-def _second_route(scene: Scene, exact: Transient, modes: int, basis: Discretization, limit: float) -> str:
-    """How far DOP853 at a tight tolerance is from the reference on the first part of the run."""
-    end = _PART * exact.path.end
-    options = {"discretization": basis, "events": _until(perf_counter() + limit)}
+def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discretization, limit: float) -> str:
+    """Compare the reference with DOP853 at a tight tolerance on the first part of the run, in words."""
+    end = _CHECKED_PART * exact.path.end
+    options = {"discretization": basis, "events": _stop_after(perf_counter() + limit)}
     try:
-        other = simulate(scene, end, modes, _SECOND, "DOP853", **options)
+        other = simulate(scene, end, modes, _CHECK_RTOL, "DOP853", **options)
     except TimeoutError:
-        return f"no second route: DOP853 took more than {limit:.2g} s for the first {end:.3g} s"
+        return f"not checked by DOP853, which took more than {limit:.2g} s for the first {end:.3g} s"
     t = np.linspace(0, end, 1001)
-    away = np.abs(other.deflection(t) - exact.deflection(t)).max()
-    return (
-        f"DOP853 with rtol {_SECOND:g} differs by {_relative(float(away), other.largest):.1e} to {end:.3g} s"
-    )
+    difference = np.abs(other.deflection(t) - exact.deflection(t)).max()
+    differs = _relative(float(difference), other.largest)
+    return f"DOP853 with rtol {_CHECK_RTOL:g} differs by {differs:.1e} to {end:.3g} s"
 
 
 def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) -> Iterator[Family]:
+    """Families of the integrators, over their tolerances."""
+
     def ours(tolerance: float) -> Callable[[float], Any]:
         return lambda deadline: simulate(scene, t_end, modes, tolerance, discretization=basis)
 
     def stock(method: str, rtol: float) -> Callable[[float], Any]:
         def run(deadline: float) -> Transient:
-            with np.errstate(over="ignore", invalid="ignore"):  # some diverge: that is their error
-                options = {"discretization": basis, "events": _until(deadline)}
+            with np.errstate(over="ignore", invalid="ignore"):  # divergence is measured as error
+                options = {"discretization": basis, "events": _stop_after(deadline)}
                 return simulate(scene, t_end, modes, rtol, method, **options)
 
         return run
@@ -159,8 +161,8 @@ def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) 
         yield Family(f"solve_ivp {method}", tuple(cases))
 
 
-def _until(deadline: float) -> Callable[[float, np.ndarray], float]:
-    """An event that never comes, but gives up after each step that ends past the deadline."""
+def _stop_after(deadline: float) -> Callable[[float, np.ndarray], float]:
+    """Event for `solve_ivp` that never occurs, but raises a TimeoutError once the deadline has passed."""
 
     def event(t: float, y: np.ndarray) -> float:
         if perf_counter() > deadline:

@@ -1,8 +1,8 @@
-"""Many transients of one beam advanced together: the same steps, one motion each.
+"""Transients of one beam for several motions, integrated as one batch with common steps.
 
 The collocation equations are those of `gauss`, but each step is solved for all cases at once
-by iteration, with the diagonal of the stiffness treated exactly.  The cost of a step is then that
-of a few products of small matrices for all cases, and not that of a factorisation for each.
+by iteration, with the diagonal of the stiffness treated implicitly and exactly.  A step then costs
+a few products of small matrices for all cases, and no factorisation for each.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ from beamdyn.transient.time_error import (
 )
 from beamdyn.transient.trajectory import Trajectory
 
-_ITERATIONS = 40
-_CONVERGED = 1e-12  # change of the stage displacements relative to the largest
-_AT_RESIDUE = 1e-6  # error over the largest deflection from which what the iteration leaves may be all of it
-_SURVEY = 16  # steps between counts of the iterations that are needed
+_MOST_ITERATIONS = 40  # of a step, before it counts as not converged
+_CONVERGED = 1e-12  # change of the displacements in the last iteration, over the largest displacement
+_ITERATION_ERROR = 1e-6  # error over the largest deflection that unconverged iterations may cause
+_CHOICE_INTERVAL = 16  # steps for which the number of iterations is chosen at once
 
 
 @dataclass(frozen=True)
 class TipHistories:
-    """Tip deflections of a batch.
+    """Tip deflections of a batch of transients.
 
     Parameters
     ----------
     tips : tuple of Trajectory
         Tip deflection of each case, as the single coordinate of a trajectory.
     time_error : tuple of float
-        Estimated time-integration error of each [m].
+        Estimated time-integration error of each case [m].
     """
 
     tips: tuple[Trajectory, ...]
@@ -50,12 +50,12 @@ class TipHistories:
 
 
 def integrate_batch(systems: Sequence[ModalSystem], t_end: float, tolerance: float = 1e-5) -> TipHistories:
-    """Integrate from rest, all cases with the steps of the most demanding one.
+    """Integrate all cases from rest, with the step size of the most demanding one.
 
     Parameters
     ----------
     systems : sequence of ModalSystem
-        Cases that differ in their motions alone; the motions share their breakpoints.
+        Cases that differ only in their motions; the motions share their breakpoints.
     t_end : float
         End of the run [s].
     tolerance : float
@@ -73,24 +73,25 @@ def integrate_batch(systems: Sequence[ModalSystem], t_end: float, tolerance: flo
     systems = _diagonalize(systems)
     step_size, last = StepSize.from_tolerance(tolerance), np.inf
     while True:
-        tips, errors = _advance_all(systems, t_end, step_size)
-        bounds = [tolerance * max(_largest(s) for s in path.segments) for path in tips]
+        tips, errors = _integrate_all(systems, t_end, step_size)
+        bounds = [tolerance * max(_largest_deflection(s) for s in path.segments) for path in tips]
         worst = int(np.argmax([e.total / max(b, 1e-300) for e, b in zip(errors, bounds, strict=True)]))
         total, bound = errors[worst].total, bounds[worst]
-        at_residue = last / 2 < total < _AT_RESIDUE / tolerance * bound
-        if total <= bound or at_residue or step_size.is_finest:
+        stalled = last / 2 < total < _ITERATION_ERROR / tolerance * bound
+        if total <= bound or stalled or step_size.is_finest:
             return TipHistories(tuple(tips), tuple(e.total for e in errors))
         step_size, last = step_size.refine(errors[worst], bound), total
 
 
-def _largest(segment: Segment) -> float:
+def _largest_deflection(segment: Segment) -> float:
+    """Largest tip deflection at the ends of the steps [m], of a segment whose only coordinate it is."""
     return float(np.abs(segment.state[:, 1]).max())
 
 
-def _advance_all(
+def _integrate_all(
     systems: Sequence[ModalSystem], t_end: float, step_size: StepSize
 ) -> tuple[list[Trajectory], list[TimeError]]:
-    """Tip deflections and their errors, with steps as small as every case needs."""
+    """Integrate with equal steps in each segment, small enough for every case; with the errors."""
     C, n = len(systems), systems[0].size
     state = np.zeros((C, n)), np.zeros((C, n))
     runs: list[_SegmentRun] = []
@@ -107,21 +108,21 @@ def _advance_all(
 
 
 def _diagonalize(systems: Sequence[ModalSystem]) -> list[ModalSystem]:
-    """The same systems in coordinates in which each field's stiffness is nearly diagonal at the end.
+    """Transform to coordinates in which the stiffness of each field is nearly diagonal at the final speed.
 
-    The iteration treats the diagonal exactly, so that few iterations are left.
+    The iteration treats the diagonal exactly, so that it then converges fast.
     """
     middle = systems[len(systems) // 2]
     speed = middle.motion.final_speed
     steady = SteadyRotation(speed if np.isfinite(speed) else 0.0)
     _, K, _ = ModalSystem(middle.equations, steady).coefficients(np.zeros(()))
-    turn = {name: np.linalg.eigh(K[place, place])[1] for name, place in middle.equations.blocks.items()}
-    equations = middle.equations.reduced(turn)
+    bases = {name: np.linalg.eigh(K[block, block])[1] for name, block in middle.equations.blocks.items()}
+    equations = middle.equations.reduced(bases)
     return [ModalSystem(equations, s.motion) for s in systems]
 
 
 class _SegmentRun:
-    """One segment of equal steps of all cases: the records that it fills as it advances."""
+    """Integration of all cases over one segment of equal steps, with the recorded states."""
 
     def __init__(self, systems: Sequence[ModalSystem], start: float, h: float, steps: int) -> None:
         C, n = len(systems), systems[0].size
@@ -131,38 +132,38 @@ class _SegmentRun:
         self.accelerations = np.empty((steps, STAGES, C))
         self.checked = choose_checked_steps(steps)
         self.states = np.ones((len(self.checked), C, 2 * n + 1))
-        self.reached = np.empty((len(self.checked), C, 2 * n))
+        self.end_state = np.empty((len(self.checked), C, 2 * n))
         self.converged, self.iterations = True, 2
 
     def advance(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Advance all cases from (q, v), shapes (C, n), to the end of the segment."""
+        """Integrate all cases from (q, v), shapes (C, n), to the end of the segment."""
         table, h, check = tableau(STAGES), self.h, {k: i for i, k in enumerate(self.checked.tolist())}
-        for k, step in enumerate(self._steps(table)):
+        for k, step in enumerate(self._step_coefficients(table)):
             self.tips[k] = q @ self.tip, v @ self.tip
             if k in check:
                 self.states[check[k], :, 1:] = np.hstack([q, v])
-            if k % _SURVEY == 0:
-                self._survey(step, q, v)
+            if k % _CHOICE_INTERVAL == 0:
+                self._choose_iterations(step, q, v)
             a = self._solve(step, q, v, self.iterations)[0]
             self.accelerations[k] = a @ self.tip
             flat = a.reshape(STAGES, -1)
             q = q + h * v + h**2 * (table.b2 @ flat).reshape(q.shape)
             v = v + h * (table.b @ flat).reshape(v.shape)
             if k in check:
-                self.reached[check[k]] = np.hstack([q, v])
+                self.end_state[check[k]] = np.hstack([q, v])
         self.tips[self.steps] = q @ self.tip, v @ self.tip
         return q, v
 
-    def _steps(self, table: Tableau) -> Iterator[_Step]:
-        """Coefficients of each step, computed for blocks of steps."""
+    def _step_coefficients(self, table: Tableau) -> Iterator[_StepCoefficients]:
+        """Compute the coefficients of each step, in blocks of steps."""
         for first in range(0, self.steps, BLOCK):
             k = np.arange(first, min(first + BLOCK, self.steps))
             times = self.start + self.h * (k[:, None] + np.append(table.c, 0.5))
             yield from _coefficients(self.systems, times, self.h)
 
-    def _survey(self, step: _Step, q: np.ndarray, v: np.ndarray) -> None:
-        """Find how many iterations the next steps need, and whether all cases converge."""
-        for self.iterations in range(2, _ITERATIONS):
+    def _choose_iterations(self, step: _StepCoefficients, q: np.ndarray, v: np.ndarray) -> None:
+        """Choose the number of iterations of the next steps, and note if some case does not converge."""
+        for self.iterations in range(2, _MOST_ITERATIONS):
             (_, before), (_, after) = (self._solve(step, q, v, self.iterations + i) for i in (0, 1))
             change, size = (np.abs(x).max(axis=(0, 2)) for x in (after - before, after + np.abs(q)))
             if (change <= _CONVERGED * size).all():
@@ -170,38 +171,50 @@ class _SegmentRun:
         self.converged = False
 
     def _solve(
-        self, step: _Step, q: np.ndarray, v: np.ndarray, iterations: int
+        self, step: _StepCoefficients, q: np.ndarray, v: np.ndarray, iterations: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Accelerations at the nodes and what they move the nodes by, both of shape (s, C, n)."""
+        """Solve for the accelerations at the nodes and the displacements they cause, both (s, C, n)."""
         table, h = tableau(STAGES), self.h
-        forward, back, _ = _decompose_A2(STAGES)
-        still = q + h * table.c[:, None, None] * v  # displacement at the nodes without acceleration
-        shape, a, moved, rate = still.shape, still, np.zeros_like(still), v if step.damping else None
+        to_eigen, from_eigen, _ = _decompose_A2(STAGES)
+        free = q + h * table.c[:, None, None] * v  # displacement at the nodes without acceleration
+        a, displacement, velocity = free, np.zeros_like(free), v if step.damping else None
         for _ in range(iterations):
-            g = step.acceleration(still + moved, rate)
-            g += step.diagonal * moved
-            pairs = (forward @ g.reshape(STAGES, -1)).reshape(2, STAGES // 2, *shape[1:])
-            solved = (pairs[0] + 1j * pairs[1]) * step.inverse
-            a = back @ np.concatenate([solved.real, solved.imag]).reshape(STAGES, -1)
-            moved = (h**2 * table.A2 @ a).reshape(shape)
+            g = step.acceleration(free + displacement, velocity)
+            g += step.diagonal * displacement
+            pairs = (to_eigen @ g.reshape(STAGES, -1)).reshape(2, STAGES // 2, *q.shape)
+            z = (pairs[0] + 1j * pairs[1]) * step.inverse
+            a = from_eigen @ np.concatenate([z.real, z.imag]).reshape(STAGES, -1)
+            displacement = (h**2 * table.A2 @ a).reshape(free.shape)
             if step.damping:
-                rate = v + (h * table.A @ a).reshape(shape)
-        return a.reshape(shape), moved
+                velocity = v + (h * table.A @ a).reshape(free.shape)
+        return a.reshape(free.shape), displacement
 
     def segment(self, case: int) -> Segment:
-        """The tip deflection of a case."""
+        """Segment of a case, with the tip deflection as its only coordinate."""
         state = np.concatenate([np.ones((self.steps + 1, 1)), self.tips[:, :, case]], axis=1)
         return Segment(self.start, self.h, state, self.accelerations[:, :, case, None].copy())
 
     def checks(self, case: int) -> CheckedSteps:
-        """The checked steps of a case."""
+        """Checked steps of a case."""
         starts = self.start + self.h * self.checked
-        return CheckedSteps(starts, self.h, self.steps, self.states[:, case], self.reached[:, case])
+        return CheckedSteps(starts, self.h, self.steps, self.states[:, case], self.end_state[:, case])
 
 
 @dataclass(frozen=True)
-class _Step:
-    """Coefficients of one step of all cases: quantities of shape (s, C, 1) and constant matrices."""
+class _StepCoefficients:
+    """Coefficients of one step of all cases.
+
+    Parameters
+    ----------
+    stiffness, damping : list of (ndarray, ndarray)
+        Quantities of the root's motion, shape (s, C, 1), each with its constant matrix, transposed.
+    load : ndarray, shape (s, C, n)
+        Loads at the nodes.
+    diagonal : ndarray, shape (C, n)
+        Diagonal of the stiffness at mid-step.
+    inverse : ndarray of complex, shape (s / 2, C, n)
+        1 / (1 + h^2 beta diagonal) for the eigenvalues beta of the collocation.
+    """
 
     stiffness: list[tuple[np.ndarray, np.ndarray]]
     damping: list[tuple[np.ndarray, np.ndarray]]
@@ -210,7 +223,7 @@ class _Step:
     inverse: np.ndarray
 
     def acceleration(self, q: np.ndarray, v: np.ndarray | None) -> np.ndarray:
-        """F - K q - C v at the nodes, shape (s, C, n)."""
+        """Compute f - K q - C v at the nodes, shape (s, C, n)."""
         total = self.load.copy()
         for quantity, transposed in self.stiffness:
             total -= quantity * (q @ transposed)
@@ -221,27 +234,27 @@ class _Step:
 
 @cache
 def _decompose_A2(stages: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Spectrum of A2, whose eigenvalues come in conjugate pairs, in real arithmetic.
+    """Diagonalize A2, whose eigenvalues come in conjugate pairs, in real arithmetic.
 
     Returns
     -------
-    forward : ndarray, shape (s, s)
-        From values at the nodes to the real, then imaginary, parts of one coefficient of each pair.
-    back : ndarray, shape (s, s)
-        From such parts to values at the nodes.
+    to_eigen : ndarray, shape (s, s)
+        From values at the nodes to coefficients of one eigenvector of each pair: real, then imaginary parts.
+    from_eigen : ndarray, shape (s, s)
+        From such coefficients to values at the nodes.
     beta : ndarray of complex, shape (s / 2,)
         One eigenvalue of each pair.
     """
     beta, vectors = np.linalg.eig(tableau(stages).A2)
     upper = np.imag(beta) > 0
     inverse, vectors = np.linalg.inv(vectors)[upper], vectors[:, upper]
-    forward = np.concatenate([np.real(inverse), np.imag(inverse)])
-    back = 2 * np.concatenate([np.real(vectors), -np.imag(vectors)], axis=1)
-    return forward, back, beta[upper]
+    to_eigen = np.concatenate([np.real(inverse), np.imag(inverse)])
+    from_eigen = 2 * np.concatenate([np.real(vectors), -np.imag(vectors)], axis=1)
+    return to_eigen, from_eigen, beta[upper]
 
 
-def _coefficients(systems: Sequence[ModalSystem], times: np.ndarray, h: float) -> Iterator[_Step]:
-    """Coefficients of the steps whose nodes, then middles, are the rows of `times`."""
+def _coefficients(systems: Sequence[ModalSystem], times: np.ndarray, h: float) -> Iterator[_StepCoefficients]:
+    """Compute the coefficients of steps; a row of `times` has the nodes of a step, then its middle."""
     roots = [s.root(times) for s in systems]
     system, (_, _, beta) = systems[0], _decompose_A2(STAGES)
     stiffness, damping = ([*system.equations.matrices[order].items()] for order in (0, 1))
@@ -251,7 +264,7 @@ def _coefficients(systems: Sequence[ModalSystem], times: np.ndarray, h: float) -
     load = np.stack([system.equations.load(r) for r in roots], axis=2)
     inverse = 1 / (1 + h**2 * beta[:, None, None] * np.asarray(diagonal)[:, None])
     for k in range(len(times)):
-        yield _Step(
+        yield _StepCoefficients(
             stiffness=[(quantity[name][k, :-1], G.T) for name, G in stiffness],
             damping=[(quantity[name][k, :-1], G.T) for name, G in damping],
             load=load[k, :-1],

@@ -14,20 +14,20 @@ from beamdyn.common.parallel.store import Store, fingerprint
 from beamdyn.common.parallel.workers import Workers
 from beamdyn.transient.chunks import CaseResult, SweepRequest, solve_chunk
 
-VERSIONS = (__version__, np.__version__, scipy.__version__)  # whose bits are stored
+VERSIONS = (__version__, np.__version__, scipy.__version__)  # of the programs on which the stored bits depend
 
 Progress = Callable[[int, int], object]
 
 
 class SweepInterrupted(RuntimeError):
-    """The executor broke before all cases were done.
+    """Raised when the executor breaks before all cases are done.
 
     Parameters
     ----------
     done, total : int
-        Cases that were done, and all cases.
+        Number of cases that are done, and of all.
     stored : bool
-        Whether those that were done are in a store.
+        Whether the finished cases are in a store.
     """
 
     def __init__(self, done: int, total: int, stored: bool) -> None:
@@ -43,16 +43,16 @@ class SweepInterrupted(RuntimeError):
 
 
 class ChunkCollector:
-    """Computes the chunks of a sweep, or reads them from a store.
+    """Collector of the chunks of a sweep, computed or read from a store.
 
     Parameters
     ----------
     request : SweepRequest
-        The request.
+        The request that all cases share.
     chunks : list of tuple of float
         Speeds of each chunk [rad/s].
     store : Store, optional
-        Where finished chunks are kept.
+        Directory of the finished chunks.
     progress : callable, optional
         Called with the number of finished cases and of all.
     """
@@ -65,24 +65,30 @@ class ChunkCollector:
         progress: Progress | None,
     ) -> None:
         self.request, self.chunks, self.store, self.progress = request, chunks, store, progress
-        self.known: dict[int, list[CaseResult]] = {}
+        self.finished: dict[int, list[CaseResult]] = {}
         self.futures: dict[Future[Any], int] = {}
         if store is not None:
             self.keys = [fingerprint(VERSIONS, request, speeds) for speeds in chunks]
             stored = ((k, store.read(key)) for k, key in enumerate(self.keys))
-            self.known = {k: [CaseResult(*c) for c in record["cases"]] for k, record in stored if record}
+            self.finished = {k: [CaseResult(*c) for c in record["cases"]] for k, record in stored if record}
 
     @property
     def missing(self) -> list[int]:
-        """Chunks still to compute, those of high speeds first: they take longest."""
-        return [k for k in reversed(range(len(self.chunks))) if k not in self.known]
+        """Indices of the chunks still to compute, highest speeds first: they take longest."""
+        return [k for k in reversed(range(len(self.chunks))) if k not in self.finished]
 
     def cases(self) -> list[CaseResult]:
-        """All cases by ascending speed."""
-        return [case for k in range(len(self.chunks)) for case in self.known[k]]
+        """Results of all cases, by ascending speed."""
+        return [case for k in range(len(self.chunks)) for case in self.finished[k]]
 
     def collect(self, executor: Executor | None, workers: int) -> None:
-        """Compute what is missing."""
+        """Compute the missing chunks by an executor, or by `workers` processes of our own.
+
+        Raises
+        ------
+        SweepInterrupted
+            If the executor breaks.
+        """
         self._report()
         missing = self.missing
         workers = min(workers, len(missing))
@@ -93,32 +99,32 @@ class ChunkCollector:
                 self._submit(pool, missing)
         else:
             for k in missing:
-                self._keep(k, solve_chunk(self.request, self.chunks[k]))
+                self._record(k, solve_chunk(self.request, self.chunks[k]))
                 self._report()
 
     def _submit(self, executor: Executor, missing: list[int]) -> None:
-        """Compute chunks by an executor; at an error keep what is finished and cancel the rest."""
+        """Compute chunks by an executor; after an error record the finished ones and cancel the rest."""
         try:
             for k in missing:
-                future = self._ask(executor.submit, _return_errors, self.request, self.chunks[k])
+                future = self._call_executor(executor.submit, _return_errors, self.request, self.chunks[k])
                 self.futures[future] = k
             for future in as_completed(list(self.futures)):
-                found = self._ask(future.result)
-                self._keep(self.futures.pop(future), found)
+                cases = self._call_executor(future.result)
+                self._record(self.futures.pop(future), cases)
                 self._report()
         finally:
-            self._settle()
+            self._cancel_pending()
 
-    def _ask(self, action: Callable[..., Any], *args: Any) -> Any:
-        """What the executor answers: tasks return their errors, so that one that is raised is its own."""
+    def _call_executor(self, action: Callable[..., Any], *args: Any) -> Any:
+        """Call the executor; an error that it raises is its own, because tasks return theirs."""
         try:
             return action(*args)
         except Exception as error:
-            self._settle()
-            raise SweepInterrupted(*self._count(), stored=self.store is not None) from error
+            self._cancel_pending()
+            raise SweepInterrupted(*self._count_cases(), stored=self.store is not None) from error
 
-    def _settle(self) -> None:
-        """Cancel what has not begun; keep what has finished meanwhile."""
+    def _cancel_pending(self) -> None:
+        """Cancel chunks that have not begun, and record those that have finished meanwhile."""
         for future in self.futures:
             future.cancel()
         while self.futures:
@@ -128,28 +134,29 @@ class ChunkCollector:
                 and not future.cancelled()
                 and isinstance(future.exception() or future.result(), list)
             ):
-                self._keep(k, future.result())
+                self._record(k, future.result())
 
-    def _keep(self, k: int, found: list[CaseResult] | Exception) -> None:
-        if isinstance(found, Exception):
-            raise found
+    def _record(self, k: int, cases: list[CaseResult] | Exception) -> None:
+        """Store the cases of chunk k, or raise the error of its task."""
+        if isinstance(cases, Exception):
+            raise cases
         if self.store is not None:
             self.store.write(
-                self.keys[k], {"speeds": self.chunks[k], "fields": CaseResult._fields, "cases": found}
+                self.keys[k], {"speeds": self.chunks[k], "fields": CaseResult._fields, "cases": cases}
             )
-        self.known[k] = found
+        self.finished[k] = cases
 
-    def _count(self) -> tuple[int, int]:
-        """Cases that are done, and all."""
-        return sum(len(self.chunks[k]) for k in self.known), sum(map(len, self.chunks))
+    def _count_cases(self) -> tuple[int, int]:
+        """Number of cases that are done, and of all."""
+        return sum(len(self.chunks[k]) for k in self.finished), sum(map(len, self.chunks))
 
     def _report(self) -> None:
         if self.progress is not None:
-            self.progress(*self._count())
+            self.progress(*self._count_cases())
 
 
 def _return_errors(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseResult] | Exception:
-    """Solve a chunk; return its error, for what an executor raises is its own."""
+    """Solve a chunk and return its error, if any, so that errors raised are the executor's own."""
     try:
         return solve_chunk(request, speeds)
     except Exception as error:

@@ -1,10 +1,10 @@
 """Integrators for linear second-order systems q'' + C(t) q' + K(t) q = f(t).
 
 Gauss collocation: of order 2 s with s stages, symmetric, without numerical damping (quadratic
-invariants are kept), stable at any step.  Since the system is linear, the steps of a block are
+invariants are kept), stable at any step size.  Since the system is linear, the steps of a block are
 assembled and solved as one batch of affine maps, and only the product of the maps with the state
-is sequential.  Written once as a propagator over blocks; `GaussCollocation` offers it to
-`scipy.integrate.solve_ivp`.
+is sequential.  `propagate` integrates in equal steps;
+`GaussCollocation` offers the same steps, with error control, to `scipy.integrate.solve_ivp`.
 
 References
 ----------
@@ -21,11 +21,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.integrate import DenseOutput, OdeSolver
 
-BLOCK = 64  # steps solved as one batch: their matrices fit the processor's cache
+BLOCK = 64  # steps solved as one batch, so that their matrices fit the processor's cache
 
 
 class LinearSystem(Protocol):
-    """q'' + C(t) q' + K(t) q = f(t) with n coordinates."""
+    """Linear equations q'' + C(t) q' + K(t) q = f(t) with n coordinates."""
 
     @property
     def size(self) -> int:
@@ -33,75 +33,76 @@ class LinearSystem(Protocol):
         ...
 
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """C (None if zero), K and f at times t of any shape: shapes (..., n, n) and (..., n)."""
+        """Evaluate C (None if zero), K and f at times t [s] of any shape: shapes (..., n, n) and (..., n)."""
         ...
 
 
 @dataclass(frozen=True)
 class Tableau:
-    """Gauss collocation on [0, 1], for accelerations a_j at the nodes.
+    """Coefficients of Gauss collocation on [0, 1], for accelerations at the nodes.
 
     Parameters
     ----------
     c : ndarray, shape (s,)
         Nodes.
     b, A : ndarray, shape (s,) and (s, s)
-        Weights of the velocity at the end and at the nodes.
-    once : ndarray, shape (s + 1, s)
-        Legendre coefficients on [0, 1] of the integrals of the node polynomials, for dense output.
+        Weights of the accelerations in the velocity at the end of the step and at the nodes.
+    integrals : ndarray, shape (s + 1, s)
+        Legendre coefficients on [0, 1] of the integrals of the nodes' Lagrange polynomials, for
+        dense output.
     """
 
     c: np.ndarray
     b: np.ndarray
     A: np.ndarray
-    once: np.ndarray
+    integrals: np.ndarray
 
     @property
     def A2(self) -> np.ndarray:
-        """Weights of the displacement at the nodes.
+        """Weights of the accelerations in the displacement at the nodes, shape (s, s).
 
-        The square of A, which integrates the velocity's values at the nodes, and not the twice
-        integrated acceleration: only so is the method the A-stable one of the first-order system.
+        The square of A integrates the velocity's values at the nodes.  Integrating the polynomial of
+        the acceleration twice instead would lose the A-stability of the first-order collocation.
         """
         return self.A @ self.A
 
     @property
     def b2(self) -> np.ndarray:
-        """Weights of the displacement at the end, likewise."""
+        """Weights of the accelerations in the displacement at the end of the step, shape (s,)."""
         return self.b @ self.A
 
 
 @cache
 def tableau(stages: int) -> Tableau:
-    """The tableau of so many stages, by Legendre series: no ill-conditioned Vandermonde matrix."""
+    """Compute the tableau from Legendre series, which need no ill-conditioned Vandermonde matrix."""
     x, w = legendre.leggauss(stages)
     k = np.arange(stages)
     nodal = ((2 * k + 1) / 2)[:, None] * (legendre.legvander(x, stages - 1) * w[:, None]).T
-    once = legendre.legint(nodal, lbnd=-1, scl=0.5)
-    b, A = (legendre.legvander(p, stages) @ once for p in (np.ones(1), x))
-    return Tableau(c=(x + 1) / 2, b=b[0], A=A, once=once)
+    integrals = legendre.legint(nodal, lbnd=-1, scl=0.5)
+    b, A = (legendre.legvander(p, stages) @ integrals for p in (np.ones(1), x))
+    return Tableau(c=(x + 1) / 2, b=b[0], A=A, integrals=integrals)
 
 
 @dataclass(frozen=True)
-class Maps:
+class StepMaps:
     """Affine maps of a block of N steps, on the augmented state (1, q, v) of length 2 n + 1.
 
     Parameters
     ----------
     step : ndarray, shape (N, 2 n, 2 n + 1)
-        From the state to (q, v) at the end of the step.
-    stages : ndarray, shape (N, s, n, 2 n + 1)
-        From the state to the accelerations at the nodes.
-    every : ndarray of longdouble, shape (2 n, 2 n + 1), optional
-        If all steps are equal, their map in extended precision.
+        From the state at the beginning to (q, v) at the end of the step.
+    acceleration : ndarray, shape (N, s, n, 2 n + 1)
+        From the state at the beginning to the accelerations at the nodes.
+    step_extended : ndarray of longdouble, shape (2 n, 2 n + 1), optional
+        Map to the end of every step, in extended precision, if all steps are equal.
     """
 
     step: np.ndarray
-    stages: np.ndarray
-    every: np.ndarray | None = None
+    acceleration: np.ndarray
+    step_extended: np.ndarray | None = None
 
 
-def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> Maps:
+def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> StepMaps:
     """Solve the collocation equations of all steps that begin at `starts` [s] with length h [s].
 
     The accelerations a_i at the nodes satisfy
@@ -109,34 +110,34 @@ def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau
     """
     C, K, f = system.coefficients(starts[:, None] + h * table.c)
     if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
-        return _equal_maps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
-    a = np.linalg.solve(left_side(C, K, h, table), _right(C, K, f, h, table))
-    return Maps(_step(a, h, table), a.reshape(*f.shape, -1))
+        return _maps_of_equal_steps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
+    a = np.linalg.solve(left_side(C, K, h, table), _right_side(C, K, f, h, table))
+    return StepMaps(_maps_to_end(a, h, table), a.reshape(*f.shape, -1))
 
 
-def _equal_maps(
+def _maps_of_equal_steps(
     C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau, count: int
-) -> Maps:
-    """Maps of equal steps, solved once and refined: their error would grow with every power."""
-    left, right = left_side(C, K, h, table), _right(C, K, f, h, table)
-    a = np.linalg.solve(left, right).astype(np.longdouble)
+) -> StepMaps:
+    """Solve equal steps as one, by iterative refinement, because errors of the map grow with its powers."""
+    matrix, right = left_side(C, K, h, table), _right_side(C, K, f, h, table)
+    a = np.linalg.solve(matrix, right).astype(np.longdouble)
     for _ in range(2):
-        a += np.linalg.solve(left, (right - left.astype(np.longdouble) @ a).astype(float))
-    step, stages = _step(a, h, table)[0], a.astype(float).reshape(*f.shape, -1)
-    return Maps(
+        a += np.linalg.solve(matrix, (right - matrix.astype(np.longdouble) @ a).astype(float))
+    step, acceleration = _maps_to_end(a, h, table)[0], a.astype(float).reshape(*f.shape, -1)
+    return StepMaps(
         np.broadcast_to(step.astype(float), (count, *step.shape)),
-        np.broadcast_to(stages, (count, *stages.shape[1:])),
-        every=step,
+        np.broadcast_to(acceleration, (count, *acceleration.shape[1:])),
+        step_extended=step,
     )
 
 
-def _step(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Maps to (q, v) at the ends of the steps, shape (N, 2 n, 2 n + 1), from the accelerations."""
-    return add_drift(at_end(a, h, table), h, first=1)
+def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """Maps to (q, v) at the ends of the steps, shape (N, 2 n, 2 n + 1), from those to the accelerations."""
+    return add_drift(increment(a, h, table), h, first=1)
 
 
-def at_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """What accelerations at the nodes, shape (N, s n, m), add to (q, v) at the end: shape (N, 2 n, m)."""
+def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """Increment (N, 2 n, m) of (q, v) over steps by the accelerations at the nodes (N, s n, m)."""
     N, rows, columns = a.shape
     weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)
@@ -144,7 +145,7 @@ def at_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
-    """Add q + h v and v to maps whose columns from `first` on are q and v."""
+    """Add the drift (q + h v, v), without acceleration, to maps whose columns from `first` on are q, v."""
     n = step.shape[1] // 2
     step[:, np.arange(2 * n), first + np.arange(2 * n)] += 1
     step[:, np.arange(n), first + n + np.arange(n)] += h
@@ -152,19 +153,19 @@ def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
 
 
 def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Matrix of the accelerations at all nodes: shape (N, s n, s n)."""
+    """Matrix of the collocation equations for the accelerations at all nodes, shape (N, s n, s n)."""
     N, s, n, _ = K.shape
-    left = np.empty((N, s, n, s, n))
-    np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=left)
+    matrix = np.empty((N, s, n, s, n))
+    np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=matrix)
     if C is not None:
-        left += (h * table.A)[:, None, :, None] * C[:, :, :, None, :]
-    left = left.reshape(N, s * n, s * n)
-    left[:, np.arange(s * n), np.arange(s * n)] += 1
-    return left
+        matrix += (h * table.A)[:, None, :, None] * C[:, :, :, None, :]
+    matrix = matrix.reshape(N, s * n, s * n)
+    matrix[:, np.arange(s * n), np.arange(s * n)] += 1
+    return matrix
 
 
-def _right(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Right-hand sides for the augmented state (1, q, v): shape (N, s n, 2 n + 1)."""
+def _right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+    """Right-hand sides of the collocation equations for the augmented state, shape (N, s n, 2 n + 1)."""
     N, s, n = f.shape
     right = np.empty((N, s, n, 2 * n + 1))
     right[..., 0] = f
@@ -177,12 +178,12 @@ def _right(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: 
 
 @dataclass(frozen=True)
 class Segment:
-    """A segment of a trajectory, in equal steps.
+    """Segment of a trajectory, in equal steps.
 
     Parameters
     ----------
     start, h : float
-        Its beginning and step [s].
+        Beginning and step size [s].
     state : ndarray, shape (N + 1, 2 n + 1)
         Augmented states (1, q, v) at the ends of the steps.
     acceleration : ndarray, shape (N, s, n)
@@ -196,43 +197,42 @@ class Segment:
 
     @property
     def end(self) -> float:
-        """Its end [s]."""
+        """End [s]."""
         return self.start + self.h * len(self.acceleration)
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Times, displacements and velocities at `count` equal parts of each step, its end left out."""
+        """Sample times, displacements and velocities at `count` equal parts of each step, without its end."""
         theta = np.arange(count) / count
-        q, v = interior(self.h, self.state[:-1], self.acceleration, theta)
+        q, v = interpolate(self.h, self.state[:-1], self.acceleration, theta)
         t = self.start + self.h * (np.arange(len(q))[:, None] + theta)
         return t.ravel(), q.reshape(t.size, -1), v.reshape(t.size, -1)
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement and velocity at times t [s] by the collocation polynomials: shape (len(t), n)."""
+        """Interpolate displacement and velocity at times t [s]: shape (len(t), n)."""
         N, s, n = self.acceleration.shape
         x = (np.asarray(t, dtype=float) - self.start) / self.h
         k = np.clip(x.astype(int), 0, N - 1)
         table, theta = tableau(s), x - k
-        weights = legendre.legvander(2 * theta - 1, s) @ table.once
+        weights = legendre.legvander(2 * theta - 1, s) @ table.integrals
         a, state = self.acceleration[k], self.state[k]
         q, v = state[:, 1 : n + 1], state[:, n + 1 :]
-        moved = np.einsum("tj,tjn->tn", weights @ table.A, a)
-        gained = np.einsum("tj,tjn->tn", weights, a)
-        return q + (theta * self.h)[:, None] * v + self.h**2 * moved, v + self.h * gained
+        dq, dv = (np.einsum("tj,tjn->tn", w, a) for w in (weights @ table.A, weights))
+        return q + (theta * self.h)[:, None] * v + self.h**2 * dq, v + self.h * dv
 
 
-def interior(
+def interpolate(
     h: float, state: np.ndarray, acceleration: np.ndarray, theta: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Displacement and velocity at the same fractions of every step, by the collocation polynomials.
+    """Interpolate displacement and velocity at the same fractions of every step.
 
     Parameters
     ----------
     h : float
-        Step [s].
+        Step size [s].
     state : ndarray, shape (N, 2 n + 1)
         Augmented states at the beginnings of the steps.
     acceleration : ndarray, shape (N, s, n)
-        Accelerations at their nodes.
+        Accelerations at the nodes of the steps.
     theta : ndarray, shape (k,)
         Fractions of a step.
 
@@ -242,16 +242,16 @@ def interior(
     """
     _, s, n = acceleration.shape
     table = tableau(s)
-    weights = legendre.legvander(2 * theta - 1, s) @ table.once
+    weights = legendre.legvander(2 * theta - 1, s) @ table.integrals
     q, v = state[:, None, 1 : n + 1], state[:, None, n + 1 :]
-    moved = h**2 * ((weights @ table.A) @ acceleration)
-    return q + h * theta[:, None] * v + moved, v + h * (weights @ acceleration)
+    dq = h**2 * ((weights @ table.A) @ acceleration)
+    return q + h * theta[:, None] * v + dq, v + h * (weights @ acceleration)
 
 
 def propagate(
     system: LinearSystem, t0: float, t1: float, steps: int, q0: np.ndarray, v0: np.ndarray, stages: int = 8
 ) -> Segment:
-    """Advance a state over equal steps.
+    """Integrate over equal steps by Gauss collocation.
 
     Parameters
     ----------
@@ -278,16 +278,16 @@ def propagate(
     for first in range(0, steps, BLOCK):
         block = slice(first, min(first + BLOCK, steps))
         maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
-        powers = _advance(maps, state[block.start : block.stop + 1], powers)
-        acceleration[block] = (maps.stages @ state[block, None, :, None])[..., 0]
+        powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
+        acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
     return Segment(t0, h, state, acceleration)
 
 
-def _advance(maps: Maps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
-    """Fill state[1:] from state[0]; for a block of equal maps by powers, which are handed on."""
-    if maps.every is not None:
+def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
+    """Fill state[1:] from state[0]; equal steps by powers of their map, returned for the next block."""
+    if maps.step_extended is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
-            powers = _powers(maps.every, len(maps.step))
+            powers = _affine_powers(maps.step_extended, len(maps.step))
         state[1:, 1:] = powers[: len(maps.step)] @ state[0]
         return powers
     advance(maps.step, state)
@@ -300,8 +300,8 @@ def advance(steps: np.ndarray, state: np.ndarray) -> None:
         np.dot(step, state[k], out=state[k + 1, 1:])
 
 
-def _powers(step: np.ndarray, count: int) -> np.ndarray:
-    """Powers of an affine map of extended precision: rounding then enters once a block, not each step."""
+def _affine_powers(step: np.ndarray, count: int) -> np.ndarray:
+    """Powers 1 to `count` of an affine map, in extended precision: one rounding error a block, not a step."""
     n = len(step)
     full = np.eye(n + 1, dtype=np.longdouble)
     full[1:] = step
@@ -316,8 +316,8 @@ class GaussCollocation(OdeSolver):
     """Gauss collocation for `solve_ivp`: dense output, events, `t_eval` and error control as usual.
 
     ``solve_ivp(system.rhs, (t0, t1), y0, method=GaussCollocation, system=system)`` integrates
-    y = (q, q') of a `LinearSystem`, which arrives by the option `system`: it must answer C(t),
-    K(t) and f(t) at arrays of times.  The right-hand side is used by `solve_ivp` alone.
+    y = (q, q') of a `LinearSystem`, passed as the option `system`, which must evaluate C(t),
+    K(t) and f(t) at arrays of times.  The right-hand side is used by `solve_ivp` only.
 
     Parameters
     ----------
@@ -326,12 +326,17 @@ class GaussCollocation(OdeSolver):
     stages : int
         Stages s; the order is 2 s.
     rtol, atol : float
-        Bounds of the local error, which is found by a method of two more stages at the ends of
-        each block of steps.
+        Bounds of the local error, which is estimated with two more stages in the first and the last
+        step of each block.
     first_step, max_step : float
-        Step of the first block, and largest step [s].
+        Step size of the first block, and largest step size [s].
     block : int
-        Steps solved as one batch, of equal length.
+        Number of equal steps solved as one batch.
+
+    Raises
+    ------
+    ValueError
+        If the end lies before the beginning.
     """
 
     def __init__(
@@ -356,68 +361,68 @@ class GaussCollocation(OdeSolver):
         self.system, self.stages, self.block = system, stages, block
         self.rtol, self.atol, self.max_step = rtol, atol, max_step
         self.h = min(max_step, first_step or self._first_step(t0, t_bound))
-        self.queue: list[tuple[float, np.ndarray, np.ndarray]] = []
+        self.solved_steps: list[tuple[float, np.ndarray, np.ndarray]] = []
 
     def _first_step(self, t0: float, t_bound: float) -> float:
-        """A step of about one radian of the fastest motion."""
+        """Step size in which the fastest motion advances by one radian, at most half of the run [s]."""
         _, K, _ = self.system.coefficients(np.array([t0]))
         fastest = np.sqrt(np.abs(np.linalg.eigvals(K[0])).max())
         return min(1 / fastest if fastest else np.inf, (t_bound - t0) / 2)
 
     def _step_impl(self) -> tuple[bool, str | None]:
-        if not self.queue:
+        if not self.solved_steps:
             self._solve_block()
-        self.start, self.begin = self.t, self.augmented()
-        end, step, stages = self.queue.pop(0)
-        self.accelerations = stages @ self.begin
-        self.y = step @ self.begin
-        self.taken, self.t = end - self.t, end
+        self.start, self.start_state = self.t, self.augmented()
+        end, step, acceleration = self.solved_steps.pop(0)
+        self.accelerations = acceleration @ self.start_state
+        self.y = step @ self.start_state
+        self.h_last, self.t = end - self.t, end
         return True, None
 
     def augmented(self) -> np.ndarray:
-        """The state (1, q, v)."""
+        """Augmented state (1, q, v)."""
         return np.concatenate([[1.0], self.y])
 
     def _solve_block(self) -> None:
-        """Choose the step of the next block by its local error and solve it; growth is bounded by 4."""
+        """Solve the next block, with a step size chosen by its local error and at most 4 times the last."""
         order = 2 * self.stages + 1
         while True:
-            left = self.t_bound - self.t
-            count = min(self.block, max(1, int(np.ceil(left / self.h * (1 - 1e-12)))))
-            h = min(self.h, left / count) if count < self.block else self.h
+            remaining = self.t_bound - self.t
+            count = min(self.block, max(1, int(np.ceil(remaining / self.h * (1 - 1e-12)))))
+            h = min(self.h, remaining / count) if count < self.block else self.h
             starts = self.t + h * np.arange(count)
             maps = step_maps(self.system, starts, h, tableau(self.stages))
-            error = self._error(maps, starts, h)
+            error = self._local_error(maps, starts, h)
             self.h = min(self.max_step, h * min(4.0, max(0.1, 0.9 * (error + 1e-30) ** (-1 / order))))
             if error <= 1:
                 break
-        ends = [*starts[1:], self.t_bound if h * count >= left * (1 - 1e-12) else starts[-1] + h]
-        self.queue = list(zip(ends, maps.step, maps.stages, strict=True))
+        ends = [*starts[1:], self.t_bound if h * count >= remaining * (1 - 1e-12) else starts[-1] + h]
+        self.solved_steps = list(zip(ends, maps.step, maps.acceleration, strict=True))
 
-    def _error(self, maps: Maps, starts: np.ndarray, h: float) -> float:
-        """Local error at both ends of the block over its bound: 1 is the most allowed."""
+    def _local_error(self, maps: StepMaps, starts: np.ndarray, h: float) -> float:
+        """Largest local error of the first and the last step of a block, over its bound."""
         y = self.augmented()
         first = y
         for step in maps.step[:-1]:
             y = np.concatenate([[1.0], step @ y])
         finer = step_maps(self.system, starts[[0, -1]], h, tableau(self.stages + 2)).step
-        found = np.array([maps.step[0] @ first, maps.step[-1] @ y])
-        wanted = np.array([finer[0] @ first, finer[-1] @ y])
-        scale = self.atol + self.rtol * np.maximum(np.abs(found), np.abs(wanted))
-        return float(np.sqrt(np.mean(((found - wanted) / scale) ** 2, axis=1)).max())
+        coarse_end = np.array([maps.step[0] @ first, maps.step[-1] @ y])
+        finer_end = np.array([finer[0] @ first, finer[-1] @ y])
+        scale = self.atol + self.rtol * np.maximum(np.abs(coarse_end), np.abs(finer_end))
+        return float(np.sqrt(np.mean(((coarse_end - finer_end) / scale) ** 2, axis=1)).max())
 
     def _dense_output_impl(self) -> DenseOutput:
-        state = np.stack([self.begin, self.augmented()])
-        return _Dense(Segment(self.start, self.taken, state, self.accelerations[None]))
+        state = np.stack([self.start_state, self.augmented()])
+        return _StepPolynomial(Segment(self.start, self.h_last, state, self.accelerations[None]))
 
 
-class _Dense(DenseOutput):
-    """A step's collocation polynomials in the form that `solve_ivp` asks for."""
+class _StepPolynomial(DenseOutput):
+    """Collocation polynomial of one step, as the dense output of `solve_ivp`."""
 
-    def __init__(self, piece: Segment) -> None:
-        super().__init__(piece.start, piece.end)
-        self.piece = piece
+    def __init__(self, segment: Segment) -> None:
+        super().__init__(segment.start, segment.end)
+        self.segment = segment
 
     def _call_impl(self, t: np.ndarray) -> np.ndarray:
-        y = np.concatenate(self.piece.at(np.atleast_1d(t)), axis=1).T
+        y = np.concatenate(self.segment.at(np.atleast_1d(t)), axis=1).T
         return y[:, 0] if np.ndim(t) == 0 else y

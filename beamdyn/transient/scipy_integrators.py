@@ -1,4 +1,4 @@
-"""The methods of `scipy.integrate.solve_ivp` on our equations, as paths."""
+"""Integration by `scipy.integrate.solve_ivp`."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from beamdyn.transient.step_size import integrate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import SAMPLES
 
-_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
-_WITH_JACOBIAN = ("Radau", "BDF", "LSODA")
-_ROUGH = 1e-2  # tolerance of the run that gives the sizes of the coordinates
+_KNOWN_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
+_JACOBIAN_METHODS = ("Radau", "BDF", "LSODA")
+_SCALING_TOLERANCE = 1e-2  # of the run that gives the magnitudes of the coordinates
 
 
 @dataclass(frozen=True)
 class SolveIvpPath:
-    """A solution of `solve_ivp` as a path.
+    """Solution of `solve_ivp` as a path.
 
     Parameters
     ----------
     solution : OdeSolution
-        Its dense output.
+        Dense output.
     times : ndarray
         Sampled times [s].
     """
@@ -46,11 +46,11 @@ class SolveIvpPath:
 
     @property
     def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Times, coordinates and velocities, several in each step."""
+        """Times (k,) [s], coordinates and velocities (k, n), several in each step."""
         return self.times, *self.at(self.times)
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and velocities at times t [s]."""
+        """Coordinates and velocities at times t [s]: shapes (len(t), n)."""
         q, v = np.split(self.solution(t), 2)
         return q.T, v.T
 
@@ -74,26 +74,30 @@ def integrate_by_solve_ivp(
     t_end : float
         End [s].
     method : str or OdeSolver
-        The method.
+        The method, by name or class.
     tolerance : float
-        Default of rtol; that of atol is a tenth of it, relative to the size of each coordinate.
+        Default of rtol; that of atol is a tenth of it, times the largest magnitude of each coordinate.
     options : dict
-        Further options of the method.
+        Further options of `solve_ivp` and of the method.
+
+    Returns
+    -------
+    SolveIvpPath
 
     Raises
     ------
     ValueError
         If the method is unknown.
     ArithmeticError
-        If it fails.
+        If `solve_ivp` fails.
     """
-    if isinstance(method, str) and method not in _METHODS:
-        known = ", ".join(map(repr, _METHODS))
+    if isinstance(method, str) and method not in _KNOWN_METHODS:
+        known = ", ".join(map(repr, _KNOWN_METHODS))
         raise ValueError(f"method = {method!r}: give 'auto', {known} or an OdeSolver")
     options = {"rtol": tolerance, "atol": _absolute_tolerance(system, y0, t_end, tolerance), **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
         options = {"system": system, **options}
-    elif method in _WITH_JACOBIAN:
+    elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}
     result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=method, dense_output=True, **options)
     if not result.success:
@@ -103,7 +107,7 @@ def integrate_by_solve_ivp(
 
 
 def _absolute_tolerance(system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float) -> np.ndarray:
-    """Absolute tolerances of coordinates and velocities, from a rough run of our own integrator."""
-    path, _, _ = integrate(system, y0, t_end, _ROUGH)
+    """Absolute tolerances of coordinates and velocities, scaled by a coarse run of our own integrator."""
+    path, _, _ = integrate(system, y0, t_end, _SCALING_TOLERANCE)
     sizes = [np.abs(x).max(axis=0) for x in path.samples[1:]]
     return 0.1 * tolerance * np.concatenate(sizes) + 1e-300

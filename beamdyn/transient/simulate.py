@@ -1,4 +1,4 @@
-"""Motion in time: transients of a scene."""
+"""Transients: motion of a scene's beam in time."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from beamdyn.transient.trajectory import Path, largest_deflection
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_UNBOUNDED = 1000.0  # deflection over the length, past which no digit means anything
-_UNRESOLVED = 0.3  # difference of the refined run, over the largest deflection, past which it tells no error
-_COMPARED = 20_000  # times at which runs are compared, at most twice as many
+_LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as unbounded
+_LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
+_TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
 
 
 @dataclass(frozen=True)
 class Transient(Result):
-    """Motion of a beam in time.
+    """Motion of a beam in time, as `simulate` computes it.
 
     Parameters
     ----------
@@ -48,18 +48,18 @@ class Transient(Result):
     coordinates, velocities : ndarray, shape (n, m)
         Modal coordinates [kg^1/2 m] and their rates.
     time_error : float
-        Estimated time-integration error of the tip deflection [m]: its largest; nan for the methods
+        Largest estimated time-integration error of the tip deflection [m]; nan for the methods
         of `solve_ivp`, which only bound the error of each step.
     largest : float
-        Largest tip deflection of the run, either way [m].
+        Largest |tip deflection| of the run [m].
     warnings : tuple of str
-        What limits the answer.
+        Limitations of the result.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
 
     Notes
     -----
-    The modal truncation error is `mode_error`, which takes a second run when first asked for.
+    The modal truncation error is `mode_error`, which takes a second run at its first use.
     """
 
     t: np.ndarray
@@ -76,30 +76,30 @@ class Transient(Result):
 
     @property
     def scene(self) -> Scene:
-        """The scene."""
+        """Scene."""
         return self.request.scene
 
     @cached_property
     def refined(self) -> Transient | None:
-        """The same run with half as many modes more, at least two; None if there is no larger model."""
+        """Run with 1.5 times as many modes, at least two more; None if there is no larger model."""
         return self.request.run_refined()
 
     @cached_property
     def mode_error(self) -> float:
         """Estimated modal truncation error of the tip deflection [m]: twice its distance from `refined`.
 
-        What that one leaves out in turn is less than half of the distance: measured on random runs by
-        the benchmark of the coverage of transients.  Infinite if there is no larger model, or one so far
-        away that the two tell nothing of a third.
+        The factor of two covers the error of `refined` itself: on random runs it was less than half of the
+        distance (benchmark of the coverage of transients).  Infinite if there is no larger model, or if
+        the distance is so large that the error of `refined` is unknown.
         """
         if self.refined is None:
             return np.inf
-        added = self.distance_from(self.refined)
-        return np.inf if added > _UNRESOLVED * self.largest else 2 * added
+        difference = self.distance_from(self.refined)
+        return np.inf if difference > _LIMIT_DIFFERENCE * self.largest else 2 * difference
 
     def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
-        t, q, _ = (x[:: 1 + len(x) // _COMPARED] for x in self.path.samples)
+        t, q, _ = (x[:: 1 + len(x) // _TIMES_COMPARED] for x in self.path.samples)
         return float(np.abs(q @ self.system.tip - other.deflection(t)).max())
 
     def to_dict(self) -> dict[str, Any]:
@@ -107,7 +107,13 @@ class Transient(Result):
         return {**super().to_dict(), "mode_error": self.mode_error}
 
     def at(self, t: np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-        """Modal coordinates and velocities at any times t [s] of the run: shapes (len(t), m)."""
+        """Interpolate modal coordinates and velocities at times t [s] of the run: shapes (len(t), m).
+
+        Raises
+        ------
+        ValueError
+            If a time lies outside the run.
+        """
         t = np.atleast_1d(np.asarray(t, dtype=float))
         if t.size and not (t.min() >= self.path.start and t.max() <= self.path.end * (1 + 1e-12)):
             raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")
@@ -118,7 +124,13 @@ class Transient(Result):
         return self.at(t)[0] @ self.system.equations.deflection(np.asarray(x) / self.scene.beam.length)
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Bending strain of the outer fibre at the root at times t [s]."""
+        """Bending strain of the outer fibre at the root at times t [s]: shape (len(t),).
+
+        Raises
+        ------
+        ValueError
+            If the beam has no outer fibre.
+        """
         beam = self.scene.beam
         if beam.outer_fibre is None:
             raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
@@ -127,18 +139,18 @@ class Transient(Result):
         return curvature * beam.outer_fibre(root)[0]
 
     def deflection(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Tip deflection [m] at times t [s]."""
+        """Tip deflection [m] at times t [s]: shape (len(t),)."""
         return self.shape([self.scene.beam.length], t)[:, 0]
 
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Energy of the vibration at times t [s]: q' q' / 2 + q K q / 2 [J]; constant at steady speed."""
+        """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are."""
         t = np.atleast_1d(np.asarray(t, dtype=float))
         q, v = self.at(t)
         _, K, f = self.system.coefficients(t)
         return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
 
     def peak(self, start: float, end: float) -> float:
-        """Largest tip deflection, either way, from `start` to `end` [s], also between samples [m]."""
+        """Largest |tip deflection| [m] from `start` to `end` [s], also between samples."""
         _check_window(start, end, self.path)
         return largest_deflection(self.system.tip, self.path, start, end)
 
@@ -151,7 +163,7 @@ class Transient(Result):
     def export(
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
     ) -> None:
-        """Write the deflected beam from start to end [s] as a time series that opens in ParaView."""
+        """Write the deflected beam from start to end [s] as a time series for ParaView."""
         from beamdyn.output.export import write_series
 
         _check_window(start, end, self.path)
@@ -183,7 +195,7 @@ def simulate(
     t_eval: np.ndarray | Sequence[float] | None = None,
     **options: Any,
 ) -> Transient:
-    """Integrate the motion of the beam from time 0 to `t_end`, in modal coordinates.
+    """Integrate the motion of the beam from time 0 to `t_end` in modal coordinates.
 
     Parameters
     ----------
@@ -199,16 +211,17 @@ def simulate(
         Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
         relative to the largest tip deflection.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
-        Our Gauss collocation with a step from the tolerance, or any method of `solve_ivp`.
+        "auto": Gauss collocation with a step size from the tolerance; or any method of `solve_ivp`.
     discretization : {"ritz", "fem"} or Discretization
-        Where the modes come from.
+        Discretization from which the modes are computed.
     initial : {"rest", "equilibrium"} or ndarray, shape (2 m,)
-        Undeflected at rest, in static equilibrium with the loads at time 0, or coordinates and velocities.
+        "rest": undeflected, without velocity; "equilibrium": in static equilibrium with the loads at time
+        0; or coordinates and velocities.
     t_eval : sequence of float, optional
-        Times of the result [s]; by default eight in each step.
+        Times of the result [s]; by default eight per step.
     **options
-        For a method of `solve_ivp`: max_step and so on; rtol is `tolerance` by default, and atol a
-        tenth of it, relative to the size of each coordinate.
+        Options of a method of `solve_ivp`, such as max_step; rtol is `tolerance` by default, and atol a
+        tenth of it, times the largest magnitude of each coordinate.
 
     Returns
     -------
@@ -228,16 +241,16 @@ def simulate(
     basis = None if modes == "auto" else ModalBasis(None if modes is None else count("modes", modes))
     if basis is None and not isinstance(initial, str):
         raise ValueError('initial is an array: give the number of its modes, not modes = "auto"')
-    fewest = basis or ModalBasis(FEWEST_MODES, find_speed_range(scene.motion, t_end))
+    smallest = basis or ModalBasis(FEWEST_MODES, find_speed_range(scene.motion, t_end))
     request = TransientRequest(
-        scene, t_end, tolerance, method, discretization, initial, times, options, fewest
+        scene, t_end, tolerance, method, discretization, initial, times, options, smallest
     )
-    return request.run() if basis else request.run_cheapest()
+    return request.run() if basis else request.run_smallest_basis()
 
 
 @dataclass(frozen=True)
 class TransientRequest:
-    """The arguments of `simulate`, checked, with the modal basis in place of the number of modes."""
+    """Checked arguments of `simulate`, with the modal basis in place of the number of modes."""
 
     scene: Scene
     t_end: float
@@ -250,8 +263,8 @@ class TransientRequest:
     basis: ModalBasis
 
     def run(self) -> Transient:
-        """Integrate with this basis."""
-        began = perf_counter()
+        """Integrate with the modal basis of the request."""
+        start = perf_counter()
         motion, t_end = self.motion, self.t_end
         model = self._model
         _check_motion(motion, t_end, model)
@@ -272,7 +285,7 @@ class TransientRequest:
             largest=largest,
             warnings=tuple(_warnings(self.scene, t_end, largest)),
             provenance=Provenance(
-                __version__, f"{name}, {self.basis} of {model.discretization}", "", perf_counter() - began
+                __version__, f"{name}, {self.basis} of {model.discretization}", "", perf_counter() - start
             ),
             system=system,
             path=path,
@@ -280,28 +293,28 @@ class TransientRequest:
         )
 
     def run_refined(self) -> Transient | None:
-        """Integrate by our integrator with more modes; None if there is no larger model or no answer."""
-        own = replace(self, method="auto", t_eval=None)
-        request = own._with_finer_functions() if self.basis.modes is None else own._with_more_modes()
+        """Integrate by Gauss collocation with more modes; None if there is no larger model or no solution."""
+        base = replace(self, method="auto", t_eval=None)
+        request = base._with_finer_discretization() if self.basis.modes is None else base._with_more_modes()
         try:
             return request and request.run()
         except ArithmeticError:  # with more modes the motion grows without bound
             return None
 
-    def run_cheapest(self) -> Transient:
-        """Integrate with the smallest basis that meets the tolerance, or else with the largest."""
+    def run_smallest_basis(self) -> Transient:
+        """Integrate with the smallest basis whose truncation error meets the tolerance, else the largest."""
         run = replace(self, method="auto", t_eval=None).run()
         if run.mode_error > self.tolerance * run.largest and run.refined is not None:
-            # A sudden motion excites many modes; as many at rest serve as well.
-            rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
-            run = rest if rest.distance_from(run.refined) < run.distance_from(run.refined) else run
+            # A sudden motion excites many modes: as many modes at rest may then be the better basis.
+            at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
+            run = at_rest if at_rest.distance_from(run.refined) < run.distance_from(run.refined) else run
         while run.mode_error > self.tolerance * run.largest and run.refined is not None:
             run = run.refined
-        plain = self.method == "auto" and self.t_eval is None
-        return run if plain else replace(self, basis=run.request.basis).run()
+        as_requested = self.method == "auto" and self.t_eval is None
+        return run if as_requested else replace(self, basis=run.request.basis).run()
 
     def _with_more_modes(self) -> TransientRequest | None:
-        """The request with more modes, by "ritz" where the discretization has too few functions."""
+        """Request with more modes, by "ritz" if the discretization has too few functions; or None."""
         basis = self.basis.refined()
         if basis is None or basis.modes is None or self.basis.modes is None:
             return None
@@ -309,14 +322,14 @@ class TransientRequest:
         discretization = with_room(self.discretization, basis.modes)
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
-    def _with_finer_functions(self) -> TransientRequest | None:
-        """The request with all functions of the next finer discretization."""
+    def _with_finer_discretization(self) -> TransientRequest | None:
+        """Request with all functions of the next finer discretization; None if there is none."""
         finer = self._model.discretization.finer()
         return None if finer is None else replace(self, discretization=finer)
 
     @property
     def motion(self) -> Motion:
-        """The scene's motion."""
+        """Motion of the scene."""
         assert self.scene.motion is not None
         return self.scene.motion
 
@@ -326,7 +339,7 @@ class TransientRequest:
         return choose_model(self.scene, self.discretization, np.array(self.basis.speeds), modes, target)
 
     def _integrate(self, system: ModalSystem, y0: np.ndarray) -> tuple[Path, float, str]:
-        """The path, its time-integration error [m], and the name of the integrator."""
+        """Integrate: the path, its time-integration error [m], and the integrator's name."""
         if self.method == "auto":
             return integrate(system, y0, self.t_end, self.tolerance)
         name = self.method if isinstance(self.method, str) else self.method.__name__
@@ -334,7 +347,7 @@ class TransientRequest:
         return path, np.nan, name
 
     def _pad_initial(self, modes: int, more: int) -> str | np.ndarray:
-        """Initial coordinates and velocities for more modes: those added are at rest."""
+        """Extend the initial coordinates and velocities to more modes by zeros."""
         if isinstance(self.initial, str):
             return self.initial
         parts = np.reshape(self.initial, (-1, modes))
@@ -349,7 +362,7 @@ def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
 
 
 def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
-    """Refuse a motion that ends early or passes the critical speed, before any long work."""
+    """Raise a ValueError for a motion that ends early or passes the critical speed, before any long work."""
     t = np.linspace(0, t_end, SPEED_SAMPLES)
     speed = np.abs(motion.at(t).speed)
     critical = model.solver.critical_speed
@@ -357,18 +370,18 @@ def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
         k = int((speed >= critical).argmax())
         raise ValueError(
             f"the motion reaches {speed[k]:.6g} rad/s at t = {t[k]:.4g} s, past the critical speed "
-            f"{critical:.6g} rad/s: the beam buckles and linear theory has no answer; lower the speed"
+            f"{critical:.6g} rad/s: the beam buckles there, and linear theory does not hold; lower the speed"
         )
 
 
 def _check_growth(scene: Scene, largest: float) -> None:
-    """Refuse a motion that has grown without bound, whose error no estimate tells."""
+    """Raise an ArithmeticError for a motion that has grown without bound: its error estimates are void."""
     length = scene.beam.length
-    if not largest <= _UNBOUNDED * length:
+    if not largest <= _LIMIT_DEFLECTION * length:
         raise ArithmeticError(
-            f"the motion grows without bound, to {largest / length:.1g} times the length: the beam's weight "
-            "buckles it, or turning sets it swinging, and linear theory has no answer; lower gravity or the "
-            "speed, or end the run earlier"
+            f"the motion grows without bound, to {largest / length:.1g} times the length: the beam buckles "
+            "under its weight, or it is parametrically unstable, and linear theory does not hold; lower "
+            "gravity or the speed, or end the run earlier"
         )
 
 

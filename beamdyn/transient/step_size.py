@@ -1,4 +1,4 @@
-"""Step size from a tolerance: integrate, estimate the error, refine."""
+"""Integration to a tolerance: choose the step size, integrate, estimate the error, refine."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from beamdyn.transient.time_error import STAGES, CheckedSteps, TimeError, estima
 from beamdyn.transient.trajectory import Trajectory
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
-TOLERANCES = (1e-12, 0.1)  # smaller ones are below rounding
-_PHASE = 3.84  # advance of the fastest motion in a step [rad] for an error of 1e-5: measured
-_LOOSEST = 0.01  # error of a mode, over its size, at which it is still followed
-_PARTS = 4  # of a segment of changing speed, each with its own step size
-_MOST_STEPS = 3_000_000
-_COMPARED = 257  # times at which equations are compared with those at the start
-_BALANCED = 1e-13  # forces left over in equilibrium, over the largest
-_AT_ROUNDING = 1e-9  # error over the largest deflection from which finer steps may gain nothing
-_SERIES_SHARE = 0.1  # of the tolerance, for the truncation of the series of weakly modulated steps
-_FINEST = 50  # times smaller than the step for 1e-5: below it rounding grows
+TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the rounding error
+_REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
+_LOOSEST_TOLERANCE = 0.01  # of the free vibration of a mode whose phase is resolved
+_PARTS = 4  # of a segment in which the speed changes, each with its own step size
+_MOST_STEPS = 3_000_000  # of a run that fits into memory
+_TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
+_BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
+_ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
+_SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
+_MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,7 @@ class StepSize:
     phase : float
         Phase angle per step [rad].
     modes : int
-        Number of the lowest modes that are resolved.  The free vibration of higher ones, which the
-        motion hardly excites, may lose its phase.
+        Number of the lowest modes whose phase is resolved.  The motion hardly excites the higher ones.
     """
 
     phase: float
@@ -45,8 +44,8 @@ class StepSize:
 
     @classmethod
     def from_tolerance(cls, tolerance: float) -> StepSize:
-        """The step size that leaves about this error, relative to the largest deflection."""
-        return cls(_PHASE * (tolerance / 1e-5) ** (1 / (2 * STAGES)))
+        """Estimate the step size that meets a tolerance, relative to the largest deflection."""
+        return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / (2 * STAGES)))
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
         """Number of equal steps from start to end [s]."""
@@ -54,24 +53,24 @@ class StepSize:
         speed = np.abs(system.motion.at(t).speed).max()
         lines = [line.multiple * speed for line in system.motion.lines]
         _, K, _ = system.coefficients(t)
-        own = np.sqrt(np.sort(np.abs(np.linalg.eigvals(K)), axis=1)[:, self.modes - 1].max())
-        fastest = max(own, speed * (system.equations.gravity != 0), *lines, 0.0)
+        natural = np.sqrt(np.sort(np.abs(np.linalg.eigvals(K)), axis=1)[:, self.modes - 1].max())
+        fastest = max(natural, speed * (system.equations.gravity != 0), *lines, 0.0)
         return max(1, int(np.ceil((end - start) * fastest / self.phase)))
 
     def refine(self, error: TimeError, bound: float) -> StepSize:
-        """The step size to try next where the error exceeds its bound [m]."""
-        from_mode_up = np.cumsum((error.modes * error.lost)[::-1])[::-1]
-        needed = int((from_mode_up > bound / 4).sum())  # the modes above add up to little
-        if needed > self.modes:  # the highest is followed no more closely than its size asks for
-            share = min(bound / 4 / from_mode_up[needed - 1], _LOOSEST)
-            return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), needed)
+        """Next step size, where the error exceeds its bound [m]: more modes resolved, or a smaller angle."""
+        cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
+        modes = int((cumulative > bound / 4).sum())  # the errors of all higher modes add up to less
+        if modes > self.modes:  # only as closely as the highest of them contributes
+            share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
+            return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / (2 * STAGES)))
         return StepSize(self.phase * shrink, self.modes)
 
     @property
     def is_finest(self) -> bool:
-        """Whether smaller steps only add rounding."""
-        return self.phase < _PHASE / _FINEST
+        """Whether a smaller step size only adds rounding error."""
+        return self.phase < _REFERENCE_PHASE / _MOST_REFINED
 
 
 def integrate(
@@ -96,12 +95,17 @@ def integrate(
     error : float
         Estimated time-integration error of the tip deflection [m].
     method : str
-        What was done, for the provenance.
+        Integrator and number of steps, for the provenance.
+
+    Raises
+    ------
+    ValueError
+        If the run takes too many steps.
     """
     edges, step_size = split_at_breakpoints(system.motion, t_end), StepSize.from_tolerance(tolerance)
     if stays_in_equilibrium(system, y0, t_end):
         path = _propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance)
-        return path, 0.0, "no steps: it stays as it begins"
+        return path, 0.0, "no steps: the beam stays in equilibrium"
     last = np.inf
     while True:
         steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
@@ -111,45 +115,46 @@ def integrate(
         largest = max(
             float(np.abs(s.state[:, 1 : system.size + 1] @ system.tip).max()) for s in path.segments
         )
-        at_rounding = last / 2 < error.total < _AT_ROUNDING * largest
-        if error.total <= tolerance * largest or at_rounding or step_size.is_finest:
+        stalled = last / 2 < error.total < _ROUNDING * largest
+        if error.total <= tolerance * largest or stalled or step_size.is_finest:
             return path, error.total, f"Gauss collocation of order {2 * STAGES}, {sum(steps)} steps"
         step_size, last = step_size.refine(error, tolerance * largest), error.total
 
 
 def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
-    """Whether nothing moves: constant equations, begun in equilibrium."""
+    """Whether the beam stays at rest: constant equations and an initial state in equilibrium."""
     if system.motion.settled > 0:
         return False
-    _, K, f = system.coefficients(np.linspace(0, t_end, _COMPARED))
+    _, K, f = system.coefficients(np.linspace(0, t_end, _TIMES_COMPARED))
     q, v = np.split(y0, 2)
     size = np.abs(K[0]) @ np.abs(q) + np.abs(f[0])
-    balanced = not v.any() and (np.abs(f[0] - K[0] @ q) <= _BALANCED * size.max()).all()
+    balanced = not v.any() and (np.abs(f[0] - K[0] @ q) <= _BALANCE * size.max()).all()
     return balanced and bool((K[0] == K).all() and (f == f[0]).all())
 
 
 def check_number_of_steps(steps: int, t_end: float) -> None:
-    """Refuse a run that would not fit into memory."""
+    """Raise a ValueError for a run that would not fit into memory."""
     if steps > _MOST_STEPS:
         raise ValueError(
-            f"t_end = {t_end:g} s takes {steps} steps in time; at most {_MOST_STEPS} are kept: "
+            f"t_end = {t_end:g} s takes {steps} steps in time; {_MOST_STEPS} fit into memory: "
             "give an earlier end or a larger tolerance, or ask for the steady response"
         )
 
 
 def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
-    """Ends of the segments [s]: the motion's breakpoints, and parts of those in which the speed changes."""
+    """Split a run at the motion's breakpoints, and segments of changing speed into parts: all ends [s]."""
     inner = [b for b in motion.breakpoints if 0 < b < t_end]
     parts = []
     for a, b in pairwise([0.0, *inner, t_end]):
-        changing = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0
-        parts.append(np.linspace(a, b, (_PARTS if changing else 1) + 1)[:-1])
+        speed_changes = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0
+        parts.append(np.linspace(a, b, (_PARTS if speed_changes else 1) + 1)[:-1])
     return np.concatenate([*parts, [t_end]])
 
 
 def _propagate(
     system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray, tolerance: float
 ) -> Trajectory:
+    """Integrate segment by segment, with the given numbers of steps."""
     segments, n, accuracy = [], system.size, _SERIES_SHARE * tolerance
     for (a, b), count in zip(pairwise(edges), steps, strict=True):
         segments.append(_propagate_segment(system, a, b, count, y0[:n], y0[n:], accuracy))
@@ -160,7 +165,7 @@ def _propagate(
 def _propagate_segment(
     system: ModalSystem, a: float, b: float, steps: int, q: np.ndarray, v: np.ndarray, accuracy: float
 ) -> Segment:
-    """One segment: by the series of a weakly modulated system where it converges, else step by step."""
+    """Integrate a segment: by the series for weakly modulated stiffness if it converges, else directly."""
     modulated = system.modulated(a, b)
     if modulated is not None:
         segment = propagate_modulated(modulated, a, b, steps, q, v, STAGES, accuracy)

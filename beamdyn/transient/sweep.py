@@ -1,4 +1,4 @@
-"""Many transients: a peak for each speed, in parallel, resumable, and the same to the bit however run."""
+"""Sweep over speed: peaks of transients, in parallel, resumable, and bitwise reproducible."""
 
 from __future__ import annotations
 
@@ -42,24 +42,24 @@ class Sweep(Result):
     speeds : ndarray, shape (S,)
         Final speeds of the motion [rad/s].
     peaks : ndarray, shape (S,)
-        Largest tip deflection, either way, in the window [m]; nan where there is none.
+        Largest |tip deflection| in the window [m]; nan where the case failed.
     largest : ndarray, shape (S,)
-        Largest tip deflection of the run [m]: of the samples, eight or more in each step.
+        Largest |tip deflection| of the run [m], of at least eight samples per step.
     time_error : ndarray, shape (S,)
-        Estimated error of the tip deflection by the steps in time [m].
+        Estimated time-integration error of the tip deflection [m].
     mode_error : float
-        Estimated error by the modes left out, relative to the largest deflection: the largest of three
-        of the speeds.
+        Estimated modal truncation error, relative to the largest deflection: the largest of three sampled
+        speeds.
     status : tuple of str, length S
-        "done", or "failed" and why.
+        "done", or "failed: " and the reason.
     window : tuple of float
         Beginning and end of the window [s].
     t_end : float
         End of each run [s].
     warnings : tuple of str
-        What limits the answer.
+        Limitations of the result.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
     """
 
     speeds: np.ndarray
@@ -95,15 +95,16 @@ def sweep(
     discretization: DiscretizationChoice = "ritz",
     chunk: int = 40,
 ) -> Sweep:
-    """Peak of the tip deflection in a window of time, from rest, for each final speed of the motion.
+    """Compute the largest |tip deflection| in a time window, from rest, for each final speed of the motion.
 
-    The cases are split into chunks of neighbouring speeds, whose transients advance together.  The
-    split follows from the request alone: workers, executors, order and resumption change no bit.
+    The cases are split into chunks of neighbouring speeds, each integrated as one batch.  The
+    chunks depend on the request only, so that the result is the same to the bit for any workers, executor,
+    order and resumption.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is taken to each speed by `with_speed`.
+        The scene; the `with_speed` of its motion gives the motion to each speed.
     speeds : sequence of float
         Speeds [rad/s], ascending, below the critical one.
     window : tuple of float
@@ -117,17 +118,17 @@ def sweep(
         Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
         relative to the largest deflection of a case.
     workers : int
-        Processes of our own; 1 computes in this one.
+        Number of worker processes; 1 computes in this process.
     executor : concurrent.futures.Executor, optional
-        Computes in place of our workers, such as that of ``dask.distributed.Client.get_executor()``.
+        Executor in place of the worker processes, such as that of ``dask.distributed.Client.get_executor()``.
     store : str or Path, optional
-        Directory that keeps each finished chunk; a sweep that finds chunks there computes only the others.
+        Directory in which finished chunks are saved; chunks found there are not computed again.
     progress : callable, optional
-        Called with the number of cases that are done and of all: at the start, and after each chunk.
+        Called with the number of finished cases and of all, at the start and after each chunk.
     discretization : {"ritz", "fem"} or Discretization
-        Where the modes come from.
+        Discretization from which the modes are computed.
     chunk : int
-        Cases in a chunk: a part of the request, on which the last digits depend.
+        Number of cases in a chunk.  The last digits of the result depend on it.
 
     Returns
     -------
@@ -139,9 +140,9 @@ def sweep(
         Before any long work, if an argument is out of its range, a speed passes the critical one, the
         store is foreign or cannot be written, or the motion cannot be stored or sent to workers.
     SweepInterrupted
-        If the executor breaks; what is finished is in the store.
+        If the executor breaks; finished chunks are in the store.
     """
-    began = perf_counter()
+    start = perf_counter()
     cases = tuple(ascending("speeds", speeds).tolist())
     request = _check_request(scene, window, t_end, tolerance, discretization)
     workers, chunk = count("workers", workers), count("chunk", chunk)
@@ -153,12 +154,12 @@ def sweep(
         _check_sendable(request, importable=workers > 1)
     samples = _run_samples(request, cases, TransientRequest.run) if basis else _choose_basis(request, cases)
     largest = max((run.request.basis for run in samples), key=lambda basis: basis.modes or 0)
-    request, place = replace(request, basis=largest), None if store is None else Store(store, _KIND)
-    collector = ChunkCollector(request, _split(cases, chunk), place, progress)
+    request, chunk_store = replace(request, basis=largest), None if store is None else Store(store, _KIND)
+    collector = ChunkCollector(request, _split(cases, chunk), chunk_store, progress)
     collector.collect(executor, workers)
     method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model().discretization}"
-    provenance = Provenance(__version__, method, "", perf_counter() - began)
-    return _assemble_result(request, np.array(cases), collector.cases(), _truncation(samples), provenance)
+    provenance = Provenance(__version__, method, "", perf_counter() - start)
+    return _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
 
 
 def _split(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
@@ -175,6 +176,7 @@ def _check_request(
     tolerance: float,
     discretization: DiscretizationChoice,
 ) -> SweepRequest:
+    """Check the arguments that all cases share."""
     if scene.motion is None:
         raise ValueError("scene.motion is None: a sweep needs a motion, such as SpinUp(50.0, duration=10.0)")
     if not isinstance(window, tuple | list) or len(window) != 2:
@@ -192,7 +194,7 @@ def _check_request(
 
 
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
-    """Refuse a case that passes the critical speed, or a motion that does not last to the end."""
+    """Raise a ValueError for a case that passes the critical speed, or a motion that ends early."""
     model, t = request.model(), np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
@@ -200,12 +202,12 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
         past = np.array(speeds)[fastest >= critical]
         raise ValueError(
             f"speeds: {len(past)} of {len(speeds)} ({list_range(past)}) pass the critical speed "
-            f"{critical:.6g} rad/s, where the beam buckles and linear theory has no answer; leave them out"
+            f"{critical:.6g} rad/s, where the beam buckles and linear theory does not hold; leave them out"
         )
 
 
 def _smallest_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
-    """The smallest basis that is tried, at the slowest and at the fastest speed of all cases."""
+    """Smallest modal basis that is tried: modes at the slowest and at the fastest speed of all cases."""
     ends = [find_speed_range(motion, request.t_end) for motion in request.motions((speeds[0], speeds[-1]))]
     return ModalBasis(FEWEST_MODES, tuple(np.unique([ends[0][0], ends[1][-1]]).tolist()))
 
@@ -214,36 +216,36 @@ def _smallest_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBa
 def _run_samples(
     request: SweepRequest, speeds: tuple[float, ...], run: Callable[[TransientRequest], Transient]
 ) -> list[Transient]:
-    """Runs at the fastest speed, in the middle, and halfway between, for the modal truncation error."""
+    """Run the transients at the fastest, the middle and the speed between, to estimate `mode_error`."""
     some = sorted({speeds[k * (len(speeds) - 1) // 4] for k in (2, 3, 4)})
-    return [run(request.single(motion)) for motion in request.motions(some)]
+    return [run(request.transient_request(motion)) for motion in request.motions(some)]
 
 
 def _choose_basis(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Runs in the smallest basis of each; if they are of modes at different speeds, all in the best one."""
-    samples = _run_samples(request, speeds, TransientRequest.run_cheapest)
+    """Run the samples in the smallest basis of each, or in the best if these are of different speeds."""
+    samples = _run_samples(request, speeds, TransientRequest.run_smallest_basis)
     families = {run.request.basis.speeds for run in samples}
     if len(families) == 1:
         return samples
     most = max(run.request.basis.modes or 0 for run in samples)
-    alike = (replace(request, basis=ModalBasis(most, family)) for family in sorted(families))
-    return min((_run_samples(each, speeds, TransientRequest.run) for each in alike), key=_truncation)
+    candidates = (replace(request, basis=ModalBasis(most, family)) for family in sorted(families))
+    return min((_run_samples(each, speeds, TransientRequest.run) for each in candidates), key=_mode_error)
 
 
-def _truncation(runs: Sequence[Transient]) -> float:
-    """Largest modal truncation error of some runs, relative to their largest deflection."""
+def _mode_error(runs: Sequence[Transient]) -> float:
+    """Largest modal truncation error of the runs, relative to the largest deflection of each."""
     return max((run.mode_error / run.largest for run in runs if run.largest), default=0.0)
 
 
 def _check_sendable(request: SweepRequest, importable: bool) -> None:
-    """Refuse what cannot be stored or sent to workers; to our own only what they can import."""
+    """Raise a ValueError for a scene that cannot be pickled, or that worker processes cannot import."""
     assert request.scene.motion is not None
     check_picklable(request.scene.motion)
     try:
-        sent = pickle.dumps(request)
-    except Exception as error:  # which one depends on the object
+        pickled = pickle.dumps(request)
+    except Exception as error:  # its class depends on the object
         raise ValueError(f"the scene can be neither stored nor sent to workers: {error}") from None
-    if importable and b"__main__" in sent:
+    if importable and b"__main__" in pickled:
         raise ValueError(
             "motion: it uses functions or classes defined in the script itself (__main__), which workers "
             "cannot import; define them in a module of their own, or give workers=1"

@@ -1,4 +1,4 @@
-"""The equations of a scene over its motion: coefficients at times, for the integrators."""
+"""Equations of motion of a scene in modal coordinates, evaluated at times for the integrators."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _MEAN_SAMPLES = 257  # of the root's motion, for the mean stiffness
 
 @dataclass(frozen=True)
 class ModalSystem:
-    """q'' + C q' + K(t) q = f(t) of a scene in modal coordinates, at arrays of times.
+    """Equations q'' + C q' + K(t) q = f(t) of a scene in modal coordinates, at arrays of times.
 
     Parameters
     ----------
     equations : Equations
-        Equations in coordinates of unit mass.
+        Equations of motion with a unit mass matrix.
     motion : Motion
-        The motion that they follow.
+        Motion of the root.
     """
 
     equations: Equations
@@ -36,7 +36,7 @@ class ModalSystem:
 
     @property
     def tip(self) -> np.ndarray:
-        """Tip deflection by unit coordinates, shape (n,)."""
+        """Tip deflection per unit of each coordinate [kg^-1/2], shape (n,)."""
         return self.equations.tip
 
     def root(self, t: np.ndarray) -> RootMotion:
@@ -44,7 +44,7 @@ class ModalSystem:
         return self.equations.root(self.motion.at(t))
 
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """C (None if zero), K and f at times t [s]."""
+        """Evaluate C (None if zero), K and f at times t [s] of any shape."""
         root = self.root(np.asarray(t, dtype=float))
         return self._damping(root), self.equations.matrix(0, root), self.equations.load(root)
 
@@ -52,9 +52,9 @@ class ModalSystem:
         return self.equations.matrix(1, root) if self.equations.matrices[1] else None
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
-        """The equations from start to end [s] as constant ones with a varying stiffness.
+        """Split the equations from start to end [s] into a constant part and a varying stiffness.
 
-        None where the speed changes, or where damping or gyroscopic terms vary.
+        None if the speed changes, or if damping or gyroscopic terms vary.
         """
         stiffness, damping, _ = self.equations.matrices
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
@@ -78,13 +78,13 @@ class ModalSystem:
         )
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Y' for y = (q, q'), as `solve_ivp` asks for it."""
+        """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
         C, K, f = self.coefficients(np.asarray(t))
         q, v = np.split(y, 2)
         return np.concatenate([v, f - K @ q - (0 if C is None else C @ v)])
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Derivative of y' with respect to y: exact, as the system is linear."""
+        """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
         C, K, _ = self.coefficients(np.asarray(t))
         n = self.size
         J = np.zeros((2 * n, 2 * n))
@@ -95,5 +95,5 @@ class ModalSystem:
 
 
 def _stack(values: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
-    """Values of one shape along a new last axis, which may be empty."""
+    """Stack values of one shape along a new last axis, which may be empty."""
     return np.stack(values, axis=-1) if values else np.empty((*shape, 0))

@@ -1,4 +1,4 @@
-"""Coordinates over time, and the largest deflection on the way."""
+"""Trajectories: coordinates over time, and their largest deflection."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 
 from beamdyn.transient.gauss import Segment
 
-SAMPLES = 8  # of the response in each step, where the caller gives no times
-_CANDIDATES = 12  # maxima that are refined: sampled ones differ by less than 1e-3 from the true
-_ROUNDS = 4  # of refinement, each 17 times as fine
+SAMPLES = 8  # per step, if the caller gives no times
+_CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
+_REFINEMENTS = 4  # of a maximum, each on a grid 17 times as fine
 
 
 class Path(Protocol):
-    """Coordinates over time, wherever they come from."""
+    """Coordinates over time, from any integrator."""
 
     @property
     def start(self) -> float:
@@ -72,50 +72,50 @@ class Trajectory:
         """Coordinates and velocities at times t [s]: shapes (len(t), n)."""
         n = self.segments[0].acceleration.shape[2]
         q, v = np.empty((len(t), n)), np.empty((len(t), n))
-        place = np.searchsorted([segment.start for segment in self.segments[1:]], t, side="right")
-        for k in np.unique(place):
-            here = place == k
+        index = np.searchsorted([segment.start for segment in self.segments[1:]], t, side="right")
+        for k in np.unique(index):
+            here = index == k
             q[here], v[here] = self.segments[k].at(t[here])
         return q, v
 
 
 def largest_deflection(tip: np.ndarray, path: Path, start: float, end: float) -> float:
-    """Find the largest |tip deflection| of a path from start to end [s], also between samples.
+    """Find the largest |tip deflection| of a path in a time window, also between samples.
 
     Parameters
     ----------
     tip : ndarray, shape (n,)
-        Tip deflection by unit coordinates.
+        Tip deflection per unit of each coordinate.
     path : Path
         The coordinates over time.
     start, end : float
-        The window [s].
+        Beginning and end of the window [s].
 
     Returns
     -------
     float
-        Largest |tip deflection| [m]: the highest maxima of the samples are refined.
+        Largest |tip deflection| [m], from refining the highest maxima of the samples.
     """
     times, q, _ = path.samples
     inside = (times >= start) & (times <= end)
     size = np.abs(q[inside] @ tip)
     ends = np.array([start, end])
-    t = np.concatenate([times[inside][_beside_highest(size)], ends])
-    reach = np.diff(times).max()
-    for _ in range(_ROUNDS):
-        near = np.clip(t[:, None] + np.linspace(-reach, reach, 35), start, end)
+    t = np.concatenate([times[inside][_find_highest_maxima(size)], ends])
+    half_width = np.diff(times).max()
+    for _ in range(_REFINEMENTS):
+        near = np.clip(t[:, None] + np.linspace(-half_width, half_width, 35), start, end)
         size = np.abs(path.at(near.ravel())[0] @ tip).reshape(near.shape)
-        t, reach = near[np.arange(len(t)), size.argmax(axis=1)], reach / 17
+        t, half_width = near[np.arange(len(t)), size.argmax(axis=1)], half_width / 17
     return float(size.max())
 
 
-def _beside_highest(size: np.ndarray) -> np.ndarray:
-    """Samples beside the highest maxima, by the vertices of parabolas through three samples."""
+def _find_highest_maxima(size: np.ndarray) -> np.ndarray:
+    """Indices of the samples at the highest maxima, ranked by parabolas through three samples."""
     if len(size) < 3:
         return np.arange(len(size))
-    size = size / max(size.max(), 1e-300)  # of any size, without overflow
+    size = size / max(size.max(), 1e-300)  # so that squares cannot overflow
     left, middle, right = size[:-2], size[1:-1], size[2:]
     bend = np.maximum(2 * middle - left - right, 1e-300)
-    summit = (middle >= left) & (middle >= right)
-    height = np.where(summit, middle + (right - left) ** 2 / (8 * bend), middle)
+    is_maximum = (middle >= left) & (middle >= right)
+    height = np.where(is_maximum, middle + (right - left) ** 2 / (8 * bend), middle)
     return 1 + np.argsort(height)[-_CANDIDATES:]

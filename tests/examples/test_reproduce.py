@@ -16,7 +16,7 @@ from beamdyn.reproduce import frequencies, motion, others
 
 @pytest.fixture(scope="module")
 def swept():
-    return motion.sweep_of_speeds(speeds=np.arange(45.0, 81.0))
+    return motion.run_sweep(speeds=np.arange(45.0, 81.0))
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def rows(swept):
 
 
 def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept):
-    monkeypatch.setattr(motion, "sweep_of_speeds", lambda progress: swept)
+    monkeypatch.setattr(motion, "run_sweep", lambda progress: swept)
     assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
     out, err = capsys.readouterr()
     assert err == ""
@@ -50,7 +50,7 @@ def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept):
 
 def test_an_unexpected_verdict_is_reported(capsys, tmp_path, monkeypatch):
     row = [*frequencies.first_frequencies()][1]
-    monkeypatch.setattr(motion, "sweep_of_speeds", lambda progress: None)
+    monkeypatch.setattr(motion, "run_sweep", lambda progress: None)
     monkeypatch.setattr(reproduce, "sections", lambda swept: {"title": [replace(row, ours=row.ours + 0.01)]})
     monkeypatch.setattr(reproduce, "draw", lambda folder, swept: [])
     assert main(["reproduce", "--output", str(tmp_path)]) == NO_ANSWER
@@ -116,12 +116,12 @@ def test_an_interval_must_hold_the_value():
 
 @pytest.mark.slow
 def test_all_of_figure_6_has_no_other_peak():
-    assert all(row.as_expected for row in motion.peaks_of_sweep(motion.sweep_of_speeds()))
+    assert all(row.as_expected for row in motion.sweep_peak_comparisons(motion.run_sweep()))
 
 
 @pytest.mark.slow
 def test_tables_of_other_sources():
-    summaries = list(others.summaries())
+    summaries = list(others.summarize_sources())
     assert sum(s.values for s in summaries if s.discretization == "Ritz") == 62
     for s in summaries:
         assert s.as_expected, s

@@ -130,7 +130,7 @@ def test_what_does_not_converge_together_is_computed_alone(undisturbed, monkeypa
 
 
 def test_an_error_of_a_case_is_not_one_of_the_executor(monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.chunks._solve_together", lambda *_: 1 / 0)
+    monkeypatch.setattr("beamdyn.transient.chunks._solve_batch", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError), ThreadPoolExecutor(1) as executor:
         run(executor=executor)
 

@@ -253,7 +253,7 @@ def test_stock_integrators_are_given_up_in_time():
     found = integrators_diagram(ROLLING, 5.0, 2, budget=0.7)
     left_out = [sentence for sentence in found.skipped if sentence.startswith("solve_ivp")]
     assert any("given up after" in sentence for sentence in left_out)
-    assert "no second route: DOP853 took more than" in found.reference
+    assert "not checked by DOP853, which took more than" in found.reference
 
 
 def test_more_modes_are_better():
