@@ -74,7 +74,7 @@ def _single_sources(sample: MotionSample, gravity: float) -> Iterator[tuple[str,
 
 def _sample_times(motion: Motion) -> np.ndarray:
     """Times that show all of a motion: until it is steady, and some turns on [s]."""
-    known = min(motion.settled, motion.end)
+    known = min(motion.steady_start, motion.end)
     if not math.isfinite(known):
         known = max(_HORIZON, *motion.breakpoints, 0.0)
     speed = abs(motion.final_speed)
@@ -154,7 +154,7 @@ def _enumerate(words: list[str]) -> str:
 
 def _has_different_inertias(scene: SampledScene) -> bool:
     tip = scene.scene.beam.tip
-    return tip is not None and tip.inertia_transverse != tip.axial_inertia
+    return tip is not None and tip.inertia_about_bending_direction != tip.axial_inertia
 
 
 # Conditions that the terms of several fields name.

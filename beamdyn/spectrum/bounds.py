@@ -203,7 +203,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 
 
 def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
-    moments = (tip.inertia, tip.inertia_transverse, tip.axial_inertia)
+    moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     return TipMass(tip.mass / mass, tip.offset / length, *(j / (mass * length**2) for j in moments))
 
 
@@ -384,7 +384,7 @@ def _coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Coefficients per omega^2, the same with all terms positive, and per -z: shape (4,) each."""
     tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
     root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
-    turn = sin(psi) ** 2 * np.array([tip.inertia_transverse, -tip.axial_inertia])
+    turn = sin(psi) ** 2 * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
     pull = tip.mass * tip.offset * np.array([1.0, tip.offset, -root])
     ends = np.concatenate([turn, pull])
     spin = np.array([1.0, -root, -(cos(psi) ** 2), ends.sum()])

@@ -144,8 +144,8 @@ def _end(scene: Scene) -> float:
     assert scene.motion is not None
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
-    settled = scene.motion.settled if scene.motion.settled <= _LONG_START * period else 0.0
-    return min(_rounded(settled + _PERIODS * period), scene.motion.end)
+    start = scene.motion.steady_start if scene.motion.steady_start <= _LONG_START * period else 0.0
+    return min(_rounded(start + _PERIODS * period), scene.motion.end)
 
 
 def _rounded(value: float) -> float:

@@ -72,7 +72,7 @@ def bending_operators(beam: Beam, space: Space) -> BendingOperators:
     return BendingOperators(
         M=spin + tip.inertia * dd,
         S=spin,
-        J=(tip.inertia_transverse - tip.axial_inertia) * dd,
+        J=(tip.inertia_about_bending_direction - tip.axial_inertia) * dd,
         KB=space.gram(beam.bending_stiffness, 2) / length**3,
         KGA=space.gram(n_a, 1) / length + tip.mass * tip.offset * dd,
         KGB=space.gram(n_b, 1) / length + tip.mass * reach * tip.offset * dd,
