@@ -1,6 +1,6 @@
 """Vibration of a cantilever on a carrier that rotates and translates.
 
-The public face; names load their modules when first used, so that importing the package is quick.
+Public interface: a name loads its module when first used, so that importing the package is quick.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ __all__ = [
     "tradeoff",
 ]
 
-_HOME = {
+_MODULES = {
     "Beam": "scene.beam",
     "Crossing": "steady.resonance",
     "Crossings": "steady.resonance",
@@ -124,9 +124,9 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     """Load a public name from its module."""
-    if name not in _HOME:
+    if name not in _MODULES:
         raise AttributeError(f"module 'beamdyn' has no attribute {name!r}")
-    return getattr(import_module(f"beamdyn.{_HOME[name]}"), name)
+    return getattr(import_module(f"beamdyn.{_MODULES[name]}"), name)
 
 
 def __dir__() -> list[str]:
