@@ -320,11 +320,9 @@ class Split:
             return None
         coupling, allowance = self._sum(self._coefficients(z))[:, self.head], self._allowance(z)
         defect = coupling - self.stiffness[:, self.head] @ np.linalg.solve(self._K, coupling[self.head])
-        error = self.compliance.max() * (self.condition * allowance) ** 2  # of the defect, squared
+        error = self.compliance.max() * (self.condition * allowance) ** 2  # rounding error, squared
         one = np.eye(len(self.head))
-        R = 2 * (
-            defect.T @ (self.compliance[:, None] * defect) + rounding * one
-        )  # |a + b|^2 <= 2 (a^2 + b^2)
+        R = 2 * (defect.T @ (self.compliance[:, None] * defect) + error * one)  # |a + b|^2 <= 2 (a^2 + b^2)
         return self._K + coupling[self.head] - R / (1 - tail) - allowance * one
 
     @cached_property
