@@ -1,1 +1,1 @@
-"""A scene as equations of motion: discretizations, their operators, and the list of terms."""
+"""Equations of motion of a scene: discretizations, operators of the fields, and the list of terms."""

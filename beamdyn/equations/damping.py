@@ -7,7 +7,7 @@ import scipy.linalg
 
 
 def modal_damping(M: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Damping matrix that gives each mode of (K, M) a damping ratio of 1 [kg/s].
+    """Damping matrix [kg/s] with which every mode of (K, M) has a damping ratio of 1.
 
     C = 2 L (L^-1 M L^-T)^(1/2) L^T with K = L L^T.
     """

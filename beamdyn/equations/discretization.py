@@ -1,4 +1,4 @@
-"""What a discretization supplies: function spaces on a beam, which integrate and evaluate."""
+"""Interface of discretizations: function spaces on a beam, which integrate and evaluate."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from beamdyn.scene.profile import Profile
 
 
 class Space(Protocol):
-    """Trial functions phi_i of xi = x/L on [0, 1] that satisfy the conditions at the root."""
+    """Trial functions phi_i of xi = x/L on [0, 1] that satisfy the boundary conditions at the root."""
 
     @property
     def size(self) -> int:
@@ -19,19 +19,19 @@ class Space(Protocol):
         ...
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrals over xi of weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
+        """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
         ...
 
     def load(self, weight: Profile) -> np.ndarray:
-        """Integrals over xi of weight times phi_i: shape (n,)."""
+        """Integrate over xi the weight times phi_i: shape (n,)."""
         ...
 
     def end(self, order: int) -> np.ndarray:
-        """Derivatives of phi_i at the tip: shape (n,)."""
+        """Evaluate the `order`-th derivatives of phi_i at the tip: shape (n,)."""
         ...
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Derivatives of phi_i at xi of shape (k,): shape (n, k)."""
+        """Evaluate the `order`-th derivatives of phi_i at xi of shape (k,): shape (n, k)."""
         ...
 
 
@@ -39,46 +39,46 @@ class Spaces(Protocol):
     """The function spaces of one discretization of one beam."""
 
     def functions(self, held: int) -> Space:
-        """Functions whose derivatives 0 ... held - 1 vanish at the root.
+        """Trial functions whose derivatives of orders below `held` vanish at the root.
 
         Parameters
         ----------
         held : int
-            2 for a clamped deflection (value and slope), 1 for a stretch (value).  The derivative of this
-            order is square-integrable.
+            2 for a clamped deflection (value and slope), 1 for a stretch (value); also the highest order
+            of derivative that is square-integrable.
         """
         ...
 
     def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrals over xi of weight times function i of `functions(rows)`, j of `functions(columns)`."""
+        """Integrate over xi the weight times function i of `functions(rows)`, j of `functions(columns)`."""
         ...
 
 
 class Discretization(Protocol):
-    """A way to discretize a beam, such as `Ritz` or `Fem`.
+    """A discretization of a beam, such as `Ritz` or `Fem`.
 
     In order to add a discretization, write a class in a module of its own:
 
-    1. It is a frozen dataclass of its sizes: it stands in the provenance of results, where its `repr`
-       says what was computed, and it is hashed and pickled.
+    1. It is a frozen dataclass of its sizes: it is hashed and pickled, and its `repr` stands in the
+       provenance of results.
     2. `spaces(beam)` returns the function spaces (`Spaces`).  They have a breakpoint, or a node, at each
        of `beam.breakpoints`, so that integrals are exact where a property jumps.
     3. All physics is in the fields (`beamdyn.equations.fields`): a space only integrates and evaluates.
-    4. `coarser` and `finer` make a sequence.  The error of a result is estimated by its distance from that
-       of `coarser`; a tolerance is met by going along `finer`.
-    5. `order` is the order of convergence if it is a power of the size, for Richardson extrapolation.
+    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
+       from that of `coarser`; a tolerance is met by repeating `finer`.
+    5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
        in `beamdyn.modal.choice`.
     """
 
     @property
     def order(self) -> int | None:
-        """Order of convergence of eigenvalues as the size doubles; None where it is not a power."""
+        """Order p of convergence of eigenvalues, whose error is as size^-p; None if it is not a power."""
         ...
 
     @property
     def rounding(self) -> float:
-        """Relative rounding error of eigenvalues by its own integrals."""
+        """Relative rounding error of eigenvalues due to the integrals of the discretization."""
         ...
 
     def spaces(self, beam: Beam) -> Spaces:
@@ -86,13 +86,13 @@ class Discretization(Protocol):
         ...
 
     def coarser(self) -> Discretization:
-        """A less accurate one, whose distance estimates the error of this one."""
+        """A coarser discretization, from whose results those of this one differ by about their error."""
         ...
 
     def finer(self) -> Discretization | None:
-        """The next more accurate one; None at the largest."""
+        """The next finer discretization; None at the largest."""
         ...
 
     def fits(self, modes: int) -> bool:
-        """Whether the coarser one has functions enough for a number of modes."""
+        """Whether the coarser discretization has functions enough for a number of modes."""
         ...

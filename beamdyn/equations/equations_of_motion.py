@@ -1,8 +1,8 @@
 """The equations of motion, as a list of terms.
 
-M q'' + C q' + K q = f for the coordinates of all fields.  Each matrix is a sum of terms
-``factor * quantity(t) * matrix``, where the quantity is one of a few of the root's motion, so that
-batches over speeds, harmonic balance and the dropping of terms all read the same list.
+M q'' + C q' + K q = f for the coordinates q of all fields.  Each matrix is a sum of terms
+``factor * quantity(t) * matrix`` with a quantity of the root's motion: batches over speeds, harmonic balance
+and the omission of terms all read this one list.
 
 Derivation and conventions: docs/conventions.md.
 """
@@ -26,12 +26,12 @@ from beamdyn.scene.scene import Scene
 
 @dataclass(frozen=True)
 class SteadyPencil:
-    """The equations at steady speed omega: M q'' + (C + omega G) q' + (K0 + omega^2 K2) q = omega^2 f2.
+    """Equations at steady speed omega: M q'' + (C + omega G) q' + (K0 + omega^2 K2) q = omega^2 f2.
 
     Parameters
     ----------
     M, C, G, K0, K2 : ndarray, shape (n, n)
-        Mass, damping, gyroscopic coupling per speed, stiffness at rest, stiffness per squared speed.
+        Mass, damping, gyroscopic matrix per speed, stiffness at rest, stiffness per squared speed.
     f2 : ndarray, shape (n,)
         Static load per squared speed.
     """
@@ -44,7 +44,7 @@ class SteadyPencil:
     f2: np.ndarray
 
     def block(self, place: slice) -> SteadyPencil:
-        """One field alone, without damping."""
+        """Extract the equations of one field, without damping and gyroscopic coupling."""
         M, K0, K2 = (A[place, place] for A in (self.M, self.K0, self.K2))
         return SteadyPencil(M, np.zeros_like(M), np.zeros_like(M), K0, K2, self.f2[place])
 
@@ -61,17 +61,17 @@ class Equations:
     Parameters
     ----------
     blocks : dict of str to slice
-        Places of the fields' coordinates in q.
+        Slice of q that holds the coordinates of each field.
     terms : tuple of Term
-        Left-hand side.
+        Terms of the left-hand side.
     loads : tuple of Load
-        Right-hand side.
+        Terms of the right-hand side.
     mount : Mount
-        How the beam is mounted.
+        Mount of the beam on the carrier.
     gravity : float
-        Gravity [m/s2].
+        Gravitational acceleration [m/s2].
     deflections : dict of str to Deflection
-        How the coordinates of the fields that move the beam transversely deflect it.
+        Shapes and loads of the coordinates of each field that deflects the beam.
     """
 
     blocks: dict[str, slice]
@@ -91,16 +91,16 @@ class Equations:
         """Largest number of coordinates of a field."""
         return max(place.stop - place.start for place in self.blocks.values())
 
-    # The beam's shape in the coordinates ----------------------------------------------------------
+    # Deflection of the beam by the coordinates ----------------------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Derivatives with respect to x/L of the deflection by unit coordinates at xi (k,): shape (n, k)."""
+        """Derivatives with respect to x/L of the deflection per coordinate, at xi (k,): shape (n, k)."""
         xi = np.asarray(xi, dtype=float)
         return self._over_coordinates(lambda d: d.evaluate(xi, order), xi.shape)
 
     @cached_property
     def tip(self) -> np.ndarray:
-        """Tip deflection by unit coordinates, shape (n,)."""
+        """Tip deflection per coordinate, shape (n,)."""
         return self._over_coordinates(lambda d: d.tip)
 
     @property
@@ -114,19 +114,19 @@ class Equations:
         return self._over_coordinates(lambda d: d.Q)
 
     def _over_coordinates(
-        self, part: Callable[[Deflection], np.ndarray], shape: tuple[int, ...] = ()
+        self, quantity: Callable[[Deflection], np.ndarray], shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """A part of the deflections over all coordinates, 0 for the fields that do not deflect."""
-        total = np.zeros((self.size, *shape))
+        """Gather a quantity of the deflections over all coordinates; 0 for fields that do not deflect."""
+        values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
-            total[self.blocks[name]] = part(deflection)
-        return total
+            values[self.blocks[name]] = quantity(deflection)
+        return values
 
-    # Matrices and loads over the root's motion -----------------------------------------------------
+    # Matrices and loads as functions of the root's motion -------------------------------------------
 
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """For each order 0, 1, 2 of the derivative, the sum of the matrices that one quantity multiplies."""
+        """Sums of the matrices of each quantity, for the time derivatives of orders 0, 1, 2 of q."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
         for term in self.terms:
             total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
@@ -135,7 +135,7 @@ class Equations:
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
-        """The sum of the load vectors that one quantity multiplies."""
+        """Sums of the load vectors of each quantity."""
         sums: dict[Quantity, np.ndarray] = {}
         for load in self.loads:
             total = sums.setdefault(load.quantity, np.zeros(self.size))
@@ -143,43 +143,43 @@ class Equations:
         return sums
 
     def root(self, sample: MotionSample) -> RootMotion:
-        """Motion of the root from that of the carrier."""
+        """Compute the motion of the root from that of the carrier."""
         return root_motion(self.mount, sample, self.gravity)
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
-        """Sum of the terms of one order: shape (..., n, n) over the shape of `root`."""
+        """Matrix of the `order`-th time derivative of q: shape (..., n, n) for quantities of shape (...)."""
         return _sum_over_quantities(self.matrices[order], root, (self.size, self.size))
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Right-hand side: shape (..., n) over the shape of `root`."""
+        """Right-hand side: shape (..., n) for quantities of shape (...)."""
         return _sum_over_quantities(self.vectors, root, (self.size,))
 
     def steady(self) -> SteadyPencil:
-        """The equations as a pencil in the speed, about a fixed centre and without gravity."""
-        rest, turning = (root_motion(self.mount, MotionSample.steady(speed)) for speed in (0.0, 1.0))
+        """Equations at steady speed, as polynomials of it; about a fixed centre and without gravity."""
+        rest, rotating = (root_motion(self.mount, MotionSample.steady(speed)) for speed in (0.0, 1.0))
         C = self.matrix(1, rest)
-        # The stiffness per squared speed is summed apart from the far larger stiffness at rest.
-        moving: dict[Quantity, np.ndarray] = {
+        # The difference from the far larger stiffness at rest would lose digits.
+        varying: dict[Quantity, np.ndarray] = {
             name: K for name, K in self.matrices[0].items() if name != "unity"
         }
         return SteadyPencil(
             M=self.matrix(2, rest),
             C=C,
-            G=self.matrix(1, turning) - C,
+            G=self.matrix(1, rotating) - C,
             K0=self.matrix(0, rest),
-            K2=_sum_over_quantities(moving, turning, (self.size, self.size)),
-            f2=self.load(turning),
+            K2=_sum_over_quantities(varying, rotating, (self.size, self.size)),
+            f2=self.load(rotating),
         )
 
-    # Fewer coordinates ----------------------------------------------------------------------------
+    # Reduction to fewer coordinates -----------------------------------------------------------------
 
     def reduced(self, shapes: Mapping[str, np.ndarray]) -> Equations:
-        """The equations in other coordinates: for each field, q = shapes[field] @ q_reduced.
+        """Transform the equations to other coordinates: for each field, q = shapes[field] @ q_reduced.
 
         Parameters
         ----------
         shapes : mapping of str to ndarray, shape (n, m)
-            The shapes of each field: its modes at rest, for instance.
+            Basis of each field, in columns: its modes at rest, for instance.
 
         Returns
         -------
@@ -197,18 +197,18 @@ class Equations:
 
 
 def _sum_over_quantities(
-    parts: Mapping[Quantity, np.ndarray], root: RootMotion, shape: tuple[int, ...]
+    coefficients: Mapping[Quantity, np.ndarray], root: RootMotion, shape: tuple[int, ...]
 ) -> np.ndarray:
-    """Sum of quantity times matrix or vector, over the shape of the root's motion."""
+    """Sum each quantity times its matrix or vector of the given shape, at all times of the root's motion."""
     total = np.zeros((*root.unity.shape, *shape))
-    for quantity, part in parts.items():
+    for quantity, coefficient in coefficients.items():
         values = getattr(root, quantity)
-        total += values.reshape(*values.shape, *(1 for _ in shape)) * part
+        total += values.reshape(*values.shape, *(1 for _ in shape)) * coefficient
     return total
 
 
 def _place_blocks(sizes: Mapping[str, int]) -> dict[str, slice]:
-    """Consecutive places for the coordinates of the fields."""
+    """Assign consecutive slices to the coordinates of the fields."""
     blocks, start = {}, 0
     for name, size in sizes.items():
         blocks[name] = slice(start, start := start + size)
@@ -228,15 +228,15 @@ def assemble_equations(scene: Scene, discretization: Discretization) -> Equation
     Returns
     -------
     Equations
-        Terms whose factor or matrix is zero in the scene are left out.
+        Without the terms whose factor or matrix is zero in the scene.
     """
     spaces = discretization.spaces(scene.beam)
-    parts = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
+    fields = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
     return Equations(
-        blocks=_place_blocks({name: part.size for name, part in parts.items()}),
-        terms=tuple(t for part in parts.values() for t in part.terms if t.factor and t.matrix.any()),
-        loads=tuple(f for part in parts.values() for f in part.loads if f.factor),
+        blocks=_place_blocks({name: field.size for name, field in fields.items()}),
+        terms=tuple(t for field in fields.values() for t in field.terms if t.factor and t.matrix.any()),
+        loads=tuple(f for field in fields.values() for f in field.loads if f.factor),
         mount=scene.mount,
         gravity=scene.gravity,
-        deflections={name: part.deflection for name, part in parts.items() if part.deflection is not None},
+        deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
     )

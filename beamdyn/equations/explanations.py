@@ -1,4 +1,4 @@
-"""Why a term is in a scene, or why not: sentences for `beamdyn.terms`, and the conditions that they name."""
+"""Reasons why a term is present or absent in a scene: sentences and conditions for `beamdyn.terms`."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ from beamdyn.equations.root_motion import RootMotion, exact_cos_sin, root_motion
 from beamdyn.scene.motion import Motion, MotionSample, SteadyRotation
 from beamdyn.scene.scene import Scene
 
-_TINY = 1e-15  # of the root's largest acceleration: the rounding of pi
-_SAMPLES, _TURNS, _HORIZON = 501, 10, 100.0  # of the motion: times, turns at steady speed, else seconds
+_ROUNDING = 1e-15  # relative to the largest acceleration of the root: rounding error of pi
+_SAMPLES = 501  # times in each of the two parts of a motion: until the speed is steady, and at steady speed
+_TURNS = 10  # revolutions sampled at steady speed
+_HORIZON = 100.0  # time sampled of a motion that is never steady and has no end [s]
 
 
 # A scene over its motion ----------------------------------------------------------------------------
@@ -23,19 +25,19 @@ _SAMPLES, _TURNS, _HORIZON = 501, 10, 100.0  # of the motion: times, turns at st
 
 @dataclass(frozen=True)
 class SampledScene:
-    """A scene with samples of its motion: by rotation at 1 rad/s if it has none."""
+    """A scene with samples of its motion, or of steady rotation at 1 rad/s if it has none."""
 
     scene: Scene
 
     @cached_property
     def sample(self) -> MotionSample:
-        """The motion at times that show all of it."""
+        """Motion of the carrier at representative times."""
         motion = self.scene.motion or SteadyRotation(1.0)
         return motion.at(_sample_times(motion))
 
     @cached_property
     def root(self) -> RootMotion:
-        """Motion of the root at these times, rounding set to 0."""
+        """Motion of the root at these times, with accelerations below rounding set to 0."""
         root = root_motion(self.scene.mount, self.sample, self.scene.gravity)
         axial, transverse = (
             np.where(np.abs(a) > self.rounding, a, 0.0) for a in (root.root_axial, root.root_transverse)
@@ -44,18 +46,18 @@ class SampledScene:
 
     @cached_property
     def rounding(self) -> float:
-        """Acceleration of the root that is rounding [m/s2]."""
+        """Rounding error of the root's acceleration [m/s2]."""
         sample, r = self.sample, self.scene.mount.radius
-        turning = r * (sample.speed**2 + np.abs(sample.acceleration))
-        size = (turning + np.abs(sample.carrier_acceleration).sum(axis=-1)).max()
-        return _TINY * (float(size) + abs(self.scene.gravity))
+        rotation = r * (sample.speed**2 + np.abs(sample.acceleration))
+        size = (rotation + np.abs(sample.carrier_acceleration).sum(axis=-1)).max()
+        return _ROUNDING * (float(size) + abs(self.scene.gravity))
 
-    def varies_from_zero(self, quantity: str) -> bool:
-        """Whether a quantity of the root's motion ever differs from 0."""
+    def is_nonzero(self, quantity: str) -> bool:
+        """Whether a quantity of the root's motion differs from 0 at any time."""
         return bool(getattr(self.root, quantity).any())
 
     def sources(self, quantity: str) -> list[str]:
-        """What an acceleration of the root comes from: each source alone, by the same formula."""
+        """Sources that contribute to an acceleration of the root: each is evaluated without the others."""
         sizes = {
             name: np.abs(getattr(root_motion(self.scene.mount, sample, gravity), quantity)).max()
             for name, sample, gravity in _single_sources(self.sample, self.scene.gravity)
@@ -64,22 +66,22 @@ class SampledScene:
 
 
 def _single_sources(sample: MotionSample, gravity: float) -> Iterator[tuple[str, MotionSample, float]]:
-    """The motion with one source of acceleration at a time."""
-    still = replace(MotionSample.steady(0 * sample.speed), angle=sample.angle)
-    yield "rotation", replace(still, speed=sample.speed), 0.0
-    yield "angular acceleration", replace(still, acceleration=sample.acceleration), 0.0
-    yield "translation", replace(still, carrier_acceleration=sample.carrier_acceleration), 0.0
-    yield "gravity", still, gravity
+    """Yield name, motion and gravity of each source of acceleration without the others."""
+    rest = replace(MotionSample.steady(0 * sample.speed), angle=sample.angle)
+    yield "rotation", replace(rest, speed=sample.speed), 0.0
+    yield "angular acceleration", replace(rest, acceleration=sample.acceleration), 0.0
+    yield "translation", replace(rest, carrier_acceleration=sample.carrier_acceleration), 0.0
+    yield "gravity", rest, gravity
 
 
 def _sample_times(motion: Motion) -> np.ndarray:
-    """Times that show all of a motion: until it is steady, and some turns on [s]."""
-    known = min(motion.settled, motion.end)
-    if not math.isfinite(known):
-        known = max(_HORIZON, *motion.breakpoints, 0.0)
+    """Choose times [s] that cover a motion until its speed is steady, and some revolutions after."""
+    start = min(motion.steady_start, motion.end)
+    if not math.isfinite(start):
+        start = max(_HORIZON, *motion.breakpoints, 0.0)
     speed = abs(motion.final_speed)
-    beyond = _TURNS * 2 * math.pi / speed if speed > 0 else 0.0
-    times = np.concatenate([np.linspace(0, known, _SAMPLES), known + np.linspace(0, beyond, _SAMPLES)])
+    duration = _TURNS * 2 * math.pi / speed if speed > 0 else 0.0
+    times = np.concatenate([np.linspace(0, start, _SAMPLES), start + np.linspace(0, duration, _SAMPLES)])
     return np.unique(np.minimum(times, motion.end))
 
 
@@ -90,7 +92,7 @@ Sentence: TypeAlias = "str | Callable[[SampledScene], str]"
 
 @dataclass(frozen=True)
 class Condition:
-    """What a term needs, and the sentence where it is not met."""
+    """A condition for the presence of a term, and the sentence to give if it is not met."""
 
     is_met: Callable[[SampledScene], bool]
     otherwise: Sentence
@@ -98,16 +100,16 @@ class Condition:
 
 @dataclass(frozen=True)
 class Explanation:
-    """How a term is written, why it is there, and what it needs.
+    """Symbol of a term, the reason for its presence, and the conditions of it.
 
     Parameters
     ----------
     symbol : str
-        As in the equations of docs/conventions.md.
+        The term as written in docs/conventions.md.
     reason : str or callable
-        Why it is in a scene.
+        Why the term is present.
     conditions : tuple of Condition
-        All of them are met where it is in a scene.
+        Conditions of its presence, all of which must be met.
     """
 
     symbol: str
@@ -115,14 +117,14 @@ class Explanation:
     conditions: tuple[Condition, ...] = ()
 
     def sentence(self, scene: SampledScene, present: bool) -> str:
-        """Why the term is in the scene, or the first condition that fails."""
+        """Say why the term is present in the scene, or the first condition that is not met."""
         failed = [c.otherwise for c in self.conditions if not c.is_met(scene)]
         text = self.reason if present else [*failed, "its coefficient is zero"][0]
         return text if isinstance(text, str) else text(scene)
 
 
 def say_tension(scene: SampledScene) -> str:
-    """What accelerates the root along the beam."""
+    """Say what accelerates the root along the beam."""
     sources = scene.sources("root_axial")
     if sources == ["rotation"]:
         return "the root's steady acceleration; no translation, so no parametric tension"
@@ -130,15 +132,15 @@ def say_tension(scene: SampledScene) -> str:
 
 
 def say_static_load(scene: SampledScene) -> str:
-    """What accelerates the root across the beam."""
+    """Say what accelerates the root in the direction of bending."""
     return (
         f"the root accelerates in the direction of bending by {_enumerate(scene.sources('root_transverse'))}"
     )
 
 
 def _say_unloaded(scene: SampledScene) -> str:
-    steady = "" if scene.varies_from_zero("acceleration") else ", no angular acceleration"
-    if abs(math.sin(scene.scene.mount.setting_angle)) < _TINY:
+    steady = "" if scene.is_nonzero("acceleration") else ", no angular acceleration"
+    if abs(math.sin(scene.scene.mount.setting_angle)) < _ROUNDING:
         return f"no setting angle, so no static load{steady}, no translation or gravity across the beam"
     return f"the root has no acceleration in the direction of bending{steady}"
 
@@ -154,15 +156,13 @@ def _enumerate(words: list[str]) -> str:
 
 def _has_different_inertias(scene: SampledScene) -> bool:
     tip = scene.scene.beam.tip
-    return tip is not None and tip.inertia_transverse != tip.axial_inertia
+    return tip is not None and tip.inertia_about_bending_direction != tip.axial_inertia
 
 
-# Conditions that the terms of several fields name.
+# Conditions of terms in several fields.
 
-TURNS = Condition(lambda s: s.varies_from_zero("speed"), "the carrier does not turn")
-ACCELERATES = Condition(
-    lambda s: s.varies_from_zero("acceleration"), "constant speed: no angular acceleration"
-)
+TURNS = Condition(lambda s: s.is_nonzero("speed"), "the carrier does not turn")
+ACCELERATES = Condition(lambda s: s.is_nonzero("acceleration"), "constant speed: no angular acceleration")
 IN_PLANE = Condition(
     lambda s: exact_cos_sin(s.scene.mount.bending_angle)[0] != 0,
     "the bending angle is 90 deg: the beam bends out of the plane of rotation",
@@ -177,5 +177,5 @@ TIP_INERTIA = Condition(
     _has_different_inertias,
     "the tip body's inertias about the beam and about the direction of bending are the same",
 )
-TENSIONED = Condition(lambda s: s.varies_from_zero("root_axial"), _say_untensioned)
-LOADED = Condition(lambda s: s.varies_from_zero("root_transverse"), _say_unloaded)
+TENSIONED = Condition(lambda s: s.is_nonzero("root_axial"), _say_untensioned)
+LOADED = Condition(lambda s: s.is_nonzero("root_transverse"), _say_unloaded)

@@ -1,4 +1,4 @@
-"""Finite elements: cubic Hermite deflection and quadratic stretch, through scikit-fem."""
+"""Finite elements by scikit-fem: cubic Hermite deflection and quadratic stretch."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from beamdyn.common.checks import count
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
-MOST_ELEMENTS = 1000
-_ENOUGH = 100
-_GRADING = 3.0
-# Continuous values and slopes, or values, by the number of derivatives that vanish at the root.
+MOST_ELEMENTS = 1000  # largest number accepted
+_MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
+_GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
+# Elements by the number of derivatives that vanish at the root: 2 for a deflection, 1 for a stretch.
 _ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
 
 
@@ -29,7 +29,7 @@ class Fem:
     elements : int
         Number of elements, from 2 to 1000; a node stands at each breakpoint of the beam.
     mesh : {"graded", "uniform"}
-        Whether elements shrink towards the root, where a fast outward beam has a boundary layer.
+        Graded elements shrink towards the root, where a fast outward beam has a boundary layer.
     """
 
     elements: int = 80
@@ -45,76 +45,76 @@ class Fem:
 
     @property
     def order(self) -> int:
-        """Eigenvalues converge with the fourth power of the element length."""
+        """Order of convergence: the error of eigenvalues is as the fourth power of the element length."""
         return 4
 
     @property
     def rounding(self) -> float:
-        """Grows with the third power of the number of elements (2e-10 seen with 100)."""
+        """Relative rounding error of eigenvalues: as the cube of the number of elements (2e-10 at 100)."""
         return 4 * float(np.finfo(float).eps) * self.elements**3
 
     def nodes(self, beam: Beam) -> np.ndarray:
-        """Nodes x/L: elements shared out among the segments by length, at least one each."""
-        edges = np.array(beam.breakpoints)
-        steps = _subdivide(edges if self.mesh == "uniform" else _ungrade(edges), self.elements)
+        """Positions x/L of the nodes: each segment has elements in proportion to its length, at least one."""
+        ends = np.array(beam.breakpoints)
+        steps = _subdivide(ends if self.mesh == "uniform" else _ungrade(ends), self.elements)
         nodes = steps if self.mesh == "uniform" else _grade(steps)
-        for edge in edges:  # rounding must not leave a sliver beside a breakpoint
-            nodes[np.abs(nodes - edge).argmin()] = edge
+        for end in ends:  # rounding must not leave a tiny segment beside a breakpoint
+            nodes[np.abs(nodes - end).argmin()] = end
         return nodes
 
     def spaces(self, beam: Beam) -> FemSpaces:
-        """The function spaces on a beam."""
+        """Build the function spaces on a beam."""
         order = 6 + min(8, max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree))
         return FemSpaces(MeshLine(self.nodes(beam)), order)
 
     def coarser(self) -> Fem:
-        """Half as many elements."""
+        """A mesh of half as many elements."""
         return replace(self, elements=max(2, self.elements // 2))
 
     def finer(self) -> Fem | None:
-        """A quarter as many again, up to 100 elements: past them Ritz functions are the better tool."""
-        if self.elements >= _ENOUGH:
+        """A mesh of a quarter more elements, up to 100; None at 100 or more."""
+        if self.elements >= _MOST_REFINED:
             return None
-        return replace(self, elements=min(_ENOUGH, 5 * self.elements // 4))
+        return replace(self, elements=min(_MOST_REFINED, 5 * self.elements // 4))
 
     def fits(self, modes: int) -> bool:
-        """Whether the coarser mesh has functions enough for so many modes."""
+        """Whether the coarser mesh has functions enough for a number of modes."""
         return 2 * self.coarser().elements >= modes
 
 
 def _grade(s: np.ndarray) -> np.ndarray:
-    """Positions of equal steps s in a mesh that is seven times as fine at the root as at the tip."""
+    """Map positions in a uniform mesh to one that is seven times as fine at the root as at the tip."""
     return (s + _GRADING * s**2) / (1 + _GRADING)
 
 
 def _ungrade(xi: np.ndarray) -> np.ndarray:
-    """Inverse of `_grade`."""
+    """Invert `_grade`."""
     return (np.sqrt(1 + 4 * _GRADING * (1 + _GRADING) * xi) - 1) / (2 * _GRADING)
 
 
-def _subdivide(edges: np.ndarray, elements: int) -> np.ndarray:
-    """Equal steps on each segment, as many as its share."""
-    shares = _share(elements, np.diff(edges))
-    parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(edges), shares, strict=True)]
-    return np.concatenate([*parts, edges[-1:]])
+def _subdivide(ends: np.ndarray, elements: int) -> np.ndarray:
+    """Divide each segment into equal elements, in proportion to its length."""
+    counts = _distribute(elements, np.diff(ends))
+    parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(ends), counts, strict=True)]
+    return np.concatenate([*parts, ends[-1:]])
 
 
-def _share(total: int, lengths: np.ndarray) -> np.ndarray:
-    """Share elements among segments in proportion to their length, at least one each."""
-    shares = np.maximum(1, np.floor(total * lengths / lengths.sum()).astype(int))
-    while shares.sum() < total:
-        shares[np.argmax(lengths / shares)] += 1
-    return shares
+def _distribute(total: int, lengths: np.ndarray) -> np.ndarray:
+    """Distribute elements among segments in proportion to their length, at least one each."""
+    counts = np.maximum(1, np.floor(total * lengths / lengths.sum()).astype(int))
+    while counts.sum() < total:
+        counts[np.argmax(lengths / counts)] += 1
+    return counts
 
 
 @dataclass(frozen=True)
 class FemSpaces:
-    """The spaces of one mesh, over one quadrature rule.
+    """Function spaces on one mesh with one quadrature rule.
 
     Parameters
     ----------
     mesh : skfem.Mesh
-        Nodes x/L.
+        Mesh over x/L.
     order : int
         Polynomial degree that the quadrature integrates exactly.
     """
@@ -123,12 +123,12 @@ class FemSpaces:
     order: int
 
     def functions(self, held: int) -> FemSpace:
-        """Functions whose derivatives 0 ... held - 1 vanish at the root: 2 clamped, 1 fixed."""
-        # a new element for each basis: ElementLineHermite keeps the matrix of the first mesh it meets
+        """Trial functions whose derivatives of orders below `held` vanish at the root."""
+        # A new element for each basis, because ElementLineHermite caches the matrix of its first mesh.
         return FemSpace(Basis(self.mesh, _ELEMENTS[held](), intorder=self.order), held)
 
     def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrals of weight times function i of ``functions(rows)`` and j of ``functions(columns)``."""
+        """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
         first, second = self.functions(rows), self.functions(columns)
         matrix = _product.assemble(second.basis, first.basis, weight=first.weights(weight))
         return matrix.toarray()[np.ix_(first.free, second.free)]
@@ -136,14 +136,14 @@ class FemSpaces:
 
 @dataclass(frozen=True)
 class FemSpace:
-    """Functions of a mesh without those that the root holds.
+    """Finite-element functions without those that the conditions at the root exclude.
 
     Parameters
     ----------
     basis : skfem.Basis
         Mesh, element and quadrature.
     held : int
-        Number of degrees of freedom held at the root: deflection and slope, or the stretch.
+        Number of degrees of freedom fixed at the root: deflection and slope, or the stretch.
     """
 
     basis: Basis
@@ -151,7 +151,7 @@ class FemSpace:
 
     @property
     def free(self) -> np.ndarray:
-        """Degrees of freedom that the root leaves free."""
+        """Indices of the degrees of freedom that are not fixed at the root."""
         root = np.asarray(self.basis.nodal_dofs)[: self.held, 0]
         return np.setdiff1d(np.arange(self.basis.N), root)
 
@@ -161,24 +161,24 @@ class FemSpace:
         return self.basis.N - self.held
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """A property at the quadrature points."""
+        """Evaluate a property at the quadrature points."""
         return weight(np.asarray(self.basis.global_coordinates())[0])
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrals of weight times derivatives of functions i and j."""
+        """Integrate the weight times the `order`-th derivatives of functions i and j."""
         matrix = _GRAMS[order].assemble(self.basis, weight=self.weights(weight))
         return matrix.toarray()[np.ix_(self.free, self.free)]
 
     def load(self, weight: Profile) -> np.ndarray:
-        """Integrals of weight times function i."""
+        """Integrate the weight times function i."""
         return _load.assemble(self.basis, weight=self.weights(weight))[self.free]
 
     def end(self, order: int) -> np.ndarray:
-        """Derivatives at the tip."""
+        """Evaluate the `order`-th derivatives at the tip."""
         return self.evaluate(np.array([1.0]), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Derivatives at xi."""
+        """Evaluate the `order`-th derivatives at xi."""
         x = np.asarray(xi, dtype=float)[None, :]
         mesh, element, mapping = self.basis.mesh, self.basis.elem, self.basis.mapping
         cells = mesh.element_finder(mapping=mapping)(*x)
@@ -191,7 +191,7 @@ class FemSpace:
         return values[self.free]
 
 
-# Weak forms; u and v are scikit-fem's fields, whose types its forms leave open
+# Weak forms.  Their arguments are scikit-fem's, which has no types for them.
 
 
 @BilinearForm

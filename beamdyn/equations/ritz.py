@@ -15,23 +15,23 @@ from beamdyn.common.checks import count
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
-MOST_FUNCTIONS = 200
+MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 
 Evaluation = Callable[[np.ndarray, int], np.ndarray]  # (xi of shape (k,), order) -> shape (n, k)
 
 
 @dataclass(frozen=True)
 class Ritz:
-    """Assumed modes.
+    """Assumed modes: a Rayleigh-Ritz basis.
 
     Parameters
     ----------
     functions : int
         Number of functions for the deflection, and as many for the stretch where it is modelled,
-        from 1 to 200; of Legendre functions, on each segment between the beam's breakpoints.
+        from 1 to 200; for Legendre functions, the number on each segment between the beam's breakpoints.
     basis : {"legendre", "eigenfunctions"}
-        Integrated Legendre polynomials, or the modes of the uniform beam at rest, which the papers
-        use and which converge slowly under rotation (like N^-5).
+        Integrated Legendre polynomials, or the modes of the uniform beam at rest, which the papers use
+        and whose error falls slowly, as N^-5, under rotation.
     """
 
     functions: int = 14
@@ -47,43 +47,43 @@ class Ritz:
 
     @property
     def order(self) -> None:
-        """None: convergence is not by a power of the size."""
+        """None: the error does not fall as a power of the size."""
         return None
 
     @property
     def rounding(self) -> float:
-        """0: the functions are scaled so that their integrals keep all digits."""
+        """0: scaling of the functions keeps all digits of their integrals."""
         return 0.0
 
     def spaces(self, beam: Beam) -> RitzSpaces:
-        """The function spaces on a beam."""
+        """Build the function spaces on a beam."""
         return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
-        """Gauss points a segment: exact for Legendre bases, past resolution for eigenfunctions."""
-        weight = max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree)
-        own = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return own + 2 + weight // 2 + 1
+        """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
+        weight_degree = max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree)
+        degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
+        return degree + 2 + weight_degree // 2 + 1
 
     def coarser(self) -> Ritz:
-        """A basis whose distance from this one bounds this one's error by its rate of convergence."""
-        keep = 0.88 if self.basis == "legendre" else 0.5
-        return replace(self, functions=max(1, min(int(keep * self.functions), self.functions - 2)))
+        """A basis small enough that its distance from this one exceeds the truncation error of this one."""
+        ratio = 0.88 if self.basis == "legendre" else 0.5  # eigenfunctions converge more slowly
+        return replace(self, functions=max(1, min(int(ratio * self.functions), self.functions - 2)))
 
     def finer(self) -> Ritz | None:
-        """The next larger basis."""
+        """The next larger basis; None at the largest."""
         if self.functions == MOST_FUNCTIONS:
             return None
         return replace(self, functions=min(MOST_FUNCTIONS, int(1.2 * self.functions) + 1))
 
     def fits(self, modes: int) -> bool:
-        """Whether the coarser basis has functions enough for so many modes."""
+        """Whether the coarser basis has functions enough for a number of modes."""
         return self.coarser().functions >= modes
 
 
 @dataclass(frozen=True)
 class RitzSpaces:
-    """The spaces of one basis over one quadrature rule; made once each.
+    """Function spaces of one basis with one quadrature rule; each space is built once and cached.
 
     Parameters
     ----------
@@ -91,36 +91,36 @@ class RitzSpaces:
         The basis.
     breakpoints : tuple of float
         Ends of the segments.
-    count : int
-        Gauss points on each segment.
+    points : int
+        Number of Gauss points on each segment.
     """
 
     ritz: Ritz
     breakpoints: tuple[float, ...]
-    count: int
+    points: int
 
     def functions(self, held: int) -> RitzSpace:
-        """Functions whose derivatives 0 ... held - 1 vanish at the root: 2 clamped, 1 fixed."""
-        return _make_space(self, held)
+        """Trial functions whose derivatives of orders below `held` vanish at the root."""
+        return _build_space(self, held)
 
     def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrals of weight times function i of ``functions(rows)`` and j of ``functions(columns)``."""
+        """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
         first, second = self.functions(rows), self.functions(columns)
         return (first.samples[0] * first.weights(weight)) @ second.samples[0].T
 
 
 @dataclass(frozen=True)
 class RitzSpace:
-    """Functions sampled on a Gauss rule.
+    """Trial functions sampled at the points of a Gauss rule.
 
     Parameters
     ----------
     evaluation : callable
-        Derivatives of the functions.
+        Evaluates the derivatives of all functions at given points.
     points, rule : ndarray, shape (k,)
         Points and weights of the rule on [0, 1].
     orders : int
-        Derivatives that the functions have.
+        Highest order of derivative.
     """
 
     evaluation: Evaluation
@@ -130,7 +130,7 @@ class RitzSpace:
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Functions and their derivatives at the points."""
+        """Values of the functions and of each derivative at the points."""
         return [self.evaluation(self.points, order) for order in range(self.orders + 1)]
 
     @property
@@ -139,62 +139,64 @@ class RitzSpace:
         return len(self.samples[0])
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Weights of the rule times a property."""
+        """Multiply the weights of the rule by a property."""
         return self.rule * weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrals of weight times derivatives of functions i and j."""
+        """Integrate the weight times the `order`-th derivatives of functions i and j."""
         phi = self.samples[order]
         return (phi * self.weights(weight)) @ phi.T
 
     def load(self, weight: Profile) -> np.ndarray:
-        """Integrals of weight times function i."""
+        """Integrate the weight times function i."""
         return self.samples[0] @ self.weights(weight)
 
     @cached_property
-    def _ends(self) -> list[np.ndarray]:
+    def _tip_values(self) -> list[np.ndarray]:
         return [self.evaluation(np.ones(1), order)[:, 0] for order in range(self.orders + 1)]
 
     def end(self, order: int) -> np.ndarray:
-        """Derivatives at the tip."""
-        return self._ends[order]
+        """Evaluate the `order`-th derivatives at the tip."""
+        return self._tip_values[order]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Derivatives at xi."""
+        """Evaluate the `order`-th derivatives at xi."""
         return self.evaluation(np.asarray(xi, dtype=float), order)
 
 
-@lru_cache(maxsize=128)  # beams differ in their properties, seldom in these: half the time of a small model
-def _make_space(spaces: RitzSpaces, held: int) -> RitzSpace:
-    evaluation, edges = _BASES[spaces.ritz.basis][held], np.array(spaces.breakpoints)
-    return RitzSpace(evaluation(spaces.ritz.functions, edges), *_rule(edges, spaces.count), orders=held)
+@lru_cache(maxsize=128)  # independent of the beam's properties: saves half the time of a small model
+def _build_space(spaces: RitzSpaces, held: int) -> RitzSpace:
+    basis, ends = _BASES[spaces.ritz.basis][held], np.array(spaces.breakpoints)
+    return RitzSpace(basis(spaces.ritz.functions, ends), *_gauss_rule(ends, spaces.points), orders=held)
 
 
-def _rule(edges: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
+def _gauss_rule(ends: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights of a Gauss rule on each segment."""
     t, w = legendre.leggauss(points)
-    half = np.diff(edges)[:, None] / 2
-    return (edges[:-1, None] + half * (1 + t)).ravel(), (half * w).ravel()
+    half = np.diff(ends)[:, None] / 2
+    return (ends[:-1, None] + half * (1 + t)).ravel(), (half * w).ravel()
 
 
 # Integrated Legendre polynomials ------------------------------------------------------------------
 
 
-def _integrated_legendre(functions: int, edges: np.ndarray, integrations: int) -> Evaluation:
+def _integrated_legendre(functions: int, ends: np.ndarray, integrations: int) -> Evaluation:
     """Functions whose `integrations`-th derivative is a Legendre polynomial on one segment, 0 elsewhere.
 
-    Integrated from the root they satisfy its conditions, join smoothly at breakpoints and leave the
-    higher derivatives free to jump there; scaled so that the highest derivatives are orthonormal.
+    Being integrals from the root, they satisfy the conditions there and are smooth at breakpoints up to the
+    `integrations`-th derivative, which may jump; scaled so that these derivatives are orthonormal.
     """
 
     def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
-        parts = pairwise(edges)
-        return np.concatenate([_on_segment(functions, a, b, xi, integrations - order) for a, b in parts])
+        segments = pairwise(ends)
+        values = [_integrate_on_segment(functions, a, b, xi, integrations - order) for a, b in segments]
+        return np.concatenate(values)
 
     return evaluation
 
 
-def _on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
-    """The n functions of segment [a, b], integrated so many times, at xi: shape (n, k)."""
+def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
+    """Integrate n Legendre polynomials on [a, b] from the root, repeatedly; values at xi: shape (n, k)."""
     if integrations < 0:
         raise ValueError("only as many derivatives as the basis was integrated")
     half = (b - a) / 2
@@ -202,27 +204,27 @@ def _on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -
     inside, beyond = (xi >= a) & (xi <= b), xi > b
     t = ((xi[inside] - a) - (b - xi[inside])) / (b - a)
     values = np.zeros((n, len(xi)))
-    series = _integrals(n, integrations)
+    series = _integrate_legendre(n, integrations)
     values[:, inside] = half**integrations * (series.T @ legendre.legvander(t, len(series) - 1).T)
-    for k in range(integrations if beyond.any() else 0):  # Taylor's polynomial from the end; k! = 1
-        derivative = half ** (integrations - k) * _integrals(n, integrations - k).sum(axis=0)
+    for k in range(integrations if beyond.any() else 0):  # Taylor polynomial about b; k! = 1 for k < 2
+        derivative = half ** (integrations - k) * _integrate_legendre(n, integrations - k).sum(axis=0)
         values[:, beyond] += np.outer(derivative, (xi[beyond] - b) ** k)
     return scale * values
 
 
 @cache
-def _integrals(n: int, integrations: int) -> np.ndarray:
-    """Legendre coefficients, in columns, of P_0 ... P_(n-1) integrated so many times from -1."""
+def _integrate_legendre(n: int, integrations: int) -> np.ndarray:
+    """Legendre coefficients, in columns, of P_0 ... P_(n-1) integrated repeatedly from -1."""
     if integrations == 0:
         return np.eye(n)
-    return legendre.legint(_integrals(n, integrations - 1), lbnd=-1)
+    return legendre.legint(_integrate_legendre(n, integrations - 1), lbnd=-1)
 
 
 # Eigenfunctions of the uniform beam at rest -------------------------------------------------------
 
 
 def clamped_free_roots(count: int) -> np.ndarray:
-    """Roots b of cos b + 1/cosh b = 0: the wave numbers of a clamped-free beam."""
+    """Roots b of cos b + 1/cosh b = 0: wave numbers of a uniform clamped-free beam of unit length."""
     b = np.pi * (np.arange(1, count + 1) - 0.5)
     b[0] = 1.8751040687119611664
     for _ in range(8):
@@ -231,8 +233,8 @@ def clamped_free_roots(count: int) -> np.ndarray:
     return b
 
 
-def _clamped_free(functions: int, edges: np.ndarray) -> Evaluation:
-    """Clamped-free shapes over b^2, in a form that neither overflows nor cancels at high modes."""
+def _clamped_free(functions: int, ends: np.ndarray) -> Evaluation:
+    """Clamped-free mode shapes divided by b^2, in a form that does not overflow or cancel at high modes."""
     b = clamped_free_roots(functions)[:, None]
     decay = np.exp(-b)
     c = (-decay + np.sin(b) - np.cos(b)) / (1 - decay**2 + 2 * decay * np.sin(b))
@@ -248,8 +250,8 @@ def _clamped_free(functions: int, edges: np.ndarray) -> Evaluation:
     return evaluation
 
 
-def _clamped_free_rod(functions: int, edges: np.ndarray) -> Evaluation:
-    """Shapes of a rod fixed at the root and free at the tip, over their wave number."""
+def _clamped_free_rod(functions: int, ends: np.ndarray) -> Evaluation:
+    """Mode shapes of a rod fixed at the root and free at the tip, divided by their wave number."""
     b = np.pi * (np.arange(functions)[:, None] + 0.5)
 
     def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
@@ -258,7 +260,7 @@ def _clamped_free_rod(functions: int, edges: np.ndarray) -> Evaluation:
     return evaluation
 
 
-# For each basis, by the number of derivatives that vanish at the root.
+# Functions of each basis by the number of derivatives that vanish at the root.
 _BASES = {
     "legendre": {
         2: partial(_integrated_legendre, integrations=2),

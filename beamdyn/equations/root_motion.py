@@ -1,4 +1,4 @@
-"""The motion of the beam's root: the quantities of time that multiply the terms of the equations."""
+"""Motion of the beam's root: the functions of time that multiply the terms of the equations."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleratio
 
 @dataclass(frozen=True)
 class RootMotion:
-    """The quantities of time in the equations of motion; arrays of one shape.
+    """Functions of time in the equations of motion, at some times; arrays of one shape.
 
     Parameters
     ----------
     unity : ndarray
-        1.
+        1, the factor of constant terms.
     speed, acceleration, speed_squared : ndarray
         omega [rad/s], omega' [rad/s2] and omega^2 [rad2/s2].
     root_axial : ndarray
-        Acceleration a_O1 of the root along the beam [m/s2], less gravity.
+        Acceleration a_O1 of the root along the beam, minus gravity [m/s2].
     root_transverse : ndarray
-        Acceleration c a_O2 + s a_O3 of the root in the direction of bending [m/s2], less gravity.
+        Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2].
     """
 
     unity: np.ndarray
@@ -49,7 +49,7 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
     sample : MotionSample
         Motion of the carrier.
     gravity : float
-        Gravity along -n2 [m/s2].
+        Gravitational acceleration along -n2 [m/s2].
 
     Returns
     -------
@@ -75,6 +75,6 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
 
 
 def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine [angle in rad], exactly 0 where the angle is the double nearest to a quarter turn."""
+    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn."""
     c, s = cos(angle), sin(angle)
     return (0.0 if abs(c) < 2e-16 else c), (0.0 if abs(s) < 2e-16 else s)

@@ -1,4 +1,4 @@
-"""The axial force by rotation and by the root's acceleration."""
+"""Axial force in the beam due to rotation and to the acceleration of its root."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from beamdyn.scene.profile import FRACTION, Profile
 
 
 def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
-    """Tension per unit root acceleration N_A [kg] and per squared unit speed N_B [kg m] over x/L.
+    """Tension N_A [kg] per root acceleration and N_B [kg m] per squared speed, over x/L.
 
     The axial force at steady speed is omega^2 N_B - a_O1 N_A: Lee and Yoo (2019), eqs. (18), (19).
     """

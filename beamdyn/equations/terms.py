@@ -1,4 +1,4 @@
-"""What the model of a scene contains: every term of the equations, whether it is there, and why."""
+"""List of the terms of the equations of motion: which are present in a scene, and why."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 
-_BASIS = Ritz(3)  # the list does not depend on it
+_BASIS = Ritz(3)  # the list of terms does not depend on the basis
 
 
 @dataclass(frozen=True)
@@ -29,17 +29,17 @@ class Entry:
     Parameters
     ----------
     name : str
-        What it is.
+        Name of the term.
     symbol : str
-        How it is written in the equations.
+        The term as written in docs/conventions.md.
     quantity : str
-        The quantity of motion that multiplies it.
+        The quantity of the root's motion that multiplies it.
     largest : float
-        Largest absolute value of its coefficient over the motion [SI]; 0 where it is not in the scene.
+        Largest absolute value of its coefficient over the motion [SI units]; 0 if it is absent.
     present : bool
-        Whether it is in the scene.
+        Whether the term is present in the scene.
     reason : str
-        Why, or why not.
+        Why the term is present or absent.
     """
 
     name: str
@@ -52,16 +52,16 @@ class Entry:
 
 @dataclass(frozen=True)
 class Terms(Result):
-    """Terms of the equations of a scene; iterates over them, and prints as a table.
+    """Terms of the equations of motion, present or absent in a scene; iterable, and prints as a table.
 
     Parameters
     ----------
     entries : tuple of Entry
-        All terms that the equations know.
+        All terms of all fields.
     lines : tuple of Line
         Frequencies that translation and gravity excite, as multiples of the speed.
     provenance : Provenance
-        How it was found.
+        Program version, discretization and computing time.
     """
 
     entries: tuple[Entry, ...]
@@ -80,20 +80,20 @@ class Terms(Result):
 
     @property
     def present(self) -> tuple[str, ...]:
-        """Names of the terms that are in the scene."""
+        """Names of the terms that are present in the scene."""
         return tuple(entry.name for entry in self if entry.present)
 
     def rows(self) -> list[tuple[str, str, str, str, str]]:
-        """Cells of the table: in or out, name, symbol, largest coefficient, reason."""
+        """Rows of the table: presence, name, symbol, largest coefficient, reason."""
         return [
             ("in" if e.present else "-", e.name, e.symbol, f"{e.largest:.4g}" if e.present else "", e.reason)
             for e in self
         ]
 
     def excited(self) -> str:
-        """The lines, in words."""
-        named = ", ".join(f"{line.name} at {line.multiple:.6g} times the speed" for line in self.lines)
-        return f"Lines: {named or 'none'}."
+        """Describe the excitation lines in a sentence."""
+        names = ", ".join(f"{line.name} at {line.multiple:.6g} times the speed" for line in self.lines)
+        return f"Lines: {names or 'none'}."
 
     def __str__(self) -> str:
         rows = [("", "term", "symbol", "largest", "reason"), *self.rows()]
@@ -103,14 +103,14 @@ class Terms(Result):
 
 
 def terms(scene: Scene) -> Terms:
-    """Every term of the equations of motion, whether it is in a scene, and why.
+    """List every term of the equations of motion, whether it is present in a scene, and why.
 
-    A term is in the scene if it is assembled and its coefficient does not vanish over the motion.
+    A term is present if it is assembled and its coefficient does not vanish throughout the motion.
 
     Parameters
     ----------
     scene : Scene
-        The scene; without a motion it turns steadily, at 1 rad/s.
+        The scene; without a motion, steady rotation at 1 rad/s is assumed.
 
     Returns
     -------
@@ -118,7 +118,7 @@ def terms(scene: Scene) -> Terms:
     """
     start = perf_counter()
     sampled, assembled = SampledScene(scene), {term.name: term for term in _list_terms(scene)}
-    complete = reduce(lambda whole, field: field.complete(whole), FIELDS, scene)
+    complete = reduce(lambda scene, field: field.complete(scene), FIELDS, scene)
     entries = tuple(_describe(t, assembled.get(t.name), sampled) for t in _list_terms(complete))
     lines = scene.motion.lines if scene.motion is not None else ()
     gravity = (Line("gravity", 1.0),) if scene.gravity else ()
@@ -132,7 +132,7 @@ def _list_terms(scene: Scene) -> tuple[Term | Load, ...]:
 
 
 def _describe(term: Term | Load, assembled: Term | Load | None, scene: SampledScene) -> Entry:
-    """The entry of a term, which in the scene is `assembled` or None."""
+    """Describe a term, given as it is assembled for the scene; None if it is not."""
     largest = 0.0 if assembled is None else float(np.abs(assembled.coefficient(scene.root)).max())
     explanation = _EXPLANATIONS.get(term.name, Explanation(term.name, "it is assembled"))
     sentence = explanation.sentence(scene, present=bool(largest))

@@ -1,1 +1,1 @@
-"""Reduced models: eigenproblems, modal bases, tracking, estimated errors, choice of the cheapest model."""
+"""Modal analysis: eigenproblems, modal bases, mode tracking, error estimates, choice of discretization."""

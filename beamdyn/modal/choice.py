@@ -1,4 +1,4 @@
-"""The cheapest model that answers a question with a given accuracy."""
+"""Choice of the smallest discretization that meets a given accuracy."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
 
-DEFAULT_TARGET = 1e-11  # relative error aimed at by the defaults: two digits beyond the promised 1e-9
-TOLERANCES = 1e-14, 0.1  # the least and the largest that can be asked for
-_FEM_TARGET = 1e-7
-_FEWEST_FUNCTIONS = 9  # fewer differ from their coarser companion by one, which a mode may have no use for
+DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
+TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
+_FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+_FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
-DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or one of given size
+DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
 
 
 def solve_to_tolerance(
@@ -29,9 +29,10 @@ def solve_to_tolerance(
     tolerance: float | None = None,
     extra: int = 0,
 ) -> EstimatedModes:
-    """Solve the cheapest model that meets the tolerance at every speed; None is the promise of 1e-9.
+    """Solve the smallest model whose modes meet the tolerance at every speed.
 
-    The parameters are those of `choose_model` and `solve_with_error`.
+    Without a tolerance, `choose_model` aims at `DEFAULT_TARGET`.  The other parameters are those of
+    `choose_model` and `solve_with_error`.
     """
     if tolerance is None:
         return solve_with_error(choose_model(scene, discretization, speeds, modes), speeds, modes, extra)
@@ -45,7 +46,7 @@ def solve_to_tolerance(
 
 
 def warn_of_missed_tolerance(error: float, tolerance: float) -> Iterator[str]:
-    """The warning for an estimated error above the tolerance, if it is."""
+    """Yield a warning if the estimated error exceeds the tolerance."""
     if error > tolerance:
         yield (
             f"tolerance = {tolerance:g} is not reached: the estimated relative error is {error:.1g}, "
@@ -61,22 +62,22 @@ def choose_model(
     target: float = DEFAULT_TARGET,
     cheapest: bool = False,
 ) -> Model:
-    """Find the smallest model whose estimated error is below a target at the slowest and fastest speed.
+    """Find the smallest model whose estimated error meets a target at the slowest and fastest speed.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     discretization : {"ritz", "fem"} or Discretization
-        The kind of discretization, or the very one.
+        Kind of discretization, or an instance, which is used as it is.
     speeds : ndarray
         Speeds at which the model will be used [rad/s].
     modes : int
         Number of modes.
     target : float
-        Relative error of their eigenvalues that is aimed at; finite elements stop at 1e-7.
+        Relative error of the eigenvalues to be met; at least 1e-7 for finite elements.
     cheapest : bool
-        Begin with the very smallest model, and not with one that is mostly enough for the default target.
+        Begin with the smallest sensible model, instead of one that usually meets the default target.
 
     Returns
     -------
@@ -88,11 +89,11 @@ def choose_model(
         If the discretization is unknown or has too few functions for the modes.
     """
     if not isinstance(discretization, str):
-        return Model(scene, _check_room(discretization, modes))
+        return Model(scene, _check_size(discretization, modes))
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = target if discretization == "ritz" else max(target, _FEM_TARGET)
     model = None
-    for candidate in _refinements(discretization, scene, modes, target, cheapest):
+    for candidate in _list_candidates(discretization, scene, modes, target, cheapest):
         model = Model(scene, candidate)
         if solve_with_error(model, ends, modes).meet(target):
             break
@@ -100,51 +101,52 @@ def choose_model(
     return model
 
 
-def _refinements(
+def _list_candidates(
     name: str, scene: Scene, modes: int, target: float, cheapest: bool
 ) -> Iterator[Discretization]:
-    """Discretizations of one kind, from the smallest worth trying on."""
-    if name not in _FIRST_TRIED:
+    """Yield discretizations of one kind, from the smallest sensible one to the finest."""
+    if name not in _FIRST_CANDIDATE:
         raise ValueError(
-            f"discretization = {name!r}: give {', '.join(map(repr, _FIRST_TRIED))}, "
+            f"discretization = {name!r}: give {', '.join(map(repr, _FIRST_CANDIDATE))}, "
             "a beamdyn.Ritz or a beamdyn.Fem"
         )
-    first = _FIRST_TRIED[name](len(scene.beam.breakpoints) - 1, modes, target, cheapest)
+    first = _FIRST_CANDIDATE[name](len(scene.beam.breakpoints) - 1, modes, target, cheapest)
     while not first.fits(modes) and (finer := first.finer()) is not None:
         first = finer
-    step: Discretization | None = _check_room(first, modes)
-    while step is not None:
-        yield step
-        step = step.finer()
+    candidate: Discretization | None = _check_size(first, modes)
+    while candidate is not None:
+        yield candidate
+        candidate = candidate.finer()
 
 
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
-    """The basis that mostly meets the target: the formula is from `benchmarks` on random scenes."""
-    least = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
-    wanted = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
-    return Ritz(min(max(least, -(-wanted // segments)), MOST_FUNCTIONS))
+    """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
+    fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
+    total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
+    return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
 
 
 def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
-    from beamdyn.equations.fem import Fem  # loads scikit-fem, which Ritz has no need of
+    from beamdyn.equations.fem import Fem  # here, because scikit-fem is slow to import
 
     return Fem(max(4 if cheapest else 80, 2 * segments, 4 * modes))
 
 
-# The discretizations that are known by name: where to begin for a number of segments and modes.
-_FIRST_TRIED: dict[str, Callable[[int, int, float, bool], Discretization]] = {
+# First candidate of each kind, by segments, modes, target and whether to begin with the smallest.
+_FIRST_CANDIDATE: dict[str, Callable[[int, int, float, bool], Discretization]] = {
     "ritz": _first_ritz,
     "fem": _first_fem,
 }
 
 
-def with_room(discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
-    """The discretization, or "ritz" if it has too few functions for the modes."""
+def ensure_size(discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
+    """Replace a discretization that has too few functions for the modes by "ritz"."""
     fits = isinstance(discretization, str) or discretization.fits(modes)
     return discretization if fits else "ritz"
 
 
-def _check_room(discretization: Discretization, modes: int) -> Discretization:
+def _check_size(discretization: Discretization, modes: int) -> Discretization:
+    """Raise a ValueError if the discretization has too few functions for the modes."""
     if not discretization.fits(modes):
         raise ValueError(
             f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "

@@ -1,7 +1,7 @@
-"""Fewer coordinates: the lowest modes of the beam at rest, or at the speeds between which it turns.
+"""Modal bases: the lowest modes of the beam at rest, or at the slowest and fastest speed of a motion.
 
-Modes at rest are what the papers keep; under rotation they converge slowly.  Modes at the slowest and at
-the fastest speed of a motion together hold the frequencies at both, and nearly those between.
+The papers use modes at rest, which converge slowly under rotation.  Modes at the slowest and the fastest
+speed together reproduce the frequencies at both, and nearly those between.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.motion import Motion
 
-FEWEST_MODES = 2  # tried first where no number is given
-SPEED_SAMPLES = 2001  # of a motion, for its slowest and fastest speed
-_MOST_MODES = 60  # past them the fastest modes take all the time
-_DEPENDENT = 1e-10  # independent share of a shape, below which it is left out
+FEWEST_MODES = 2  # size of the first basis where no number is given
+SPEED_SAMPLES = 2001  # times of a motion at which its slowest and fastest speed are sought
+_MOST_MODES = 60  # with more, the time steps that the fastest modes need are too small
+_DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class ModalBasis:
     Parameters
     ----------
     modes : int or None
-        Number of modes at each speed, of each field; None keeps all functions of the discretization.
+        Number of modes of each field at each speed; None for all modes of the discretization.
     speeds : tuple of float
-        Speeds at which they are modes [rad/s].
+        Speeds of the modes [rad/s].
     """
 
     modes: int | None
@@ -44,20 +44,20 @@ class ModalBasis:
         return f"{self.modes} modes at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
 
     def refined(self) -> ModalBasis | None:
-        """Half as many modes more, at least two; None past the largest number."""
+        """Enlarge the basis by half as many modes, at least two; None if that is too many."""
         assert self.modes is not None
-        more = self.modes + max(2, self.modes // 2)
-        return replace(self, modes=more) if more <= _MOST_MODES else None
+        modes = self.modes + max(2, self.modes // 2)
+        return replace(self, modes=modes) if modes <= _MOST_MODES else None
 
 
 def find_speed_range(motion: Motion, t_end: float) -> tuple[float, ...]:
-    """The slowest and the fastest |speed| until `t_end` [s]; one value if it is steady [rad/s]."""
+    """Find the smallest and largest |speed| [rad/s] until `t_end` [s]; one value if it is constant."""
     speed = np.abs(motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).speed)
     return tuple(np.unique([speed.min(), speed.max()]).tolist())
 
 
 def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
-    """Equations in modal coordinates: of unit mass, deflecting ones with a positive tip."""
+    """Transform the equations to modal coordinates of unit mass, signed for a positive tip deflection."""
     pencil, count = equations.steady(), basis.modes or equations.size
     shapes = {
         name: span_modes(pencil.block(place), count, basis.speeds) for name, place in equations.blocks.items()
@@ -68,23 +68,23 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
 
 
 def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:
-    """Orthonormal shapes that span the lowest modes of a conservative pencil at some speeds.
+    """Compute mass-normalised shapes that span the lowest modes of a conservative pencil at some speeds.
 
     Parameters
     ----------
     pencil : SteadyPencil
-        Of size n.
+        Conservative equations of size n.
     modes : int
-        Number of modes at the last speed; at each of the others at most two and half as many, as
-        higher modes hardly change with speed.
+        Number of modes at the last speed; at each other speed 2 + modes // 2, because higher modes
+        hardly change with speed.
     speeds : sequence of float
         Speeds [rad/s].
 
     Returns
     -------
     ndarray, shape (n, m)
-        With unit mass and a diagonal stiffness at rest; m is smaller than the number of modes where
-        those of different speeds depend on each other.
+        Shapes in columns, with unit mass and a diagonal stiffness at rest; m is smaller than the total
+        number of modes if those of different speeds are linearly dependent.
     """
     vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
     if tuple(speeds) == (0.0,):

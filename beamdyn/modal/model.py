@@ -1,4 +1,4 @@
-"""A scene in one discretization, with what is computed from it once."""
+"""A discretized scene, with its equations and eigenproblem, which are computed once."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from beamdyn.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Model:
-    """A scene in one discretization.
+    """A discretized scene.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     discretization : Discretization
-        Its discretization.
+        Discretization of the beam.
     """
 
     scene: Scene
@@ -29,19 +29,19 @@ class Model:
 
     @cached_property
     def equations(self) -> Equations:
-        """The equations of motion."""
+        """Equations of motion."""
         return assemble_equations(self.scene, self.discretization)
 
     @cached_property
     def solver(self) -> Solver:
-        """The eigenproblem at steady speed."""
+        """Solver of the eigenproblem at steady speeds."""
         return Solver(self.equations.steady())
 
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
-        """The equations in the coordinates of a modal basis, or of a number of modes at rest."""
+        """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""
         return reduce_to_modes(self.equations, ModalBasis(basis) if isinstance(basis, int) else basis)
 
     @cached_property
     def coarser(self) -> Model:
-        """The coarser model, whose distance estimates the error of this one."""
+        """The coarser model, by whose results the error of this one is estimated."""
         return Model(self.scene, self.discretization.coarser())

@@ -1,4 +1,4 @@
-"""Follow modes over a batch of speeds by the overlap of their vectors."""
+"""Mode tracking over speeds by the modal assurance criterion."""
 
 from __future__ import annotations
 
@@ -7,41 +7,41 @@ from scipy.optimize import linear_sum_assignment
 
 
 def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which mode at each speed continues which mode at the first.
+    """Follow modes from each speed to the next by the modal assurance criterion (MAC).
 
     Parameters
     ----------
     vectors : ndarray, shape (S, n, k)
-        Mass-normalised vectors at each speed.
+        Mass-normalised mode vectors at each speed, by ascending frequency.
     mass : ndarray, shape (n, n)
         Mass matrix.
 
     Returns
     -------
     order : ndarray of int, shape (S, k)
-        ``order[s, i]`` is the place at speed s of the mode that is the i-th at the first speed.
+        ``order[s, i]`` is the index at speed s of the mode that is the i-th at the first speed.
     confidence : ndarray, shape (S, k)
-        Overlap (modal assurance criterion) with the mode at the speed before, less the overlap of the
-        best rival: 1 is sure, 0 or less a guess.
+        MAC with the same mode at the speed before, minus the largest MAC of that mode with any other: 1
+        is certain, 0 or less a guess.
     """
-    steps = np.abs(np.swapaxes(vectors[:-1].conj(), 1, 2) @ (mass @ vectors[1:])) ** 2
+    mac = np.abs(np.swapaxes(vectors[:-1].conj(), 1, 2) @ (mass @ vectors[1:])) ** 2
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    step = _assignments(steps)
-    for s in np.flatnonzero((step != np.arange(k)).any(axis=1)):
-        order[s + 1 :] = step[s][order[s]]  # holds until the next exchange
-    own = np.take_along_axis(steps, step[:, :, None], axis=2)[:, :, 0]
-    rivals = steps.copy()
-    np.put_along_axis(rivals, step[:, :, None], -1.0, axis=2)
-    sure = own - rivals.max(axis=2, initial=0.0)
-    confidence[1:] = np.take_along_axis(sure, order[:-1], axis=1)
+    successor = _assign(mac)
+    for s in np.flatnonzero((successor != np.arange(k)).any(axis=1)):
+        order[s + 1 :] = successor[s][order[s]]  # holds until the next exchange
+    matched = np.take_along_axis(mac, successor[:, :, None], axis=2)[:, :, 0]
+    others = mac.copy()
+    np.put_along_axis(others, successor[:, :, None], -1.0, axis=2)
+    margin = matched - others.max(axis=2, initial=0.0)
+    confidence[1:] = np.take_along_axis(margin, order[:-1], axis=1)
     return order, confidence
 
 
-def _assignments(steps: np.ndarray) -> np.ndarray:
-    """For each step, the column that continues each row; solved only where the order is in doubt."""
-    best = steps.argmax(axis=2)
-    settled = np.sort(best, axis=1) == np.arange(steps.shape[2])
-    for s in np.flatnonzero(~settled.all(axis=1)):
-        best[s] = linear_sum_assignment(-steps[s])[1]
+def _assign(mac: np.ndarray) -> np.ndarray:
+    """Assign to each mode (row) its successor (column) at the next speed, by the largest sum of MACs."""
+    best = mac.argmax(axis=2)
+    unique = (np.sort(best, axis=1) == np.arange(mac.shape[2])).all(axis=1)
+    for s in np.flatnonzero(~unique):
+        best[s] = linear_sum_assignment(-mac[s])[1]
     return best

@@ -1,1 +1,1 @@
-"""Plots and exported files: from arrays, without knowledge of the analyses."""
+"""Plots and exported files of arrays, independent of the analyses."""

@@ -1,6 +1,6 @@
-"""Mode shapes and motions as mesh files, for ParaView and the like, and as animations.
+"""Export of mode shapes and motions as mesh files, for ParaView and the like, and as animations.
 
-The only module that knows meshio.
+The only module that uses meshio.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SHAPE_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
 SERIES_SUFFIXES = (".xdmf",)  # with the numbers as text, for which it does not
 ANIMATION_SUFFIXES = (".gif",)
-_LARGEST = 0.1  # drawn deflection over the length
+_DRAWN_RATIO = 0.1  # largest drawn deflection, and default width, relative to the length
 
 
 def write_shapes(
@@ -68,7 +68,7 @@ def write_shapes(
     path = output_path(path, SHAPE_SUFFIXES, force)
     kind = path.suffix[1:].lower()
     strip = _strip(x := ascending("x", x), width)
-    fields = _scaled(_checked(x, shapes, labels), _LARGEST * (x[-1] - x[0]))
+    fields = _scale(_check_shapes(x, shapes, labels), _DRAWN_RATIO * (x[-1] - x[0]))
     for label, deflection in zip(labels, fields, strict=True):
         name = label.replace(" ", "_") if kind == "vtk" else label
         strip.point_data[name] = _displacement(deflection, len(strip.points))
@@ -115,7 +115,7 @@ def write_series(
     from meshio.xdmf import TimeSeriesWriter
 
     path = output_path(path, SERIES_SUFFIXES, force)
-    x, t, deflection = _history(x, t, deflection)
+    x, t, deflection = _check_history(x, t, deflection)
     strip = _strip(x, width)
     with TimeSeriesWriter(path, data_format="XML") as writer:
         writer.write_points_cells(strip.points, strip.cells)
@@ -131,7 +131,7 @@ def animate(
     force: bool = False,
     rate: float = 20.0,
 ) -> None:
-    """Write an animation of the beam, one picture a time.
+    """Write an animation of the beam, one frame for each time.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def animate(
     force : bool
         Overwrite a file that exists.
     rate : float
-        Pictures a second.
+        Frames per second.
 
     Raises
     ------
@@ -161,21 +161,21 @@ def animate(
     from matplotlib.figure import Figure
 
     path = output_path(path, ANIMATION_SUFFIXES, force)
-    x, t, deflection = _history(x, t, deflection)
+    x, t, deflection = _check_history(x, t, deflection)
     figure = Figure(figsize=(6.4, 3.6), layout="constrained")
-    line, clock = _stage(figure.subplots(), x, np.abs(deflection).max())
+    line, title = _draw_axes(figure.subplots(), x, np.abs(deflection).max())
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once, not for each picture
     writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
     with writer.saving(figure, str(path), dpi=100):
         for time, row in zip(t, deflection, strict=True):
             line.set_ydata(1e3 * row)
-            clock.set_text(f"t = {time:.4f} s")
+            title.set_text(f"t = {time:.4f} s")
             writer.grab_frame()
 
 
 def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> meshio.Mesh:
-    """A strip of quadrilaterals along x, or a line if it has no width."""
+    """Build a strip of quadrilaterals along x, or a line if the width is 0."""
     import meshio
 
     if len(x) < 2:
@@ -189,7 +189,7 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) ->
     return meshio.Mesh(points, [("quad", np.stack([i, i + 1, j + 1, j], axis=1))])
 
 
-def _history(
+def _check_history(
     x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float], deflection: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     x, t, deflection = ascending("x", x), ascending("t", t), np.asarray(deflection, dtype=float)
@@ -202,8 +202,8 @@ def _history(
     return x, t, deflection
 
 
-def _stage(ax: Axes, x: np.ndarray, largest: float) -> tuple[Line2D, Text]:
-    """The line of the beam and the text of the time, on axes that hold all of the motion."""
+def _draw_axes(ax: Axes, x: np.ndarray, largest: float) -> tuple[Line2D, Text]:
+    """Draw the beam's line and a title on axes that hold the whole motion."""
     reach = 1.1e3 * largest or 1.0
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
@@ -214,19 +214,19 @@ def _stage(ax: Axes, x: np.ndarray, largest: float) -> tuple[Line2D, Text]:
 
 
 def _half_width(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> np.ndarray:
-    given = np.asarray(_LARGEST * (x[-1] - x[0]) if width is None else width, dtype=float)
-    if given.shape not in ((), x.shape) or not (np.isfinite(given) & (given >= 0)).all():
+    full = np.asarray(_DRAWN_RATIO * (x[-1] - x[0]) if width is None else width, dtype=float)
+    if full.shape not in ((), x.shape) or not (np.isfinite(full) & (full >= 0)).all():
         raise ValueError(
             f"width = {width}: give a width of 0 or more [m], or one for each of {len(x)} positions"
         )
-    return np.broadcast_to(given / 2, x.shape)
+    return np.broadcast_to(full / 2, x.shape)
 
 
 def _points(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.stack([x, y, np.zeros_like(x)], axis=1)
 
 
-def _checked(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str]) -> np.ndarray:
+def _check_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str]) -> np.ndarray:
     shapes = np.asarray(shapes)
     if np.iscomplexobj(shapes) or not np.isfinite(shapes).all():
         raise ValueError("shapes: deflections must be real and finite; of a complex mode give the real part")
@@ -239,8 +239,8 @@ def _checked(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str]) -> np.nda
     return shapes
 
 
-def _scaled(shapes: np.ndarray, largest: float) -> np.ndarray:
-    """Shapes whose largest deflection is as given; a shape of zeros stays."""
+def _scale(shapes: np.ndarray, largest: float) -> np.ndarray:
+    """Scale shapes to a given largest deflection; a shape of zeros stays."""
     size = np.abs(shapes).max(axis=1, keepdims=True)
     return shapes * (largest / np.where(size == 0, 1.0, size))
 

@@ -1,4 +1,4 @@
-"""Pictures: arrays and Axes in, Axes out; nothing is shown, and pyplot is loaded only to make new axes."""
+"""Plots of arrays on matplotlib Axes; nothing is shown, and pyplot is loaded only to make new axes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogFormatterSciNotation
 
 from beamdyn.common.pictures import COLOURS
-from beamdyn.common.pictures import save_figure as save_figure  # it belongs to them
+from beamdyn.common.pictures import save_figure as save_figure  # exported with the plots
 
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "osD^vXP"
-_DENSE = 2000  # samples from which a line over time is drawn thin
-_MANY = 6  # entries from which the legend stands beside the data
+_MOST_THICK = 2000  # samples above which a line over time is drawn thin
+_MOST_INSIDE = 6  # entries above which the legend stands beside the axes
 _SPEED = "angular speed [rad/s]"
 
 
@@ -45,7 +45,7 @@ def plot_locus(
     -------
     Axes
     """
-    return _over_speed(speeds, frequency, "natural frequency [Hz]", ax, labels, critical_speed)
+    return _plot_over_speed(speeds, frequency, "natural frequency [Hz]", ax, labels, critical_speed)
 
 
 def plot_growth(
@@ -76,7 +76,7 @@ def plot_growth(
     -------
     Axes
     """
-    return _over_speed(speeds, growth_rate, "growth rate [1/s]", ax, labels, critical_speed)
+    return _plot_over_speed(speeds, growth_rate, "growth rate [1/s]", ax, labels, critical_speed)
 
 
 def plot_loci_by_angle(
@@ -103,7 +103,7 @@ def plot_loci_by_angle(
     Axes
     """
     labels = [f"setting angle {angle:.10g}°" for angle in angles_deg]
-    return _over_speed(speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels, None)
+    return _plot_over_speed(speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels, None)
 
 
 def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Axes | None = None) -> Axes:
@@ -126,10 +126,10 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
     """
     largest = np.abs(shapes).max(axis=1, keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = _dressed(ax, "position along the beam [m]", "deflection / its largest value")
+    ax = _set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
     ax.axhline(0, color="0.4", linewidth=0.8)
-    _lines(ax, x, scaled, labels)
-    return _with_legend(ax)
+    _draw_lines(ax, x, scaled, labels)
+    return _add_legend(ax)
 
 
 def plot_campbell(
@@ -158,11 +158,11 @@ def plot_campbell(
     -------
     Axes
     """
-    ax = _over_speed(speeds, frequency, "frequency [Hz]", ax, None, None)
+    ax = _plot_over_speed(speeds, frequency, "frequency [Hz]", ax, None, None)
     fastest = max(lines.values(), default=np.inf) * np.abs(speeds).max() / (2 * np.pi)
     top = 1.15 * min(np.nanmax(frequency), max(fastest, np.nanmax(frequency[:, 0])))  # where lines can cross
     for i, (name, multiple) in enumerate(lines.items(), np.shape(frequency)[1]):
-        ax.plot(speeds, multiple * speeds / (2 * np.pi), label=name, linewidth=1.2, **_look(i))
+        ax.plot(speeds, multiple * speeds / (2 * np.pi), label=name, linewidth=1.2, **_line_style(i))
     for marker, (kind, points) in zip("os^v", crossings.items(), strict=False):
         if points:
             ax.plot(
@@ -174,7 +174,7 @@ def plot_campbell(
                 zorder=3,
             )
     ax.set_ylim(0, top)
-    return _with_legend(ax)
+    return _add_legend(ax)
 
 
 def plot_response(
@@ -197,16 +197,16 @@ def plot_response(
     -------
     Axes
     """
-    ax = _dressed(ax, _SPEED, "largest tip deflection [mm]")
+    ax = _set_up_axes(ax, _SPEED, "largest tip deflection [mm]")
     rows = {"largest over both phases": np.asarray(amplitude)}
     if bound is not None:
         rows["sum of the lines"] = np.asarray(bound)
-    _lines(ax, speeds, (1e3 * np.where(row > 0, row, np.nan) for row in rows.values()), list(rows))
+    _draw_lines(ax, speeds, (1e3 * np.where(row > 0, row, np.nan) for row in rows.values()), list(rows))
     for line in ax.lines[1:]:
         line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
-    return _with_legend(ax)
+    return _add_legend(ax)
 
 
 def plot_transient(t: np.ndarray, tip: np.ndarray, ax: Axes | None = None) -> Axes:
@@ -225,8 +225,8 @@ def plot_transient(t: np.ndarray, tip: np.ndarray, ax: Axes | None = None) -> Ax
     -------
     Axes
     """
-    ax = _dressed(ax, "time [s]", "tip deflection [mm]")
-    ax.plot(t, 1e3 * np.asarray(tip), color=COLOURS[0], linewidth=0.8 if len(t) > _DENSE else 1.8)
+    ax = _set_up_axes(ax, "time [s]", "tip deflection [mm]")
+    ax.plot(t, 1e3 * np.asarray(tip), color=COLOURS[0], linewidth=0.8 if len(t) > _MOST_THICK else 1.8)
     ax.margins(x=0)
     return ax
 
@@ -247,8 +247,8 @@ def plot_sweep(speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None) ->
     -------
     Axes
     """
-    ax = _dressed(ax, _SPEED, "peak of the tip deflection [mm]")
-    _lines(ax, speeds, [1e3 * np.asarray(peaks)], ["peak"])
+    ax = _set_up_axes(ax, _SPEED, "peak of the tip deflection [mm]")
+    _draw_lines(ax, speeds, [1e3 * np.asarray(peaks)], ["peak"])
     ax.set_ylim(bottom=0)
     return ax
 
@@ -266,7 +266,7 @@ def plot_work_precision(
     families : mapping of str to ndarray, shape (n, 2)
         Times [s] and relative errors; an error above 1, not a digit being right, is drawn as 1.
     front : ndarray, shape (k, 2)
-        Times and errors of the measurements that none beats.
+        Times and errors of the Pareto-optimal measurements.
     title : str
         Above the axes.
     ax : Axes, optional
@@ -276,24 +276,32 @@ def plot_work_precision(
     -------
     Axes
     """
-    ax = _dressed(ax, "time [s]", "relative error")
+    ax = _set_up_axes(ax, "time [s]", "relative error")
     ax.set(xscale="log", yscale="log")
     ax.set_title(title, fontsize=11)
     ax.tick_params(which="minor", labelsize=8)
     ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(0.8, 0.3)))
-    ax.plot(*_drawable(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
+    ax.plot(*_clip(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
     for i, (name, points) in enumerate(families.items()):
         marker = _MARKERS[i % len(_MARKERS)]
-        ax.plot(*_drawable(points).T, marker=marker, markersize=4, linewidth=1.2, label=name, **_look(i))
-    return _with_legend(ax)
+        ax.plot(
+            *_clip(points).T,
+            marker=marker,
+            markersize=4,
+            linewidth=1.2,
+            label=name,
+            **_line_style(i),
+        )
+    return _add_legend(ax)
 
 
-def _drawable(points: np.ndarray) -> np.ndarray:
+def _clip(points: np.ndarray) -> np.ndarray:
+    """Drop points without a positive error, which a logarithmic axis cannot show, and clip errors to 1."""
     return np.minimum(points[points[:, 1] > 0], [np.inf, 1.0])
 
 
 def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
-    """Axes that share the place of given ones, of which only the place is left; two in a row.
+    """Replace axes by several that share their place, two in a row.
 
     Parameters
     ----------
@@ -342,7 +350,7 @@ def mark_points(
     Axes
     """
     ax.plot(x, y, "o", color="black", markerfacecolor="white", markersize=7, zorder=3, label=label)
-    return _with_legend(ax)
+    return _add_legend(ax)
 
 
 def mark_critical(ax: Axes, speed: float) -> Axes:
@@ -364,10 +372,10 @@ def mark_critical(ax: Axes, speed: float) -> Axes:
         ax.axvline(speed, color="0.3", linestyle="--", linewidth=1, label=f"critical speed {speed:.5g} rad/s")
         ax.axvspan(speed, right, color="0.93", zorder=0)
         ax.set_xlim(left, right)
-    return _with_legend(ax)
+    return _add_legend(ax)
 
 
-def _over_speed(
+def _plot_over_speed(
     speeds: np.ndarray,
     values: np.ndarray,
     quantity: str,
@@ -376,14 +384,14 @@ def _over_speed(
     critical_speed: float | None,
 ) -> Axes:
     values = np.asarray(values)
-    ax = _dressed(ax, _SPEED, quantity)
-    _lines(ax, speeds, values.T, labels or [f"mode {i}" for i in range(1, values.shape[1] + 1)])
+    ax = _set_up_axes(ax, _SPEED, quantity)
+    _draw_lines(ax, speeds, values.T, labels or [f"mode {i}" for i in range(1, values.shape[1] + 1)])
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
-    return _with_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
+    return _add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
 
 
-def _dressed(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
-    """The axes, new if there are none, with labels, a grid and plain numbers."""
+def _set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
+    """Label the axes, new ones if none are given, with a grid and plain numbers."""
     ax = _new_axes() if ax is None else ax
     ax.set_xlabel(xlabel, fontsize=12)
     ax.set_ylabel(ylabel, fontsize=12)
@@ -401,28 +409,28 @@ def _new_axes() -> Axes:
     return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
 
 
-def _lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
+def _draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
     for i, (y, label) in enumerate(zip(rows, labels, strict=True)):
-        (line,) = ax.plot(x, y, label=label, linewidth=1.8, **_look(i))
-        if (alone := _alone(y)).any():
-            line.set(marker=".", markevery=alone)
+        (line,) = ax.plot(x, y, label=label, linewidth=1.8, **_line_style(i))
+        if (isolated := _is_isolated(y)).any():
+            line.set(marker=".", markevery=isolated)
 
 
-def _look(i: int) -> dict[str, Any]:
-    """Colour of line i; the dashes change when the colours are used up."""
-    turn, colour = divmod(i, len(COLOURS))
-    return {"color": COLOURS[colour], "linestyle": _DASHES[turn % len(_DASHES)]}
+def _line_style(i: int) -> dict[str, Any]:
+    """Colour and dashes of line i; the dashes change when the colours are used up."""
+    cycle, colour = divmod(i, len(COLOURS))
+    return {"color": COLOURS[colour], "linestyle": _DASHES[cycle % len(_DASHES)]}
 
 
-def _alone(y: np.ndarray) -> np.ndarray:
-    """Which values lie between gaps: a line does not show these, so they need a marker."""
+def _is_isolated(y: np.ndarray) -> np.ndarray:
+    """Whether each value lies between gaps: a line does not show it, so that it needs a marker."""
     known = np.pad(np.isfinite(y), 1)
     return known[1:-1] & ~known[:-2] & ~known[2:]
 
 
-def _with_legend(ax: Axes) -> Axes:
+def _add_legend(ax: Axes) -> Axes:
     count = len(ax.get_legend_handles_labels()[1])
     beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
-    place: dict[str, Any] = beside if count > _MANY else {"loc": "best"}
+    place: dict[str, Any] = beside if count > _MOST_INSIDE else {"loc": "best"}
     ax.legend(fontsize=10, **place)
     return ax

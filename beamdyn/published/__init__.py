@@ -1,4 +1,4 @@
-"""The numbers that papers print, one TOML file a paper; tests, benchmarks and reports read the same files."""
+"""Published results, one TOML file for each paper, read by tests, benchmarks and reports."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from beamdyn.common import published
 
 
 def load(name: str) -> dict[str, Any]:
-    """Contents of ``beamdyn/published/<name>.toml``; see `beamdyn.common.published.load`."""
+    """Load ``beamdyn/published/<name>.toml``; see `beamdyn.common.published.load`."""
     return published.load(__name__, name)
 
 

@@ -130,7 +130,7 @@ def _passage() -> tuple[float, float]:
     first = next(c.speed for c in _crossings(scene) if c.kind == "forced")
     motion = scene.motion
     assert motion is not None
-    time = brentq(lambda t: float(motion.at(np.array([t])).speed[0]) - first, 0.0, motion.settled)
+    time = brentq(lambda t: float(motion.at(np.array([t])).speed[0]) - first, 0.0, motion.steady_start)
     return float(time), first  # pyright: ignore[reportArgumentType]  (brentq returns a float)
 
 

@@ -1,1 +1,1 @@
-"""What the user says: beam, mount, motion, and where the theory holds; frozen, in SI units, checked."""
+"""Input of all analyses: beam, mount, motion and limits of the theory; immutable, validated, in SI units."""

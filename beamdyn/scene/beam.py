@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse
 from beamdyn.common.described import Described
-from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, distinct
+from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,16 @@ class TipMass:
     inertia : float
         Moment of inertia about its centre of gravity, about the axis of bending [kg m2].
     transverse_inertia : float, optional
-        The same about the direction in which the beam bends [kg m2]; `inertia` if not given,
-        which is a body slender along the beam.
+        Moment of inertia about the direction in which the beam bends [kg m2]; `inertia` if not given,
+        as for a body slender along the beam.
     axial_inertia : float
-        The same about the beam axis [kg m2].
+        Moment of inertia about the beam axis [kg m2].
 
     Raises
     ------
     ValueError
-        If a value is negative or not finite, or no body has these three moments of inertia.
+        If a value is not finite, the mass or an inertia is negative, or one moment of inertia exceeds the
+        sum of the other two.
     """
 
     mass: Annotated[float, Described("kg", "m_t", "mass", least=0)]
@@ -58,7 +59,7 @@ class TipMass:
         for name in ("inertia", "transverse_inertia", "axial_inertia"):
             if getattr(self, name) is not None:
                 not_negative(f"tip.{name}", getattr(self, name), "kg m2")
-        moments = sorted((self.inertia, self.inertia_transverse, self.axial_inertia))
+        moments = sorted((self.inertia, self.inertia_about_bending_direction, self.axial_inertia))
         if moments[2] > (moments[0] + moments[1]) * (1 + 1e-12):
             raise ValueError(
                 f"tip inertias {moments[0]:g}, {moments[1]:g}, {moments[2]:g} kg m2: in a rigid body none "
@@ -66,8 +67,8 @@ class TipMass:
             )
 
     @property
-    def inertia_transverse(self) -> float:
-        """Moment of inertia about the bending direction [kg m2], with its default filled in."""
+    def inertia_about_bending_direction(self) -> float:
+        """Moment of inertia about the direction of bending [kg m2]: `transverse_inertia` or its default."""
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
 
@@ -122,7 +123,7 @@ class Beam:
         tip: TipMass | None = None,
         breakpoints: Sequence[float] = (),
     ) -> Beam:
-        """A beam of rectangular section that bends in the direction of its thickness.
+        """Build a beam of rectangular section that bends in the direction of its thickness.
 
         Parameters
         ----------
@@ -146,7 +147,7 @@ class Beam:
         Raises
         ------
         ValueError
-            If a dimension is not positive and finite, the thickness exceeds the width or the length.
+            If a dimension is not positive and finite, or the thickness exceeds the width or the length.
         """
         positive("length", length, "m")
         e = positive("youngs_modulus", youngs_modulus, "Pa")
@@ -176,7 +177,7 @@ class Beam:
         tip: TipMass | None = None,
         breakpoints: Sequence[float] = (),
     ) -> Beam:
-        """A beam of any section, given by its stiffness and mass.
+        """Build a beam of any section from its stiffness and mass.
 
         Parameters
         ----------
@@ -205,8 +206,8 @@ class Beam:
             If a property is not positive, finite and smooth between breakpoints.
         """
 
-        def profile(name: str, given: Property | None) -> Profile | None:
-            return None if given is None else as_profile(name, given, breakpoints)
+        def profile(name: str, value: Property | None) -> Profile | None:
+            return None if value is None else as_profile(name, value, breakpoints)
 
         return cls(
             length=positive("length", length, "m"),
@@ -220,13 +221,14 @@ class Beam:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions x/L where a property may jump or have a kink, with the ends 0 and 1."""
-        given = (self.mass_per_length, self.bending_stiffness, self.axial_stiffness)
-        return distinct(np.array([b for p in given if p is not None for b in p.breakpoints]))
+        profiles = (self.mass_per_length, self.bending_stiffness, self.axial_stiffness)
+        return merge_breakpoints(np.array([b for p in profiles if p is not None for b in p.breakpoints]))
 
 
 def _check_section(length: float, width: Profile, thickness: Profile) -> None:
-    edges = np.union1d(width.breakpoints, thickness.breakpoints)
-    xi = np.union1d(np.linspace(0, 1, 257), [*(edges[:-1] + 1e-12), *(edges[1:] - 1e-12)])
+    """Refuse a thickness that exceeds the length, or the width anywhere."""
+    ends = np.union1d(width.breakpoints, thickness.breakpoints)
+    xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
     b, h = width(xi), thickness(xi)
     bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
     refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)

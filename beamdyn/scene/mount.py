@@ -21,8 +21,8 @@ class Mount:
     radius : float
         Distance r of the root from the axis of rotation [m].
     setting_angle : float
-        Direction phi of the beam [rad]: 0 towards the axis (inward), pi/2 tangential (the beam
-        trails), pi outward, -pi/2 leading.
+        Direction phi of the beam [rad]: 0 towards the axis of rotation (inward), pi/2 tangential and
+        trailing, pi outward, -pi/2 tangential and leading.
     bending_angle : float
         Angle psi between the direction in which the beam bends and the plane of rotation [rad]:
         0 in the plane (chordwise, lead-lag), pi/2 out of it (flapwise).

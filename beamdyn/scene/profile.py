@@ -1,8 +1,8 @@
-"""A property along the beam: piecewise polynomial in the fraction x/L of the length.
+"""A property along the beam: a piecewise polynomial in the fraction x/L of the length.
 
-Whatever a user gives (a constant, a polynomial, a table, any smooth function) becomes a Legendre
-series on each segment between breakpoints, to rounding.  Discretizations therefore meet one
-representation: it is evaluated, multiplied and integrated in closed form, hashed and pickled.
+Any form in which a user gives a property (constant, polynomial, table, smooth function) is converted to a
+Legendre series on each segment between breakpoints, accurate to rounding.  Discretizations thus have one
+representation to integrate; it is evaluated and multiplied in closed form, hashed and pickled.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from numpy.polynomial import Polynomial, legendre
 
 from beamdyn.common.checks import InvalidValue, real, real_array
 
-_FIT_NODES = (8, 16, 32, 64, 128)  # a smooth engineering taper is resolved by 32
-_SLIVER = 1e-12  # a shorter segment, relative to the beam, is a rounding of x/L
-_FIT_ERROR = 1e-13  # relative to the largest value: rounding of the user's own function
+_FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
+_SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
+_FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
 
 
 @dataclass(frozen=True)
 class Table:
-    """A property given at stations, linear between them.
+    """A property tabulated at stations, linear between them.
 
     Parameters
     ----------
     stations : sequence of float
         Positions x/L, from 0 to 1, ascending; a station given twice is a jump.
     values : sequence of float
-        The property at the stations [its SI unit].
+        Values of the property at the stations [SI units].
     """
 
     stations: Sequence[float]
@@ -43,12 +43,12 @@ Property: TypeAlias = "float | Polynomial | Table | Callable[[np.ndarray], np.nd
 
 @dataclass(frozen=True)
 class Profile:
-    """Piecewise polynomial of the fraction x/L on [0, 1].
+    """A piecewise polynomial of the fraction x/L on [0, 1].
 
     Parameters
     ----------
     breakpoints : tuple of float
-        Ends of the segments, from 0 to 1: one more than there are segments.
+        Ends of the segments in ascending order, from 0 to 1.
     coefficients : tuple of tuple of float
         Legendre coefficients on each segment mapped to [-1, 1].
     """
@@ -57,17 +57,18 @@ class Profile:
     coefficients: tuple[tuple[float, ...], ...]
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
-        """Values at fractions `xi` of the length (from the right at a jump)."""
+        """Evaluate at fractions `xi` of the length, of any shape; at a jump, the value on its right."""
         xi = np.asarray(xi, dtype=float)
         segment = np.searchsorted(self.breakpoints, xi, side="right") - 1
         segment = np.clip(segment, 0, len(self.coefficients) - 1)
         values = np.empty(xi.shape)
         for k in np.unique(segment):
-            here = segment == k
-            values[here] = legendre.legval(self._local(k, xi[here]), self.coefficients[k])
+            mask = segment == k
+            values[mask] = legendre.legval(self._map_to_unit(k, xi[mask]), self.coefficients[k])
         return values
 
-    def _local(self, k: int, xi: np.ndarray) -> np.ndarray:
+    def _map_to_unit(self, k: int, xi: np.ndarray) -> np.ndarray:
+        """Map fractions on segment k to the interval [-1, 1] of the Legendre polynomials."""
         a, b = self.breakpoints[k : k + 2]
         return ((xi - a) - (b - xi)) / (b - a)
 
@@ -76,31 +77,31 @@ class Profile:
         """Largest polynomial degree of a segment."""
         return max(len(c) for c in self.coefficients) - 1
 
-    def sides(self) -> tuple[np.ndarray, np.ndarray]:
-        """Left and right end values of the segments, for extremes and jumps."""
+    def end_values(self) -> tuple[np.ndarray, np.ndarray]:
+        """Values at the left and at the right end of each segment: two arrays, which differ at jumps."""
         ends = [legendre.legval(np.array([-1.0, 1.0]), c) for c in self.coefficients]
         return np.array([e[0] for e in ends]), np.array([e[1] for e in ends])
 
     def split(self, breakpoints: Sequence[float]) -> Profile:
-        """The same property on a finer set of segments."""
-        edges = distinct(np.union1d(self.breakpoints, breakpoints))
-        if edges == self.breakpoints:
+        """Represent the same property on segments that also end at the given breakpoints."""
+        ends = merge_breakpoints(np.union1d(self.breakpoints, breakpoints))
+        if ends == self.breakpoints:
             return self
         t, w = legendre.leggauss(self.degree + 1)
-        return Profile(edges, tuple(_project(self, a, b, t, w) for a, b in pairwise(edges)))
+        return Profile(ends, tuple(_project(self, a, b, t, w) for a, b in pairwise(ends)))
 
     def __mul__(self, other: Profile) -> Profile:
-        """Pointwise product."""
+        """Multiply two properties pointwise."""
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
         pairs = zip(a.coefficients, b.coefficients, strict=True)
         return Profile(a.breakpoints, tuple(tuple(legendre.legmul(p, q).tolist()) for p, q in pairs))
 
     def scaled(self, factor: float) -> Profile:
-        """The property times a constant."""
+        """Multiply the property by a constant."""
         return Profile(self.breakpoints, tuple(tuple(factor * c for c in row) for row in self.coefficients))
 
     def outboard_integral(self) -> Profile:
-        """The integral from xi to 1, as a profile: the mass outboard of a section, for instance."""
+        """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
         rows, total = [], 0.0
         for k in reversed(range(len(self.coefficients))):
             a, b = self.breakpoints[k : k + 2]
@@ -112,7 +113,7 @@ class Profile:
 
 
 def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> tuple[float, ...]:
-    """Legendre coefficients of f on [a, b] by the Gauss rule (t, w) on [-1, 1]."""
+    """Compute Legendre coefficients of f on [a, b] by the Gauss rule (t, w) on [-1, 1]."""
     values = f((a + b) / 2 + (b - a) / 2 * t)
     k = np.arange(len(t))
     return tuple((((2 * k + 1) / 2) * (legendre.legvander(t, len(t) - 1).T @ (w * values))).tolist())
@@ -121,14 +122,14 @@ def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> t
 FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # x/L itself
 
 
-def as_profile(name: str, given: Property, breakpoints: Sequence[float] = ()) -> Profile:
-    """Turn what the user gave for a property into a positive `Profile`.
+def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) -> Profile:
+    """Convert a property as given by the user to a positive `Profile`.
 
     Parameters
     ----------
     name : str
-        Name of the property, for messages.
-    given : float, Polynomial, Table, callable or Profile
+        Name of the property, for error messages.
+    value : float, Polynomial, Table, callable or Profile
         Polynomials and callables are functions of x/L; a callable takes and returns arrays.
     breakpoints : sequence of float
         Fractions x/L at which the property jumps or has a kink.
@@ -136,47 +137,48 @@ def as_profile(name: str, given: Property, breakpoints: Sequence[float] = ()) ->
     Raises
     ------
     ValueError
-        If it is not positive and finite everywhere, not vectorised, or not smooth between breakpoints.
+        If the property is not positive and finite everywhere, or a callable is not vectorised or not
+        smooth between breakpoints.
     """
-    edges = _edges(breakpoints)
-    if isinstance(given, Profile):
-        profile = given
-    elif isinstance(given, Table):
-        profile = _from_table(name, given)
-    elif isinstance(given, Polynomial):
-        profile = _from_polynomial(name, given)
-    elif callable(given):
-        profile = _from_function(name, given, edges)
+    ends = _segment_ends(breakpoints)
+    if isinstance(value, Profile):
+        profile = value
+    elif isinstance(value, Table):
+        profile = _from_table(name, value)
+    elif isinstance(value, Polynomial):
+        profile = _from_polynomial(name, value)
+    elif callable(value):
+        profile = Profile(ends, tuple(_fit(name, value, a, b) for a, b in pairwise(ends)))
     else:
-        profile = Profile((0.0, 1.0), ((_number(name, given),),))
-    profile = profile.split(edges)
+        constant = real(name, value, remedy="or a Polynomial in x/L, a Table or a function of x/L")
+        profile = Profile((0.0, 1.0), ((constant,),))
+    profile = profile.split(ends)
     check_positive(name, profile)
     return profile
 
 
-def _edges(breakpoints: Sequence[float]) -> tuple[float, ...]:
+def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
+    """Validate inner breakpoints and add the ends 0 and 1."""
     inner = real_array("breakpoints", breakpoints)
     if inner.size and not (inner.min() > 0 and inner.max() < 1):
         raise InvalidValue("breakpoints", breakpoints, "give fractions x/L between 0 and 1, ends excluded")
-    return distinct(np.concatenate([[0.0], inner, [1.0]]))
+    return merge_breakpoints(np.concatenate([[0.0], inner, [1.0]]))
 
 
-def distinct(edges: np.ndarray) -> tuple[float, ...]:
-    """Sorted ends of segments, those that differ by rounding merged into one."""
-    edges = np.unique(edges)
-    return tuple(edges[np.diff(edges, prepend=-1.0) > _SLIVER].tolist())
+def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
+    """Sort breakpoints and merge those that differ by rounding."""
+    ends = np.unique(breakpoints)
+    return tuple(ends[np.diff(ends, prepend=-1.0) > _SHORTEST_SEGMENT].tolist())
 
 
-def _number(name: str, given: object) -> float:
-    return real(name, given, remedy="or a Polynomial in x/L, a Table or a function of x/L")
-
-
-def _from_polynomial(name: str, given: Polynomial) -> Profile:
-    if np.iscomplexobj(given.coef) or not np.isfinite(given.coef).all():
-        raise ValueError(f"{name}: the polynomial {given} has coefficients that are complex or not finite")
-    t, w = legendre.leggauss(given.degree() + 1)
-    with np.errstate(over="ignore", invalid="ignore"):  # huge values are refused with all others
-        return Profile((0.0, 1.0), (_project(given, 0.0, 1.0, t, w),))
+def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
+    if np.iscomplexobj(polynomial.coef) or not np.isfinite(polynomial.coef).all():
+        raise ValueError(
+            f"{name}: the polynomial {polynomial} has coefficients that are complex or not finite"
+        )
+    t, w = legendre.leggauss(polynomial.degree() + 1)
+    with np.errstate(over="ignore", invalid="ignore"):  # check_positive refuses values that overflow
+        return Profile((0.0, 1.0), (_project(polynomial, 0.0, 1.0, t, w),))
 
 
 def _from_table(name: str, table: Table) -> Profile:
@@ -192,42 +194,38 @@ def _from_table(name: str, table: Table) -> Profile:
             f"{name}: a station given twice is a jump and stands between others; "
             "none may be given three times, nor twice at an end"
         )
-    steps = [(x[i], x[i + 1], y[i], y[i + 1]) for i in range(len(x) - 1) if x[i + 1] > x[i]]
-    rows = tuple(((p + q) / 2, (q - p) / 2) for _, _, p, q in steps)
-    return Profile((0.0, *(float(b) for _, b, _, _ in steps)), rows)
-
-
-def _from_function(name: str, function: Callable, edges: Sequence[float]) -> Profile:
-    rows = tuple(_fit(name, function, a, b) for a, b in pairwise(edges))
-    return Profile(tuple(edges), rows)
+    segments = [(x[i + 1], y[i], y[i + 1]) for i in range(len(x) - 1) if x[i + 1] > x[i]]
+    rows = tuple(((p + q) / 2, (q - p) / 2) for _, p, q in segments)
+    return Profile((0.0, *(float(b) for b, _, _ in segments)), rows)
 
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
-    """Legendre series of a user's function on [a, b], of the lowest tried degree exact to rounding."""
-    check = _probes(a, b)
-    wanted = _sample(name, function, check)
-    local = ((check - a) - (b - check)) / (b - a)
-    misfit = np.full(check.shape, np.inf)
+    """Fit a Legendre series to a user's function on [a, b], with as few nodes as are exact to rounding."""
+    xi = _check_points(a, b)
+    exact = _sample(name, function, xi)
+    local = ((xi - a) - (b - xi)) / (b - a)
+    misfit = np.full(xi.shape, np.inf)
     for nodes in _FIT_NODES:
         t, w = legendre.leggauss(nodes)
         row = _project(lambda x: _sample(name, function, x), a, b, t, w)
-        misfit = np.abs(legendre.legval(local, row) - wanted)
-        if misfit.max() <= _FIT_ERROR * np.abs(wanted).max():
+        misfit = np.abs(legendre.legval(local, row) - exact)
+        if misfit.max() <= _FIT_TOLERANCE * np.abs(exact).max():
             return tuple(legendre.legtrim(row, 1e-17 * np.abs(row).max()).tolist())
-    where = check[misfit.argmax()]
+    where = xi[misfit.argmax()]
     raise ValueError(
         f"{name}: the function is not smooth near x/L = {where:.3f}; "
         f"if it jumps or has a kink there, pass breakpoints=({where:.3f},) with the exact place"
     )
 
 
-def _probes(a: float, b: float) -> np.ndarray:
-    """Points that see a jump wherever it is, also beside the ends: spacing shrinks towards them."""
+def _check_points(a: float, b: float) -> np.ndarray:
+    """Points of [a, b] dense enough, and denser towards the ends, to detect a jump anywhere between."""
     s = np.linspace(0, np.pi, 515)[1:-1]
     return a + (b - a) * (1 - np.cos(s)) / 2
 
 
 def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
+    """Evaluate a user's function, with a ValueError if it fails, is not vectorised or not finite."""
     try:
         values = np.asarray(function(x))
         values = values if np.iscomplexobj(values) else values.astype(float)
@@ -249,11 +247,11 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
 
 
 def check_positive(name: str, profile: Profile) -> None:
-    """Refuse a property that is not positive and finite somewhere, with a ValueError that names it."""
-    edges = np.array(profile.breakpoints)
-    inner = np.linspace(edges[:-1], edges[1:], 129)[1:-1].ravel()
-    left, right = profile.sides()
-    where = np.concatenate([inner, edges[:-1], edges[1:]])
+    """Raise a ValueError with the name and the place if a property is not positive and finite everywhere."""
+    ends = np.array(profile.breakpoints)
+    inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1].ravel()
+    left, right = profile.end_values()
+    where = np.concatenate([inner, ends[:-1], ends[1:]])
     values = np.concatenate([profile(inner), left, right])
     k = int(values.argmin()) if np.isfinite(values).all() else int(np.argmin(np.isfinite(values)))
     if not (np.isfinite(values[k]) and values[k] > 0):

@@ -12,27 +12,27 @@ from beamdyn.scene.mount import Mount
 
 @dataclass(frozen=True)
 class Scene:
-    """All that a model needs.
+    """Input of a model: beam, mount, motion, damping and gravity.
 
     Parameters
     ----------
     beam : Beam
         The cantilever.
     mount : Mount
-        How it is fixed to the carrier.
+        How the beam is fixed to the carrier.
     motion : Motion, optional
-        How the carrier moves; analyses over speeds set the speed themselves.
+        Motion of the carrier; analyses at steady speeds do not use it, or replace its speed.
     damping_ratio : float
         Modal damping ratio of every mode of the beam at rest, from 0 to below 1.
     gravity : float
-        Gravity along -n2 [m/s2].
+        Gravitational acceleration along -n2 [m/s2].
     stretch : bool
-        Keep the stretch of the beam and its Coriolis coupling (Yoo-Shin's model), for comparison.
+        Model the axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
 
     Raises
     ------
     ValueError
-        If the damping ratio is outside [0, 1), or the stretch has no axial stiffness.
+        If the damping ratio is outside [0, 1), or the beam has no axial stiffness for the stretch.
     """
 
     beam: Beam

@@ -1,6 +1,6 @@
 """Guaranteed bounds, from below and above, of the natural frequencies of bending.
 
-Everything is nondimensional here: x = x/L, mass and stiffness relative to the root's segment.
+All quantities are nondimensional: x is x/L, mass and stiffness are relative to the segment at the root.
 
 **The problem.**  With a(u, v) = int EI u'' v'' and four positive semidefinite forms
 
@@ -13,7 +13,7 @@ where t = u(1) + eps u'(1), the eigenvalues z = lambda^2 are those at which the 
 has a kernel, and the k-th of them is at least z if Q_z >= 0 on a subspace of codimension k - 1.
 
 **The split.**  Trial functions have polynomial curvature of degree below n on each segment: the head.
-The tail is the complement, orthogonal with respect to a: its bending moments EI u'' are orthogonal
+The tail is the orthogonal complement with respect to a: its bending moments EI u'' are orthogonal
 to all polynomials of degree below n.  On the tail P_j <= tail_j a, where tail_j is a trace,
 
     tail_j = trace(P_j) - trace(P_j on the head),  for instance  trace(P1) = int N_B(x) int_0^x 1/EI,
@@ -29,9 +29,9 @@ coefficients of F and EI p are columns of the matrices of a slightly larger basi
 
 **The theorem.**  Q_z(v + w) >= Q_z(v) - 2 sqrt(R a(w, w)) + q a(w, w) >= (Q_z - R / q)(v).  So, if q > 0
 and this last matrix has at most k - 1 negative eigenvalues, the k-th eigenvalue is at least z.
-Nothing is asked of the other eigenvalues, of signs, or of the speed.
+Nothing is assumed of the other eigenvalues, of signs, or of the speed.
 
-docs/bounds.md has the same with its assumptions, and says how rounding is allowed for.
+docs/bounds.md has the same with its assumptions, and the allowance for rounding errors.
 """
 
 from __future__ import annotations
@@ -63,17 +63,17 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import check_speeds
 
 _EPS = float(np.finfo(float).eps)
-_LARGEST = 500  # functions on all segments together: an eigenproblem of a tenth of a second
-_SHARP = 1e-11  # relative width of the squares that is not worth improving
-_TRIES = 12
-_FAR = 10.0  # relative step from a Ritz value that leaves the bound without use
+_MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
+_NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
+_MOST_STEPS = 12  # of the search for z from a Ritz value
+_LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
-_FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility that is aimed at, that is accepted
+_FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility over 1/EI: aimed at, and accepted
 
 
 @dataclass(frozen=True)
 class FrequencyBounds(Result):
-    """Bounds that enclose the exact natural frequencies of bending, the lowest first.
+    """Guaranteed bounds of the exact natural frequencies of bending, the lowest first.
 
     Parameters
     ----------
@@ -85,13 +85,13 @@ class FrequencyBounds(Result):
         Bounds of the squared angular frequency [rad2/s2], negative for an unstable mode; nan where
         none is guaranteed.
     width : ndarray, shape (m,)
-        upper / lower - 1; nan where one of them is.
+        Relative width upper / lower - 1; nan where a bound is.
     how : str
-        The argument that guarantees them.
+        Argument by which the bounds are guaranteed.
     warnings : tuple of str
-        Which bounds are missing, and why.
+        Bounds that are missing, and why.
     provenance : Provenance
-        How they were found.
+        Program version, discretization and computing time.
     """
 
     speed: float
@@ -107,7 +107,7 @@ class FrequencyBounds(Result):
 
 
 def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
-    """Guaranteed two-sided bounds of the natural frequencies of bending at a steady speed.
+    """Compute guaranteed lower and upper bounds of the natural frequencies of bending at a steady speed.
 
     They hold for the Euler-Bernoulli model without stretch and damping, see docs/bounds.md.
 
@@ -118,7 +118,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     speed : float
         Speed [rad/s].
     modes : int
-        How many.
+        Number of modes.
 
     Returns
     -------
@@ -130,10 +130,10 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         If an argument is out of its range, or the scene has stretch or damping.
     """
     start = perf_counter()
-    _check(scene, real("speed", speed, "rad/s"), count("modes", modes))
+    _check_input(scene, real("speed", speed, "rad/s"), count("modes", modes))
     scaled, time = _nondimensional(scene)
     lower, upper, functions = _enclose(scaled, speed * time, modes)
-    lower, upper = _outward(lower, -8) / time**2, _outward(upper, 8) / time**2
+    lower, upper = _widen(lower, -8) / time**2, _widen(upper, 8) / time**2
     low, high = _frequency(lower, -8), _frequency(upper, 8)
     return FrequencyBounds(
         speed=float(speed),
@@ -149,14 +149,14 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     )
 
 
-def _check(scene: Scene, speed: float, modes: int) -> None:
+def _check_input(scene: Scene, speed: float, modes: int) -> None:
     if scene.stretch or scene.damping_ratio:
         raise ValueError(
             f"stretch = {scene.stretch}, damping_ratio = {scene.damping_ratio:g}: bounds are known for "
             "undamped bending only; give dataclasses.replace(scene, stretch=False, damping_ratio=0.0)"
         )
     check_speeds(np.array([speed]))
-    most = _most(scene.beam) * (len(scene.beam.breakpoints) - 1)
+    most = _most_functions(scene.beam) * (len(scene.beam.breakpoints) - 1)
     if modes > most:
         raise ValueError(
             f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
@@ -164,36 +164,37 @@ def _check(scene: Scene, speed: float, modes: int) -> None:
         )
 
 
-def _outward(values: np.ndarray, units: int) -> np.ndarray:
-    """Values moved up (units > 0) or down by so many rounding units."""
+def _widen(values: np.ndarray, units: int) -> np.ndarray:
+    """Move values up (units > 0) or down (units < 0) by a number of rounding units."""
     return values + units * _EPS * np.abs(values)
 
 
 def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
-    """Frequencies [Hz], rounded outwards; nan where the square is not positive."""
-    return _outward(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
+    """Frequencies [Hz] of squared angular frequencies, moved by rounding units; nan where not positive."""
+    return _widen(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
 
 
 def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
-    missing, unstable, open_ = np.isnan(lower), upper <= 0, (lower <= 0) & (upper > 0)
+    missing, unstable, undecided = np.isnan(lower), upper <= 0, (lower <= 0) & (upper > 0)
     if missing.any():
         yield (
-            f"no lower bound of mode(s) {_numbers(missing)}: the functions left out could not be bounded, "
+            f"no lower bound of mode(s) {_list_modes(missing)}: the functions left out could not be bounded, "
             "even with the largest basis"
         )
     if unstable.any():
-        yield f"mode(s) {_numbers(unstable)} are unstable: see the bounds of the squares"
-    if open_.any():
-        yield f"mode(s) {_numbers(open_)} may be stable or not: the bounds of the squares enclose zero"
+        yield f"mode(s) {_list_modes(unstable)} are unstable: see the bounds of the squares"
+    if undecided.any():
+        yield f"mode(s) {_list_modes(undecided)} may be stable or not: the bounds of the squares enclose zero"
 
 
-def _numbers(chosen: np.ndarray) -> str:
-    numbers = np.flatnonzero(chosen) + 1
+def _list_modes(mask: np.ndarray) -> str:
+    """List the numbers of the masked modes in words."""
+    numbers = np.flatnonzero(mask) + 1
     return ", ".join(map(str, numbers)) if len(numbers) < 6 else f"{numbers[0]} ... {numbers[-1]}"
 
 
 def _nondimensional(scene: Scene) -> tuple[Scene, float]:
-    """The scene with unit length, mass and stiffness, and its unit of time [s]."""
+    """Scale a scene to unit length, mass and stiffness, and compute its unit of time [s]."""
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
@@ -203,7 +204,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 
 
 def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
-    moments = (tip.inertia, tip.inertia_transverse, tip.axial_inertia)
+    moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     return TipMass(tip.mass / mass, tip.offset / length, *(j / (mass * length**2) for j in moments))
 
 
@@ -211,42 +212,42 @@ def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
 
 
 def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, int]:
-    """Bounds of z from growing bases, until these help no more; and the last size."""
+    """Bounds of z from growing bases, until they hardly narrow, and the functions of the last basis."""
     flexibility = _flexibility(scene.beam.bending_stiffness)
     lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
     functions = 0
     for functions in _sizes(scene.beam, modes):
         low, high = Split(scene, functions, speed, flexibility).bounds(modes)
-        before, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
+        last_width, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
         width = upper - lower
-        if (width <= _SHARP * np.abs(upper)).all() or (width > before / 2).all():
+        if (width <= _NARROW * np.abs(upper)).all() or (width > last_width / 2).all():
             break
     return lower, upper, functions
 
 
 def _sizes(beam: Beam, modes: int) -> Iterator[int]:
-    """Functions a segment, growing."""
-    most, size = _most(beam), max(6, (16 + 2 * modes) // (len(beam.breakpoints) - 1))
+    """Yield growing numbers of functions on each segment."""
+    most, size = _most_functions(beam), max(6, (16 + 2 * modes) // (len(beam.breakpoints) - 1))
     while size < most:
         yield size
         size = 4 * size // 3
     yield most
 
 
-def _most(beam: Beam) -> int:
-    """Most functions a segment."""
-    return min(MOST_FUNCTIONS - _more(beam), _LARGEST // (len(beam.breakpoints) - 1))
+def _most_functions(beam: Beam) -> int:
+    """Largest number of functions of the head on each segment."""
+    return min(MOST_FUNCTIONS - _extra_degrees(beam), _MOST_IN_ALL // (len(beam.breakpoints) - 1))
 
 
-def _more(beam: Beam) -> int:
-    """Degrees by which loads on the head and EI times a polynomial exceed those of the head."""
+def _extra_degrees(beam: Beam) -> int:
+    """Degrees by which F and EI p (see the module) exceed the polynomials of the head."""
     return max(beam.mass_per_length.degree + 4, beam.bending_stiffness.degree)
 
 
-def _retreat(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:
-    """Move z until the form's k-th eigenvalue (from 0) proves it a bound below (side -1) or above (1)."""
+def _search_bound(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:
+    """Move z until the k-th eigenvalue of form(z), k from 0, proves a lower (side -1) or upper (1) bound."""
     step = 0.0
-    for _ in range(_TRIES):
+    for _ in range(_MOST_STEPS):
         matrix = form(z)
         if matrix is None or not np.isfinite(matrix).all():
             break
@@ -254,7 +255,7 @@ def _retreat(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> f
         if side * value[k] <= 0:
             return z
         step = 2 * max(step, abs(value[k]) / (vector[:, k] @ mass @ vector[:, k]))
-        if step > _FAR * (1 + abs(z)):
+        if step > _LARGEST_STEP * (1 + abs(z)):
             break
         z += side * step
     return np.nan
@@ -264,77 +265,77 @@ def _retreat(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> f
 
 
 class Split:
-    """Head and tail at one speed; all forms are matrices over functions with orthonormal curvatures.
+    """Split of the trial functions into head and tail, with the forms as matrices, at one speed.
 
     Parameters
     ----------
     scene : Scene
         A nondimensional scene.
     functions : int
-        Functions n of the head on each segment.
+        Number n of functions of the head on each segment.
     speed : float
         Nondimensional speed.
     flexibility : Profile or None
-        Nowhere below 1/EI; None if there is none, and no lower bound.
+        Upper bound of 1/EI; without one there are no lower bounds.
     """
 
     def __init__(self, scene: Scene, functions: int, speed: float, flexibility: Profile | None) -> None:
         self.scene, self.speed, self.flexibility = scene, speed, flexibility
-        larger = functions + _more(scene.beam)
+        larger = functions + _extra_degrees(scene.beam)
         segments = len(scene.beam.breakpoints) - 1
         space = Ritz(larger).spaces(scene.beam).functions(HELD)
         self.stiffness = space.gram(scene.beam.bending_stiffness, 2)
-        self.parts = _parts(scene.beam, space)
+        self.forms = _assemble_forms(scene.beam, space)
         self.head = np.flatnonzero(np.tile(np.arange(larger) < functions, segments))
-        self.spin, self.spin_terms, self.mass = _coefficients(scene)
-        # Rounding of a sum of as many products as the rule has points, relative to its terms; twice
-        # for the factors, twice for the eigensolution.
+        self.spin, self.spin_terms, self.mass = _split_coefficients(scene)
+        # Rounding error of a sum of as many products as the rule has points, relative to its terms: doubled
+        # for the factors, and again for the eigensolution.
         self.unit = 4 * _EPS * (len(space.points) + len(self.stiffness))
 
     def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
-        """Bounds of the lowest z below and above."""
+        """Compute lower and upper bounds of the lowest z."""
         mass = self._sum(self.mass)[self._square]
-        starts = list(enumerate(self._ritz(mass, modes)))
-        upper = [_retreat(self.above, mass, k, z, 1) for k, z in starts]
+        starts = list(enumerate(self._ritz_values(mass, modes)))
+        upper = [_search_bound(self.upper_form, mass, k, z, 1) for k, z in starts]
         if self.flexibility is None:
             return np.full(modes, np.nan), np.array(upper)
-        return np.array([_retreat(self.below, mass, k, z, -1) for k, z in starts]), np.array(upper)
+        return np.array([_search_bound(self.lower_form, mass, k, z, -1) for k, z in starts]), np.array(upper)
 
-    def _ritz(self, mass: np.ndarray, modes: int) -> np.ndarray:
-        """Ritz values: where the search starts."""
+    def _ritz_values(self, mass: np.ndarray, modes: int) -> np.ndarray:
+        """Ritz values of z, from which the search starts."""
         zero = np.zeros_like(mass)
         K0, K2 = self.stiffness[self._square], self._sum(self.spin)[self._square]
         solver = Solver(SteadyPencil(mass, zero, zero, K0, K2, zero[0]))
         return -np.real(solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
 
-    def above(self, z: float) -> np.ndarray:
-        """Q_z on the head plus the allowance: with k + 1 eigenvalues <= 0, mode k is at most z."""
-        form = (self.stiffness + self._sum(self._at(z)))[self._square]
+    def upper_form(self, z: float) -> np.ndarray:
+        """Q_z on the head plus the rounding allowance: with k + 1 eigenvalues <= 0, mode k is at most z."""
+        form = (self.stiffness + self._sum(self._coefficients(z)))[self._square]
         return form + self._allowance(z) * np.eye(len(form))
 
-    def below(self, z: float) -> np.ndarray | None:
-        """Q_z - R/q less the allowance: with at most k eigenvalues < 0, mode k is at least z."""
-        tail = np.maximum(self.unit * self._terms(z) - self._at(z), 0) @ self.tails
+    def lower_form(self, z: float) -> np.ndarray | None:
+        """Q_z - R/q minus the rounding allowance: with <= k eigenvalues < 0, mode k is at least z."""
+        tail = np.maximum(self.unit * self._absolute_coefficients(z) - self._coefficients(z), 0) @ self.tails
         if tail >= 1:
             return None
-        coupling, allowance = self._sum(self._at(z))[:, self.head], self._allowance(z)
+        coupling, allowance = self._sum(self._coefficients(z))[:, self.head], self._allowance(z)
         defect = coupling - self.stiffness[:, self.head] @ np.linalg.solve(self._K, coupling[self.head])
-        lost = self.compliance.max() * (self.condition * allowance) ** 2  # rounding of the defect, squared
+        error = self.compliance.max() * (self.condition * allowance) ** 2  # rounding error, squared
         one = np.eye(len(self.head))
-        R = 2 * (defect.T @ (self.compliance[:, None] * defect) + lost * one)  # |a + b|^2 <= 2 (a^2 + b^2)
+        R = 2 * (defect.T @ (self.compliance[:, None] * defect) + error * one)  # |a + b|^2 <= 2 (a^2 + b^2)
         return self._K + coupling[self.head] - R / (1 - tail) - allowance * one
 
     @cached_property
     def tails(self) -> np.ndarray:
-        """Bounds of the four forms on the tail, relative to a."""
+        """Upper bounds tail_j of the four forms on the tail, relative to a."""
         assert self.flexibility is not None
-        total = _traces(self.scene.beam, self.flexibility)
-        head = [np.trace(np.linalg.solve(self._K, part[self._square])) for part in self.parts]
+        total = _bound_traces(self.scene.beam, self.flexibility)
+        head = [np.trace(np.linalg.solve(self._K, form[self._square])) for form in self.forms]
         return np.maximum(total - head, 0) + self.unit * self.condition * total
 
     @cached_property
     def compliance(self) -> np.ndarray:
-        """Upper bounds of 1/EI on the segment of each function: |P_k| <= 1."""
+        """Upper bound of 1/EI on the segment of each function, by |P_k| <= 1."""
         assert self.flexibility is not None
         flexibility = self.flexibility.split(self.scene.beam.breakpoints)
         largest = [np.abs(row).sum() for row in flexibility.coefficients]
@@ -342,24 +343,25 @@ class Split:
 
     @cached_property
     def condition(self) -> float:
-        """Bound of the condition number of the stiffness: largest over smallest EI."""
+        """Upper bound of the condition number of the stiffness: largest over smallest EI."""
         rows = self.scene.beam.bending_stiffness.coefficients
         return float(max(np.abs(row).sum() for row in rows) * self.compliance.max())
 
-    def _at(self, z: float) -> np.ndarray:
+    def _coefficients(self, z: float) -> np.ndarray:
+        """Coefficients c_j(z) of the forms."""
         return self.speed**2 * self.spin - z * self.mass
 
-    def _terms(self, z: float) -> np.ndarray:
-        """The coefficients with all terms counted positive."""
+    def _absolute_coefficients(self, z: float) -> np.ndarray:
+        """Sums of the absolute values of the terms of the coefficients c_j(z)."""
         return self.speed**2 * self.spin_terms + abs(z) * self.mass
 
     def _allowance(self, z: float) -> float:
-        """Bound of the rounding of Q_z: an entry of a Gram matrix errs by unit sqrt(P_ii P_jj) at most."""
-        traces = np.trace(self.parts, axis1=1, axis2=2)
-        return float(self.unit * (np.trace(self.stiffness) + self._terms(z) @ traces))
+        """Bound of the rounding error of Q_z: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
+        traces = np.trace(self.forms, axis1=1, axis2=2)
+        return float(self.unit * (np.trace(self.stiffness) + self._absolute_coefficients(z) @ traces))
 
     def _sum(self, coefficients: np.ndarray) -> np.ndarray:
-        return np.tensordot(coefficients, self.parts, 1)
+        return np.tensordot(coefficients, self.forms, 1)
 
     @cached_property
     def _K(self) -> np.ndarray:
@@ -370,23 +372,23 @@ class Split:
         return np.ix_(self.head, self.head)
 
 
-def _parts(beam: Beam, space: Space) -> np.ndarray:
-    """The forms P1 ... P4: shape (4, n, n)."""
+def _assemble_forms(beam: Beam, space: Space) -> np.ndarray:
+    """Assemble the matrices of the forms P1 ... P4: shape (4, n, n)."""
     tip = beam.tip or TipMass(0.0)
     n_a, n_b = axial_tension(beam)
     slope = space.end(1)
-    path = space.end(0) + tip.offset * slope
-    inertia = space.gram(beam.mass_per_length, 0) + tip.mass * np.outer(path, path)
+    centre = space.end(0) + tip.offset * slope
+    inertia = space.gram(beam.mass_per_length, 0) + tip.mass * np.outer(centre, centre)
     return np.array([space.gram(n_b, 1), space.gram(n_a, 1), inertia, np.outer(slope, slope)])
 
 
-def _coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coefficients per omega^2, the same with all terms positive, and per -z: shape (4,) each."""
+def _split_coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Parts of c_j per omega^2, the sums of the absolute values of their terms, and per -z: (4,) each."""
     tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
     root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
-    turn = sin(psi) ** 2 * np.array([tip.inertia_transverse, -tip.axial_inertia])
-    pull = tip.mass * tip.offset * np.array([1.0, tip.offset, -root])
-    ends = np.concatenate([turn, pull])
+    tilt = sin(psi) ** 2 * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
+    tension = tip.mass * tip.offset * np.array([1.0, tip.offset, -root])
+    ends = np.concatenate([tilt, tension])
     spin = np.array([1.0, -root, -(cos(psi) ** 2), ends.sum()])
     terms = np.append(np.abs(spin[:3]), np.abs(ends).sum())
     return spin, terms, np.array([0.0, 0.0, 1.0, tip.inertia])
@@ -395,8 +397,8 @@ def _coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 # Traces -------------------------------------------------------------------------------------------
 
 
-def _traces(beam: Beam, flexibility: Profile) -> np.ndarray:
-    """Traces of P1 ... P4 relative to a, from above: shape (4,).
+def _bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
+    """Upper bounds of the traces of P1 ... P4 relative to a: shape (4,).
 
     The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
     sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:
@@ -413,26 +415,26 @@ def _traces(beam: Beam, flexibility: Profile) -> np.ndarray:
 
 
 def _integral(profile: Profile) -> float:
-    steps = (b - a for a, b in pairwise(profile.breakpoints))
-    return sum(step * row[0] for step, row in zip(steps, profile.coefficients, strict=True))
+    lengths = (b - a for a, b in pairwise(profile.breakpoints))
+    return sum(length * row[0] for length, row in zip(lengths, profile.coefficients, strict=True))
 
 
 def _flexibility(stiffness: Profile) -> Profile | None:
-    """A piecewise polynomial that is nowhere below 1/EI, and hardly above; None if none is found."""
+    """Piecewise polynomial that is a close upper bound of 1/EI; None if the search fails."""
     rows = [_reciprocal(np.array(row)) for row in stiffness.coefficients]
-    found = tuple(row for row in rows if row is not None)
-    return Profile(stiffness.breakpoints, found) if len(found) == len(rows) else None
+    bounds = tuple(row for row in rows if row is not None)
+    return Profile(stiffness.breakpoints, bounds) if len(bounds) == len(rows) else None
 
 
 def _reciprocal(row: np.ndarray) -> tuple[float, ...] | None:
-    """If |1 - EI g| <= miss < 1 then 1/EI <= g / (1 - miss): no more than coefficients need be checked."""
+    """Legendre coefficients of g / (1 - misfit) >= 1/EI, if |1 - EI g| <= misfit < 1; None if too large."""
     for degree in _FLEXIBILITY_DEGREES:
         t, w = legendre.leggauss(degree + 1)
         projection = (np.arange(degree + 1) + 0.5)[:, None] * legendre.legvander(t, degree).T
         g = projection @ (w / legendre.legval(t, row))
         product = legendre.legmul(row, g)
         rounding = 4 * _EPS * (degree + len(row)) * np.abs(row).sum() * np.abs(g).sum()
-        miss = np.abs(legendre.legsub(product, [1.0])).sum() + rounding
-        if miss <= (_FINE if degree < _FLEXIBILITY_DEGREES[-1] else _COARSE):
-            return tuple((g / (1 - miss)).tolist())
+        misfit = np.abs(legendre.legsub(product, [1.0])).sum() + rounding
+        if misfit <= (_FINE if degree < _FLEXIBILITY_DEGREES[-1] else _COARSE):
+            return tuple((g / (1 - misfit)).tolist())
     return None

@@ -1,4 +1,4 @@
-"""Where the beam changes its character: the critical speed, and setting angles."""
+"""Critical speed, and the setting angles at which the locus of the first frequency changes its shape."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotie
 
 @dataclass(frozen=True)
 class CriticalPoint(Result):
-    """Where the stiffness of the rotating beam vanishes.
+    """Critical speed, at which the stiffness of the rotating beam is singular, with its error.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class CriticalPoint(Result):
 def critical_speed(
     scene: Scene, discretization: DiscretizationChoice = "ritz", tolerance: float | None = None
 ) -> float:
-    """Speed at which the beam buckles dynamically [rad/s]; inf if there is none.
+    """Compute the critical speed [rad/s], at which the first frequency vanishes; inf if there is none.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def critical_speed(
 def critical_point(
     scene: Scene, discretization: DiscretizationChoice = "ritz", tolerance: float | None = None
 ) -> CriticalPoint:
-    """The critical speed with its error: the lowest speed whose stiffness K0 + omega^2 K2 is singular.
+    """Compute the critical speed and its error: the lowest with a singular stiffness K0 + omega^2 K2.
 
     Parameters
     ----------
@@ -174,8 +174,7 @@ def setting_angle_limits(
     scene : Scene
         The scene; its setting angle, motion, damping and stretch are not used.
     top_speed : float
-        Top speed [rad/s]; inf only with a basis of given size, as its answer is of that basis and
-        not of the beam.
+        Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -200,15 +199,15 @@ def setting_angle_limits(
     model = choose_model(tangential, discretization, speeds, 1)
     first, second = _limits(model, top_speed)
     coarse = model.coarser
-    rough = _limits(coarse, top_speed)
-    bent = _bent_at(scene, second, top_speed, model)
+    coarse_limits = _limits(coarse, top_speed)
+    deflection = _static_deflection(scene, second, top_speed, model)
     return SettingAngleLimits(
         first=first,
         second=second,
-        error=_limits_error(first, second, rough, top_speed),
+        error=_limits_error(first, second, coarse_limits, top_speed),
         top_speed=float(top_speed),
-        static_deflection=bent,
-        warnings=tuple(_limit_warnings(first, second, bent)),
+        static_deflection=deflection,
+        warnings=tuple(_limit_warnings(first, second, deflection)),
         provenance=Provenance(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),
@@ -216,7 +215,7 @@ def setting_angle_limits(
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Both limits from the parts of the stiffness per squared speed, K2 = A - cos(phi) r KGA."""
+    """Both limits [rad], from the stiffness per squared speed K2 = A - cos(phi) B with B = r KGA."""
     pencil, stiffness = tangential.solver.pencil, tangential.equations.matrices[0]
     by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))  # - KGA
     A, B = pencil.K2, -tangential.scene.mount.radius * by_tension
@@ -227,11 +226,11 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
     return first, _second_limit(pencil, A, B, first, top_speed)
 
 
-def _limits_error(first: float, second: float, rough: tuple[float, float], top_speed: float) -> float:
-    """Distance from the coarser model [rad]; at infinite speed the answer is that of the very basis."""
+def _limits_error(first: float, second: float, coarse: tuple[float, float], top_speed: float) -> float:
+    """Distance from the coarser model [rad]; at infinite speed the limits are those of the given basis."""
     if np.isinf(top_speed):
         return _ROUNDING
-    return float(np.nanmax([abs(first - rough[0]), abs(second - rough[1]), 0.0])) + _ROUNDING
+    return float(np.nanmax([abs(first - coarse[0]), abs(second - coarse[1]), 0.0])) + _ROUNDING
 
 
 def _arccos(a: float, b: float) -> float:
@@ -241,7 +240,7 @@ def _arccos(a: float, b: float) -> float:
 def _second_limit(
     pencil: SteadyPencil, A: np.ndarray, B: np.ndarray, first: float, top_speed: float
 ) -> float:
-    """The angle at which the slope of the first squared frequency vanishes at the top speed."""
+    """Setting angle [rad] at which the slope of the first squared frequency vanishes at the top speed."""
 
     def slope(phi: float) -> float:
         K2 = A - np.cos(phi) * B
@@ -254,7 +253,8 @@ def _second_limit(
     return float(brentq(slope, low, np.pi, xtol=1e-15, rtol=1e-15))  # pyright: ignore[reportArgumentType]
 
 
-def _bent_at(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
+def _static_deflection(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
+    """Static tip deflection at a setting angle, relative to the length; nan if unknown."""
     if np.isnan(phi) or np.isinf(top_speed):
         return np.nan
     mounted = replace(scene, mount=replace(scene.mount, setting_angle=phi))
@@ -262,11 +262,12 @@ def _bent_at(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
     return float(abs(deflection[0]) / scene.beam.length)
 
 
-def _limit_warnings(first: float, second: float, bent: float) -> Iterator[str]:
+def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[str]:
     if np.isnan(first):
         yield "no first limit: at rest the first frequency changes the same way at every setting angle"
     if np.isnan(second):
         yield "no second limit: at the top speed the frequency changes the same way at every setting angle"
-    if not bent <= LARGE_DEFLECTION:
-        seen = "" if np.isnan(bent) else f" (static tip deflection {bent:.3g} of the length at the top speed)"
-        yield "at such angles the rotation bends the beam past linear theory" + seen
+    if not deflection <= LARGE_DEFLECTION:
+        text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
+        known = "" if np.isnan(deflection) else text
+        yield "at such angles the rotation bends the beam past linear theory" + known

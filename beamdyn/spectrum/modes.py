@@ -30,7 +30,7 @@ from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_CANDIDATES = 2  # modes above the wanted ones that tracking may exchange with them
+_EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones
 
 
 # Modes at one speed -------------------------------------------------------------------------------
@@ -126,7 +126,7 @@ def natural_modes(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Modes:
-    """Natural modes at a steady speed, about a fixed centre.
+    """Compute the natural modes at a steady speed, about a fixed centre.
 
     Parameters
     ----------
@@ -135,12 +135,12 @@ def natural_modes(
     speed : float
         Speed [rad/s].
     modes : int
-        How many.
+        Number of modes.
     discretization : {"ritz", "fem"} or Discretization
         Assumed modes or finite elements, as large as needed; or a `Ritz` or `Fem` of given size.
     tolerance : float, optional
-        Relative error that is allowed, from 1e-14 to 0.1: the cheapest model that keeps it is chosen. By
-        default models are chosen for 1e-11, two digits beyond the promised 1e-9.
+        Allowed relative error, from 1e-14 to 0.1: the smallest model that meets it is chosen.  By default
+        models are chosen for 1e-11, two digits beyond the promised 1e-9.
 
     Returns
     -------
@@ -185,17 +185,17 @@ def _check_tolerance(tolerance: float | None) -> float | None:
 
 
 def _with_positive_tip(tip: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """The vectors with a phase for which their tip deflection is real and positive."""
+    """Give the vectors the phase at which their tip deflection is real and positive."""
     deflection = tip @ vectors
     phase = np.where(deflection == 0, 1.0, deflection / np.abs(np.where(deflection == 0, 1.0, deflection)))
     return vectors / phase
 
 
 def _status(s: np.ndarray) -> np.ndarray:
-    growing, turning = np.real(s) > 0, np.imag(s) != 0
+    growing, oscillating = np.real(s) > 0, np.imag(s) != 0
     names = ["flutter", "divergence", "stable"]
     return np.select(
-        [growing & turning, growing, turning], names, np.where(s == 0, "divergence", "overdamped")
+        [growing & oscillating, growing, oscillating], names, np.where(s == 0, "divergence", "overdamped")
     )
 
 
@@ -204,7 +204,7 @@ def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Static effects of rotation.
+    """Compute the static tip deflection and axial strain by rotation.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ class Locus(Result):
     growth_rate : ndarray, shape (S, m)
         Growth rates [1/s].
     confidence : ndarray, shape (S, m)
-        How sure it is that a mode continues the one at the speed before: 1 sure, 0 a guess.
+        Confidence that a mode continues the one at the speed before: 1 is certain, 0 a guess.
     error : ndarray, shape (S, m)
         Estimated relative error of the eigenvalues.
     status : ndarray of str, shape (S, m)
@@ -321,7 +321,7 @@ def frequency_locus(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Locus:
-    """Natural frequencies over speed, all speeds in one batch.
+    """Compute natural frequencies over speed, and follow the modes.
 
     Parameters
     ----------
@@ -330,7 +330,7 @@ def frequency_locus(
     speeds : sequence of float
         Speeds [rad/s], ascending.
     modes : int
-        How many modes to follow.
+        Number of modes to follow.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
@@ -349,7 +349,7 @@ def frequency_locus(
     speeds, modes = ascending("speeds", speeds), count("modes", modes)
     check_speeds(speeds)
     tolerance = _check_tolerance(tolerance)
-    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _CANDIDATES)
+    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _EXTRA_MODES)
     order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
     s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]
     error = _track_error(solution, order[:, :modes])
@@ -372,8 +372,8 @@ def frequency_locus(
 
 
 def _track_error(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
-    """Errors in tracked order; a mode from above the compared ones gets the largest error of its speed."""
-    compared = solution.error.shape[1]
-    beyond = np.repeat(solution.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
-    beyond[:, :compared] = solution.error[:, : beyond.shape[1]]
-    return np.take_along_axis(beyond, order, axis=1)
+    """Errors in tracked order; an extra mode gets the largest error at its speed."""
+    modes = solution.error.shape[1]
+    errors = np.repeat(solution.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
+    errors[:, :modes] = solution.error[:, : errors.shape[1]]
+    return np.take_along_axis(errors, order, axis=1)

@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.results import Provenance, Result, plain
-from beamdyn.modal.choice import DiscretizationChoice, choose_model, with_room
+from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line, Motion
@@ -241,7 +241,7 @@ class ResponseRequest:
         basis = self.basis.refined()
         if basis is None or basis.modes is None:
             return None
-        return replace(self, basis=basis, discretization=with_room(self.discretization, basis.modes)).run()
+        return replace(self, basis=basis, discretization=ensure_size(self.discretization, basis.modes)).run()
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""

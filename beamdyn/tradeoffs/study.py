@@ -143,8 +143,8 @@ def _end(scene: Scene) -> float:
     assert scene.motion is not None
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
-    settled = scene.motion.settled if scene.motion.settled <= _LONGEST_START * period else 0.0
-    return min(_round_to_two_digits(settled + _DEFAULT_PERIODS * period), scene.motion.end)
+    start = scene.motion.steady_start if scene.motion.steady_start <= _LONGEST_START * period else 0.0
+    return min(_round_to_two_digits(start + _DEFAULT_PERIODS * period), scene.motion.end)
 
 
 def _round_to_two_digits(value: float) -> float:

@@ -16,7 +16,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
-from beamdyn.modal.choice import DiscretizationChoice, choose_model, with_room
+from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, SPEED_SAMPLES, ModalBasis, find_speed_range
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
@@ -319,7 +319,7 @@ class TransientRequest:
         if basis is None or basis.modes is None or self.basis.modes is None:
             return None
         initial = self._pad_initial(self.basis.modes, basis.modes)
-        discretization = with_room(self.discretization, basis.modes)
+        discretization = ensure_size(self.discretization, basis.modes)
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
     def _with_finer_discretization(self) -> TransientRequest | None:

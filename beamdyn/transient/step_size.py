@@ -123,7 +123,7 @@ def integrate(
 
 def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
     """Whether the beam stays at rest: constant equations and an initial state in equilibrium."""
-    if system.motion.settled > 0:
+    if system.motion.steady_start > 0:
         return False
     _, K, f = system.coefficients(np.linspace(0, t_end, _TIMES_COMPARED))
     q, v = np.split(y0, 2)

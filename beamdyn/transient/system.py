@@ -58,7 +58,7 @@ class ModalSystem:
         """
         stiffness, damping, _ = self.equations.matrices
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
-        if self.motion.settled > start or not set(damping) <= set(CONSTANT_AT_STEADY_SPEED):
+        if self.motion.steady_start > start or not set(damping) <= set(CONSTANT_AT_STEADY_SPEED):
             return None
         root = self.root(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
         mean = RootMotion(*(np.asarray(getattr(root, f.name).mean()) for f in fields(RootMotion)))

@@ -51,7 +51,7 @@ def test_eigenvalues_of_the_neglected_functions_stay_below_their_traces(seed: in
     assert np.isin(small.head, large.head).all()
     K, head = large.stiffness, small.head
     tail = np.linalg.qr(K[:, head], mode="complete")[0][:, len(head) :]  # K-orthogonal to the head
-    for part, bound in zip(large.parts, small.tails, strict=True):
+    for part, bound in zip(large.forms, small.tails, strict=True):
         assert eigh(tail.T @ part @ tail, tail.T @ K @ tail, eigvals_only=True)[-1] <= bound
 
 

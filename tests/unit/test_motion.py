@@ -162,18 +162,19 @@ def test_any_shape_of_times(motion, shape):
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
-def test_speed_is_constant_once_settled(motion):
-    if motion.settled < math.inf:
-        sample = motion.at(motion.settled + np.linspace(0, min(20.0, motion.end - motion.settled), 7))
+def test_speed_is_constant_from_the_steady_start(motion):
+    if motion.steady_start < math.inf:
+        start = motion.steady_start
+        sample = motion.at(start + np.linspace(0, min(20.0, motion.end - start), 7))
         assert (sample.speed == motion.final_speed).all()
         assert (sample.acceleration == 0).all()
 
 
 def test_settled():
-    assert [m.settled for m in ROTATIONS] == [0, 4, 4, math.inf, 1, math.inf]
-    assert SampledRotation([0, 2], [5, 5]).settled == 0
-    assert SampledRotation([0, 2, 3], [0, 5, 5]).settled == math.inf  # a spline overshoots
-    assert (PUBLISHED.settled, USER.settled) == (10, math.inf)
+    assert [m.steady_start for m in ROTATIONS] == [0, 4, 4, math.inf, 1, math.inf]
+    assert SampledRotation([0, 2], [5, 5]).steady_start == 0
+    assert SampledRotation([0, 2, 3], [0, 5, 5]).steady_start == math.inf  # a spline overshoots
+    assert (PUBLISHED.steady_start, USER.steady_start) == (10, math.inf)
 
 
 # Rotations ------------------------------------------------------------------------------------------

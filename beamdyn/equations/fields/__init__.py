@@ -1,4 +1,4 @@
-"""The fields of the beam: what is unknown along it, with the terms of each in the equations of motion."""
+"""Fields of the beam: unknown functions along it, with their terms in the equations of motion."""
 
 from beamdyn.equations.fields.bending import Bending
 from beamdyn.equations.fields.field import Field

@@ -25,25 +25,24 @@ HELD = 2  # a clamped root: no deflection, no slope
 
 @dataclass(frozen=True)
 class BendingOperators:
-    """Matrices and vectors of u = sum phi_i(x/L) q_i, SI units, shapes (n, n) and (n,).
+    """Matrices (n, n) and vectors (n,) of the deflection u = sum phi_i(x/L) q_i, with the tip body.
 
-    Symbols are those of Lee and Yoo (2019), eqs. (15)-(21), with rho A for their rho; a tip body
-    is contained.
+    Symbols and equation numbers are those of Lee and Yoo (2019), eqs. (15)-(21), with rho A for their rho.
 
     Parameters
     ----------
     M : ndarray
         Mass (15) [kg].
     S : ndarray
-        Mass of the spin softening [kg]: M without rotary inertia.
+        Mass matrix of the spin softening [kg]: M without the rotary inertia of the tip body.
     J : ndarray
-        Tip body's (J_e - J_1) phi_i'(L) phi_j'(L) [kg]: stiffening by its rotation out of the plane.
+        (J_e - J_1) phi_i'(L) phi_j'(L) [kg]: stiffening as the tip body tilts out of the plane of rotation.
     KB : ndarray
         Bending stiffness (17) [N/m].
     KGA : ndarray
-        Stiffness by the tension of a unit root acceleration (18) [kg/m].
+        Stiffness due to the tension by a unit root acceleration (18) [kg/m].
     KGB : ndarray
-        Stiffness by the tension of rotation at unit speed about the root (19) [kg].
+        Stiffness due to the tension by rotation at unit speed about the root (19) [kg].
     P : ndarray
         Load under a unit root acceleration (21) [kg].
     Q : ndarray
@@ -61,28 +60,28 @@ class BendingOperators:
 
 
 def bending_operators(beam: Beam, space: Space) -> BendingOperators:
-    """Integrate the operators of bending over clamped functions."""
+    """Integrate the operators of bending in a space of clamped functions."""
     length, mass, tip = beam.length, beam.mass_per_length, beam.tip or TipMass(0.0)
     n_a, n_b = axial_tension(beam)
     reach = length + tip.offset
-    slope = space.end(1) / length  # D: slope at the end per unit coordinate
-    path = space.end(0) + tip.offset * slope  # t: deflection of the tip body's centre of gravity
-    dd, tt = np.outer(slope, slope), np.outer(path, path)
+    slope = space.end(1) / length  # D: tip slope per coordinate
+    centre = space.end(0) + tip.offset * slope  # t: deflection of the tip body's centre of gravity
+    dd, tt = np.outer(slope, slope), np.outer(centre, centre)
     spin = space.gram(mass, 0) * length + tip.mass * tt
     return BendingOperators(
         M=spin + tip.inertia * dd,
         S=spin,
-        J=(tip.inertia_transverse - tip.axial_inertia) * dd,
+        J=(tip.inertia_about_bending_direction - tip.axial_inertia) * dd,
         KB=space.gram(beam.bending_stiffness, 2) / length**3,
         KGA=space.gram(n_a, 1) / length + tip.mass * tip.offset * dd,
         KGB=space.gram(n_b, 1) / length + tip.mass * reach * tip.offset * dd,
-        P=space.load(mass) * length + tip.mass * path,
-        Q=space.load(mass * FRACTION) * length**2 + tip.mass * reach * path + tip.inertia * slope,
+        P=space.load(mass) * length + tip.mass * centre,
+        Q=space.load(mass * FRACTION) * length**2 + tip.mass * reach * centre + tip.inertia * slope,
     )
 
 
 class Bending(Field):
-    """The transverse deflection."""
+    """Transverse deflection of the beam."""
 
     name = "bending"
     explanations: ClassVar[Mapping[str, Explanation]] = {
@@ -104,18 +103,18 @@ class Bending(Field):
     }
 
     def is_modelled(self, scene: Scene) -> bool:
-        """Always."""
+        """Every scene has this field."""
         return True
 
     def complete(self, scene: Scene) -> Scene:
-        """With a tip body, damping, and angles for which no term vanishes."""
+        """Add a tip body, damping, and angles at which no term vanishes."""
         body = TipMass(1.0, inertia=1.0, axial_inertia=0.5)
         return replace(
             scene, beam=replace(scene.beam, tip=body), mount=Mount(1.0, 1.0, 1.0), damping_ratio=0.5
         )
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Equations (14) of Lee and Yoo (2019), corrected, with tip body and bending angle."""
+        """Assemble eqs. (14) of Lee and Yoo (2019), corrected, with tip body and bending angle."""
         space = spaces.functions(HELD)
         op = bending_operators(scene.beam, space)
         deflection = Deflection(space, np.eye(space.size), op.P, op.Q)

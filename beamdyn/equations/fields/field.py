@@ -1,4 +1,4 @@
-"""What a field is: unknown functions along the beam, with their terms in the equations of motion."""
+"""Interface of fields: unknown functions along the beam, with their terms in the equations of motion."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from beamdyn.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Term:
-    """One term of the left-hand side: factor * quantity(t) * matrix * (derivative of the coordinates).
+    """A term of the left-hand side: factor * quantity(t) * matrix * (time derivative of coordinates).
 
     Parameters
     ----------
     name : str
-        What it is.
+        Name in `beamdyn.terms`.
     rows, columns : str
-        Field in whose equations it stands, and field whose coordinates it multiplies.
+        Field in whose equations the term stands, and field whose coordinates it multiplies.
     order : int
-        Time derivative of the coordinates: 0 stiffness, 1 damping and gyroscopic, 2 mass.
-    matrix : ndarray
-        Its matrix.
+        Order of the time derivative: 0 stiffness, 1 damping and gyroscopic, 2 mass.
+    matrix : ndarray, shape (n, m)
+        Matrix over the coordinates of the two fields.
     quantity : str
-        Quantity of the `RootMotion` that multiplies it.
+        Quantity of `RootMotion` that multiplies the matrix.
     factor : float
-        A constant factor.
+        Constant factor.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Load:
-    """One term of the right-hand side: factor * quantity(t) * vector in the equations of one field."""
+    """A term of the right-hand side: factor * quantity(t) * vector in the equations of the field `rows`."""
 
     name: str
     rows: str
@@ -65,16 +65,16 @@ class Load:
 
 @dataclass(frozen=True)
 class Deflection:
-    """How the coordinates of a field deflect the beam: u(xi) = sum_j q_j (vectors.T phi(xi))_j.
+    """Transverse deflection of the beam by the coordinates q of a field: u = sum_j q_j (vectors.T phi)_j.
 
     Parameters
     ----------
     space : Space
-        The functions phi.
+        Trial functions phi of x/L.
     vectors : ndarray, shape (n, m)
-        Coefficients of the functions in the shape of each coordinate; the identity before a reduction.
+        Shape of each coordinate, as coefficients of phi; the identity before a reduction.
     P : ndarray, shape (m,)
-        Load under a unit root acceleration in the direction of bending [kg], over the coordinates.
+        Load under a unit root acceleration in the direction of bending [kg].
     Q : ndarray, shape (m,)
         Load under a unit angular acceleration [kg m].
     """
@@ -85,34 +85,34 @@ class Deflection:
     Q: np.ndarray
 
     def evaluate(self, xi: np.ndarray, order: int) -> np.ndarray:
-        """Derivatives with respect to xi of the shapes at xi of shape (k,): shape (m, k)."""
+        """Evaluate the `order`-th derivatives of the shapes over x/L at xi of shape (k,): shape (m, k)."""
         return self.vectors.T @ self.space.evaluate(xi, order)
 
     @property
     def tip(self) -> np.ndarray:
-        """Tip deflection of a unit coordinate, shape (m,)."""
+        """Tip deflection per coordinate, shape (m,)."""
         return self.vectors.T @ self.space.end(0)
 
     def reduced(self, vectors: np.ndarray) -> Deflection:
-        """The same in coordinates of which the present ones are `vectors` @ q_reduced."""
+        """Transform to reduced coordinates, with q = `vectors` @ q_reduced."""
         P, Q = vectors.T @ self.P, vectors.T @ self.Q
         return replace(self, vectors=self.vectors @ vectors, P=P, Q=Q)
 
 
 @dataclass(frozen=True)
 class FieldEquations:
-    """What a field contributes to the equations of a scene.
+    """Contribution of a field to the equations of motion of a scene.
 
     Parameters
     ----------
     size : int
         Number of coordinates.
     terms : tuple of Term
-        Left-hand side.
+        Terms of the left-hand side.
     loads : tuple of Load
-        Right-hand side.
+        Terms of the right-hand side.
     deflection : Deflection or None
-        How it deflects the beam; None for a field that does not.
+        Deflection of the beam by the coordinates; None for a field that does not deflect it.
     """
 
     size: int
@@ -127,20 +127,20 @@ class Field(ABC):
     In order to add a field, write a subclass in a module of its own in `beamdyn.equations.fields`, and
     name it in the list `FIELDS` there:
 
-    1. `name` identifies it in `Term.rows` and `Term.columns`; nothing else reads it.
-    2. `is_modelled` says whether a scene has it.  A scene without it does not pay for it.
-    3. `assemble` takes the functions with the conditions at the root that the field needs from the
-       discretization, ``spaces.functions(held)``, and returns the terms, the loads and, for a field that
-       moves the beam transversely, the deflection of its coordinates.
+    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
+    2. `is_modelled` says whether a scene has the field.  A scene without it has no cost of it.
+    3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
+       ``spaces.functions(held)``, and returns the terms, the loads and, for a field that deflects the beam
+       transversely, the `Deflection`.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
        every quantity.  Its own stiffness, under the quantity "unity", is positive definite.
-    5. A term that couples it with another field is written by one of the two, both halves.
-    6. `explanations` says of each term and load, by name, how it is written, why it is there and what it
-       needs, for `beamdyn.terms`.
-    7. `complete` returns a scene in which every term of the field is there, for the same list.
+    5. Of two coupled fields, one supplies the coupling terms in the equations of both.
+    6. `explanations` has, by the name of each term and load, its symbol, the reason for its presence and its
+       conditions, for `beamdyn.terms`.
+    7. `complete` returns a scene in which every term of the field is present, for the same list.
 
     Discretizations, modal reductions, integrators, harmonic balance and results read the list of terms
-    and know no field by its name or place.
+    and do not depend on which fields there are.
     """
 
     name: ClassVar[str]
@@ -148,12 +148,12 @@ class Field(ABC):
 
     @abstractmethod
     def is_modelled(self, scene: Scene) -> bool:
-        """Whether a scene has this field."""
+        """Whether the scene has this field."""
 
     @abstractmethod
     def complete(self, scene: Scene) -> Scene:
-        """The scene with this field, and with all that its terms need."""
+        """Extend the scene so that every term of this field is present."""
 
     @abstractmethod
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Terms and loads of this field in a scene; those with a factor of 0 may be included."""
+        """Assemble the terms and loads of this field; those with a factor of 0 may be included."""

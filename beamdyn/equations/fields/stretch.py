@@ -1,4 +1,4 @@
-"""Stretch of the beam with its Coriolis coupling, as in Yoo and Shin (1998), to compare with papers."""
+"""Axial stretch of the beam with its Coriolis coupling, as in Yoo and Shin (1998), for comparison."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
 
 HELD = 1  # no displacement at the root
-MODELLED = Condition(lambda f: f.scene.stretch, "no stretch: the beam is modelled as inextensible")
+MODELLED = Condition(lambda s: s.scene.stretch, "no stretch: the beam is modelled as inextensible")
 
 
 @dataclass(frozen=True)
 class StretchOperators:
-    """Matrices and vectors of the stretch s = sum phi_i(x/L) q_i and its coupling with bending, SI units.
+    """Matrices and vectors of the stretch s = sum phi_i(x/L) q_i and its coupling with bending.
+
+    Symbols and equation numbers are those of Lee and Yoo (2019).
 
     Parameters
     ----------
@@ -48,15 +50,15 @@ class StretchOperators:
 
 
 def stretch_operators(beam: Beam, spaces: Spaces) -> StretchOperators:
-    """Integrate the operators of stretch."""
+    """Integrate the operators of stretch and of its coupling with bending."""
     length, mass, tip = beam.length, beam.mass_per_length, beam.tip or TipMass(0.0)
     assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
     space, clamped = spaces.functions(HELD), spaces.functions(bending.HELD)
     end = space.end(0)
-    path = clamped.end(0) + tip.offset / length * clamped.end(1)
+    centre = clamped.end(0) + tip.offset / length * clamped.end(1)
     return StretchOperators(
         M=space.gram(mass, 0) * length + tip.mass * np.outer(end, end),
-        M12=spaces.product(mass, HELD, bending.HELD) * length + tip.mass * np.outer(end, path),
+        M12=spaces.product(mass, HELD, bending.HELD) * length + tip.mass * np.outer(end, centre),
         KS=space.gram(beam.axial_stiffness, 1) / length,
         P=space.load(mass) * length + tip.mass * end,
         Q=space.load(mass * FRACTION) * length**2 + tip.mass * (length + tip.offset) * end,
@@ -64,7 +66,7 @@ def stretch_operators(beam: Beam, spaces: Spaces) -> StretchOperators:
 
 
 class Stretch(Field):
-    """The axial stretch."""
+    """Axial stretch of the beam."""
 
     name = "stretch"
     explanations: ClassVar[Mapping[str, Explanation]] = {
@@ -89,16 +91,16 @@ class Stretch(Field):
     }
 
     def is_modelled(self, scene: Scene) -> bool:
-        """Where the scene asks for it."""
+        """Whether `scene.stretch` is set."""
         return scene.stretch
 
     def complete(self, scene: Scene) -> Scene:
-        """With stretch, and an axial stiffness."""
+        """Set `stretch`, and an axial stiffness if there is none."""
         stiffness = scene.beam.axial_stiffness or scene.beam.bending_stiffness
         return replace(scene, beam=replace(scene.beam, axial_stiffness=stiffness), stretch=True)
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Equations (13) of Lee and Yoo (2019), and the coupling in (14)."""
+        """Assemble eqs. (13) of Lee and Yoo (2019), and the coupling in (14)."""
         op = stretch_operators(scene.beam, spaces)
         return FieldEquations(len(op.P), (*_terms(scene, op),), (*_loads(op),))
 

@@ -1,8 +1,8 @@
-"""Motions of the carrier: its angle, speed and acceleration, and the acceleration of its centre.
+"""Motions of the carrier: its angle, speed and angular acceleration, and the acceleration of its centre.
 
-A rotation turns about a fixed centre; a rolling wheel also travels, as far as its rotation says.
-Angles are not reduced to one turn: a double holds 1e8 rad to 1.5e-8 rad, and phases that follow from
-the angle (of the road, of gravity) to no more.  At a jump, values are those after it.
+A rotation is about a fixed centre; a rolling wheel also travels, without slip.  Angles are not reduced to
+one turn: in double precision an angle of 1e8 rad, and any phase computed from it (of the road, of gravity),
+is accurate to 1.5e-8 rad.  At a jump, a motion takes the values after it.
 """
 
 from beamdyn.scene.motion.base import Line, Motion, MotionSample
@@ -22,7 +22,7 @@ KINDS: dict[str, type[Motion]] = {
     "sampled": SampledRotation,
     "rolling": RollingWheel,
 }
-"""Motions that files and forms offer, by their kind; a table that names no kind is of the first."""
+"""Motions by the kind that names them in files and forms; the first is the default."""
 
 __all__ = [
     "KINDS",

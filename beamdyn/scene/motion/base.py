@@ -1,4 +1,4 @@
-"""What every motion answers, and checks of its input."""
+"""Base class of motions, and checks of their input."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ import numpy as np
 
 from beamdyn.common.checks import real_array
 
-_ROUNDING = 1e-12  # a time past the end by less, relative to the end, is its rounding
+_ROUNDING = 1e-12  # relative to the end of a motion: times beyond it by less differ by rounding only
 
-Turning = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed, acceleration
+Kinematics = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed, acceleration
 
 
 @dataclass(frozen=True)
 class MotionSample:
-    """The carrier's motion at given times; all arrays share the shape of the times.
+    """Motion of the carrier at some times; all arrays have the shape of the times.
 
     Parameters
     ----------
     angle, speed, acceleration : ndarray
-        Angle theta [rad] turned about -n3, its rate omega [rad/s] and omega' [rad/s2].
+        Angle theta about -n3 [rad], speed omega = theta' [rad/s], acceleration omega' [rad/s2].
     carrier_acceleration : ndarray, shape (..., 3)
         Acceleration of the centre of the carrier along the fixed directions n1, n2, n3 [m/s2].
     """
@@ -37,7 +37,7 @@ class MotionSample:
 
     @classmethod
     def steady(cls, speed: np.ndarray | float) -> MotionSample:
-        """Rotation at constant speed about a fixed centre, one entry per speed."""
+        """Sample rotations at constant speed [rad/s] about a fixed centre, at angle 0, one entry a speed."""
         speed = np.asarray(speed, dtype=float)
         zero = np.zeros(speed.shape)
         return cls(zero, speed, zero, np.zeros((*speed.shape, 3)))
@@ -45,12 +45,12 @@ class MotionSample:
 
 @dataclass(frozen=True)
 class Line:
-    """A frequency excited at steady speed, as seen on the rotating carrier.
+    """An excitation line: a frequency excited at steady speed, as seen on the rotating carrier.
 
     Parameters
     ----------
     name : str
-        What excites it.
+        Source of the excitation.
     multiple : float
         The frequency as a multiple of the speed.
     """
@@ -60,23 +60,23 @@ class Line:
 
 
 class Motion(ABC):
-    """What a motion answers, with what holds unless it says otherwise.
+    """Base class of motions; its defaults are those of a smooth, unlimited motion without a road.
 
     Motions are hashable and, unless made from functions, picklable.
     """
 
     @abstractmethod
     def at(self, t: np.ndarray) -> MotionSample:
-        """The motion at times t [s], of any shape."""
+        """Sample the motion at times t [s], of any shape."""
 
     @abstractmethod
     def with_speed(self, speed: float) -> Self:
-        """The same motion at another final speed [rad/s]."""
+        """Copy the motion with another final speed [rad/s]."""
 
     @property
     @abstractmethod
     def final_speed(self) -> float:
-        """Speed at the end [rad/s]; nan if not known."""
+        """Speed at the end of the motion [rad/s]; nan if not known."""
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -84,7 +84,7 @@ class Motion(ABC):
         return ()
 
     @property
-    def settled(self) -> float:
+    def steady_start(self) -> float:
         """Time from which the speed is constant [s], inf if never."""
         return math.inf
 
@@ -95,50 +95,50 @@ class Motion(ABC):
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Frequencies that the translation excites at steady speed; gravity's is not among them."""
+        """Excitation lines of the translation at steady speed; that of gravity is not included."""
         return ()
 
     @property
     def road_multiple(self) -> float | None:
-        """Phase of the road per angle of rotation, None if there is no road."""
+        """Phase of the road per angle of rotation: waves of the road per turn; None without a road."""
         return None
 
     @property
     def picklable(self) -> bool:
-        """Whether it can be stored and sent to other processes."""
+        """Whether the motion can be pickled, as stores and other processes require."""
         try:
             pickle.dumps(self)
-        except Exception:  # which one depends on what the functions hold
+        except Exception:  # its type depends on the user's functions
             return False
         return True
 
     def road_acceleration(self, speed: float) -> float:
-        """Largest acceleration by the road at a steady speed [m/s2]."""
+        """Largest acceleration of the wheel by the road at a steady speed [m/s2]; 0 without a road."""
         return 0.0
 
     def steady_acceleration(
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
-        """Acceleration of the carrier's centre at steady speed, as a function of two phases.
+        """Acceleration of the carrier's centre at steady speed, at phases of the rotation and of the road.
 
         Parameters
         ----------
         speed : ndarray
             Speed [rad/s].
         rotation, road : ndarray
-            Angle theta of the carrier [rad], and phase chi of the road [rad]: `road_multiple` theta
+            Angle theta of the carrier [rad], and phase chi of the road [rad], `road_multiple` times theta
             plus any constant.
 
         Returns
         -------
         ndarray, shape (..., 3)
-            Along n1, n2, n3 [m/s2], over the shape that the arguments broadcast to.
+            Components along n1, n2, n3 [m/s2]; the leading shape is that of the broadcast arguments.
         """
         return np.zeros((*np.broadcast_shapes(*map(np.shape, (speed, rotation, road))), 3))
 
 
-def within(t: np.ndarray, end: float) -> np.ndarray:
-    """Times as an array, if none is past the end of the motion or, where it has one, before 0."""
+def check_times(t: np.ndarray, end: float) -> np.ndarray:
+    """Convert times [s] to an array; raise a ValueError if a motion of finite end is not defined at one."""
     t = np.asarray(t, dtype=float)
     if end == math.inf or not t.size:
         return t
@@ -153,12 +153,12 @@ def within(t: np.ndarray, end: float) -> np.ndarray:
     return t
 
 
-def as_breakpoints(given: Sequence[float]) -> tuple[float, ...]:
-    """Breakpoints [s] in ascending order, each once."""
-    return tuple(np.unique(real_array("breakpoints", given)).tolist())
+def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
+    """Convert breakpoints [s] to ascending order without repeats."""
+    return tuple(np.unique(real_array("breakpoints", times)).tolist())
 
 
-def keep(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass, while it is made."""
+def set_fields(instance: object, **values: object) -> None:
+    """Set fields of a frozen dataclass during its construction."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)

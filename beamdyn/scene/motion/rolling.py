@@ -1,4 +1,4 @@
-"""Motions that also travel: a wheel that rolls over a wavy road, and the user's own."""
+"""Motions with translation: a wheel that rolls over a wavy road, and any motion given by a function."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ import numpy as np
 
 from beamdyn.common.checks import kind, positive, real
 from beamdyn.common.described import Described
-from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, keep, within
+from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times, set_fields
 from beamdyn.scene.motion.checks import check_consistent
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
 
 
 @dataclass(frozen=True)
 class RoadWave:
-    """A sine along the road, given by its height or by the vertical velocity of the wheel on it.
+    """A sinusoidal road, given by its height or by the vertical velocity of the wheel on it.
 
     Parameters
     ----------
     wavelength : float
         Wavelength lambda [m].
     velocity_amplitude : float, optional
-        Amplitude C of the vertical velocity, C sin(2 pi x / lambda) at the distance x travelled [m/s].
-        Lee and Yoo (2019), (3), where it is called an amplitude of the road; the same at any speed.
+        Amplitude C [m/s] of the vertical velocity C sin(2 pi x / lambda) at the distance x travelled, the
+        same at any speed: Lee and Yoo (2019), eq. (3), who call it an amplitude of the road.
     height : float, optional
         Amplitude A of the road's height, A sin(2 pi x / lambda) [m].
 
     Raises
     ------
     ValueError
-        If the wavelength is not positive, or not exactly one of the amplitudes is given.
+        If the wavelength is not positive, or none or both of the amplitudes are given.
     """
 
     wavelength: Annotated[float, Described("m", "lambda", "wavelength of the road", above=0)]
@@ -45,17 +45,17 @@ class RoadWave:
     ] = None
 
     def __post_init__(self) -> None:
-        keep(self, wavelength=positive("wavelength", self.wavelength, "m"))
-        given = {"velocity_amplitude": (self.velocity_amplitude, "m/s"), "height": (self.height, "m")}
-        given = {name: value for name, value in given.items() if value[0] is not None}
-        if len(given) != 1:
-            found = " and ".join(f"{name} = {value!r}" for name, (value, _) in given.items())
+        set_fields(self, wavelength=positive("wavelength", self.wavelength, "m"))
+        amplitudes = {"velocity_amplitude": (self.velocity_amplitude, "m/s"), "height": (self.height, "m")}
+        amplitudes = {name: value for name, value in amplitudes.items() if value[0] is not None}
+        if len(amplitudes) != 1:
+            both = " and ".join(f"{name} = {value!r}" for name, (value, _) in amplitudes.items())
             raise ValueError(
-                f"{found or 'neither velocity_amplitude nor height'} given: give exactly one, "
+                f"{both or 'neither velocity_amplitude nor height'} given: give exactly one, "
                 "velocity_amplitude [m/s] of the wheel or height [m] of the road"
             )
-        for name, (value, unit) in given.items():
-            keep(self, **{name: real(name, value, unit)})
+        for name, (value, unit) in amplitudes.items():
+            set_fields(self, **{name: real(name, value, unit)})
 
     @property
     def wavenumber(self) -> float:
@@ -65,14 +65,14 @@ class RoadWave:
     def acceleration(
         self, phase: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray | float = 0.0
     ) -> np.ndarray:
-        """Vertical acceleration [m/s2] of a wheel on it.
+        """Vertical acceleration of a wheel on the road [m/s2].
 
         Parameters
         ----------
         phase : ndarray
             Distance travelled times `wavenumber` [rad].
         velocity, acceleration : ndarray
-            Of the travel along the road [m/s], [m/s2].
+            Velocity [m/s] and acceleration [m/s2] along the road.
         """
         k = self.wavenumber
         if self.velocity_amplitude is not None:
@@ -88,16 +88,16 @@ class RoadWave:
 
 @dataclass(frozen=True)
 class RollingWheel(Motion):
-    """A wheel that rolls along n1, on a flat or a wavy road.
+    """A wheel that rolls without slip along n1, on a flat or a wavy road.
 
     Parameters
     ----------
     rolling_radius : float
         Distance R travelled per angle turned [m]; the centre moves with R omega along n1.
     speed : float or Rotation
-        Constant speed [rad/s], or how the wheel turns.
+        Constant speed [rad/s], or rotation of the wheel.
     road : RoadWave, optional
-        Moves the centre along n2; its phase is that of the distance travelled, 2 pi R theta / lambda.
+        Road that moves the centre along n2, at the phase 2 pi R theta / lambda; flat if not given.
 
     Raises
     ------
@@ -110,22 +110,22 @@ class RollingWheel(Motion):
     road: RoadWave | None = None
 
     def __post_init__(self) -> None:
-        keep(self, rolling_radius=positive("rolling_radius", self.rolling_radius, "m"))
+        set_fields(self, rolling_radius=positive("rolling_radius", self.rolling_radius, "m"))
         if not isinstance(self.speed, Rotation):
             remedy = "or a rotation, such as SpinUp(speed, duration)"
-            keep(self, speed=SteadyRotation(real("speed", self.speed, "rad/s", remedy)))
+            set_fields(self, speed=SteadyRotation(real("speed", self.speed, "rad/s", remedy)))
         if self.road is not None:
             kind("road", self.road, RoadWave, "road = RoadWave(wavelength=0.3, height=0.001)")
 
     @property
     def rotation(self) -> Rotation:
-        """How the wheel turns."""
+        """Rotation of the wheel."""
         assert isinstance(self.speed, Rotation)
         return self.speed
 
     @property
     def final_speed(self) -> float:
-        """Speed at the end [rad/s]."""
+        """Speed at the end of the motion [rad/s]."""
         return self.rotation.final_speed
 
     @property
@@ -134,9 +134,9 @@ class RollingWheel(Motion):
         return tuple(self.rotation.breakpoints)
 
     @property
-    def settled(self) -> float:
+    def steady_start(self) -> float:
         """Time from which the speed is constant [s], inf if never."""
-        return self.rotation.settled
+        return self.rotation.steady_start
 
     @property
     def end(self) -> float:
@@ -150,13 +150,13 @@ class RollingWheel(Motion):
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """The road's frequency, split by the rotation."""
+        """Excitation lines of the road, whose frequency the rotation splits into two."""
         if (kappa := self.road_multiple) is None:
             return ()
         return Line("road +", kappa + 1), Line("road -", abs(kappa - 1))
 
     def at(self, t: np.ndarray) -> MotionSample:
-        """The motion at times t [s], of any shape."""
+        """Sample the motion at times t [s], of any shape."""
         sample, R = self.rotation.at(t), self.rolling_radius
         sample.carrier_acceleration[..., 0] = R * sample.acceleration
         if self.road is not None:
@@ -166,17 +166,17 @@ class RollingWheel(Motion):
         return sample
 
     def with_speed(self, speed: float) -> RollingWheel:
-        """The same wheel at another final speed [rad/s]."""
+        """Copy the wheel with another final speed [rad/s]."""
         return replace(self, speed=self.rotation.with_speed(speed))
 
     def road_acceleration(self, speed: float) -> float:
-        """Largest acceleration by the road at a steady speed [m/s2]; past g the wheel leaves the road."""
+        """Largest acceleration of the wheel by the road at a steady speed [m/s2]; 0 without a road."""
         return 0.0 if self.road is None else self.road.largest_acceleration(self.rolling_radius * speed)
 
     def steady_acceleration(
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
-        """Acceleration of the centre at steady speed: see `Motion.steady_acceleration`."""
+        """Acceleration of the centre at steady speed [m/s2]: see `Motion.steady_acceleration`."""
         total = super().steady_acceleration(speed, rotation, road)
         if self.road is not None:
             velocity = self.rolling_radius * np.asarray(speed, dtype=float)
@@ -188,23 +188,23 @@ class RollingWheel(Motion):
 class UserMotion(Motion):
     """Any motion, as a function of time.
 
-    Made from a lambda it is not `picklable`: workers and stores need a function defined in a module.
-    Nothing is known of its steady state: it can be simulated, no more.
+    A lambda is not `picklable`: workers and stores need a function defined in a module.  The motion has no
+    known steady state, so that it can be simulated only.
 
     Parameters
     ----------
     function : callable
-        Takes an array of times [s], returns a `MotionSample`.
+        Function of an array of times [s] that returns a `MotionSample`.
     breakpoints : tuple of float
         Times at which the motion or one of its derivatives jumps [s].
     t_end : float
-        Time up to which it is defined [s]; if finite, the motion is checked up to there at once.
+        Time up to which the motion is defined [s]; if finite, the motion is checked at construction.
 
     Raises
     ------
     ValueError
-        If the function does not return the motion at all times, or speed and acceleration are not
-        the derivatives of angle and speed.
+        If the function does not return a `MotionSample` of the right shapes, or speed and acceleration
+        are not the derivatives of angle and speed.
     """
 
     function: Callable[[np.ndarray], MotionSample]
@@ -214,14 +214,14 @@ class UserMotion(Motion):
     def __post_init__(self) -> None:
         if not callable(self.function):
             raise ValueError(f"function = {self.function!r}: give a function that returns a MotionSample")
-        keep(self, breakpoints=as_breakpoints(self.breakpoints))
+        set_fields(self, breakpoints=as_breakpoints(self.breakpoints))
         if self.t_end != math.inf:
-            keep(self, t_end=positive("t_end", self.t_end, "s"))
+            set_fields(self, t_end=positive("t_end", self.t_end, "s"))
             check_consistent(self, self.t_end)
 
     @property
     def final_speed(self) -> float:
-        """Speed at `t_end` [rad/s]; nan if that is not given."""
+        """Speed at `t_end` [rad/s]; nan if `t_end` is not given."""
         return float(self.at(np.array(self.t_end)).speed) if self.t_end < math.inf else math.nan
 
     @property
@@ -230,22 +230,22 @@ class UserMotion(Motion):
         return self.t_end
 
     def at(self, t: np.ndarray) -> MotionSample:
-        """The motion at times t [s], of any shape."""
-        t = within(t, self.t_end)
+        """Sample the motion at times t [s], of any shape."""
+        t = check_times(t, self.t_end)
         sample = self.function(t)
         if not isinstance(sample, MotionSample):
             raise ValueError(f"function(t) returned a {type(sample).__name__}: let it return a MotionSample")
         shapes = {"angle": t.shape, "speed": t.shape, "acceleration": t.shape}
         for name, shape in (shapes | {"carrier_acceleration": (*t.shape, 3)}).items():
             if np.shape(getattr(sample, name)) != shape:
-                found = np.shape(getattr(sample, name))
+                wrong = np.shape(getattr(sample, name))
                 raise ValueError(
-                    f"function(t): {name} has shape {found}; make it {shape}, as t {t.shape} asks"
+                    f"function(t): {name} has shape {wrong}; for times t of shape {t.shape} return {shape}"
                 )
         return sample
 
     def with_speed(self, speed: float) -> UserMotion:
-        """Refused: a function of time says nothing about other speeds."""
+        """Raise a ValueError: a function of time has no speed to change."""
         raise ValueError(
             f"with_speed({speed:g}): a UserMotion has one speed only; make one for each speed, "
             "or use RollingWheel with a rotation"
@@ -254,5 +254,5 @@ class UserMotion(Motion):
     def steady_acceleration(
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
-        """Refused: a function of time says nothing about a steady state."""
+        """Raise a ValueError: a function of time has no known steady state."""
         raise ValueError("a UserMotion has no known steady state; simulate it, or use RollingWheel")

@@ -14,12 +14,12 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue, one_of, positive, real, real_array, refuse
 from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import (
+    Kinematics,
     Motion,
     MotionSample,
-    Turning,
     as_breakpoints,
-    keep,
-    within,
+    check_times,
+    set_fields,
 )
 from beamdyn.scene.motion.checks import check_consistent
 
@@ -28,16 +28,16 @@ if TYPE_CHECKING:  # scipy.interpolate is slow to import, and only tables need i
 
 
 class Rotation(Motion):
-    """Rotation about a fixed centre: a subclass gives `turning`, `final_speed` and `with_speed`."""
+    """Base class of rotations about a fixed centre."""
 
     @abstractmethod
-    def turning(self, t: np.ndarray) -> Turning:
+    def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
 
     def at(self, t: np.ndarray) -> MotionSample:
-        """The motion at times t [s], of any shape."""
-        t = within(t, self.end)
-        return MotionSample(*self.turning(t), np.zeros((*t.shape, 3)))
+        """Sample the motion at times t [s], of any shape."""
+        t = check_times(t, self.end)
+        return MotionSample(*self.kinematics(t), np.zeros((*t.shape, 3)))
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class SteadyRotation(Rotation):
     speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
 
     def __post_init__(self) -> None:
-        keep(self, speed=real("speed", self.speed, "rad/s"))
+        set_fields(self, speed=real("speed", self.speed, "rad/s"))
 
     @property
     def final_speed(self) -> float:
@@ -61,16 +61,16 @@ class SteadyRotation(Rotation):
         return self.speed
 
     @property
-    def settled(self) -> float:
+    def steady_start(self) -> float:
         """0 s: the speed is constant."""
         return 0.0
 
-    def turning(self, t: np.ndarray) -> Turning:
+    def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         return self.speed * t, np.full(t.shape, self.speed), np.zeros(t.shape)
 
     def with_speed(self, speed: float) -> SteadyRotation:
-        """Rotation at another speed [rad/s]."""
+        """Copy the rotation with another speed [rad/s]."""
         return SteadyRotation(speed)
 
 
@@ -79,21 +79,21 @@ Law = Literal["smooth", "linear"]
 
 @dataclass(frozen=True)
 class SpinUp(Rotation):
-    """From rest at t = 0 to a constant speed about a fixed centre.
+    """Rotation about a fixed centre that spins up from rest at t = 0 to a constant speed.
 
     Parameters
     ----------
     speed : float
         Final speed [rad/s].
     duration : float
-        Time T that it takes [s].
+        Duration T of the spin-up [s].
     law : "smooth" or "linear"
-        Speed over x = t/T: final speed times x - sin(2 pi x)/(2 pi), or times x.
+        Speed relative to the final speed, at x = t/T: x - sin(2 pi x)/(2 pi), or x.
 
     Raises
     ------
     ValueError
-        If the duration is not positive or there is no such law.
+        If the duration is not positive, the speed is not finite, or the law is unknown.
     """
 
     speed: Annotated[float, Described("rad/s", "omega_s", "angular speed of the carrier")]
@@ -104,7 +104,7 @@ class SpinUp(Rotation):
         one_of("law", self.law, get_args(Law))
         remedy = "for a constant speed from the start give SteadyRotation(speed)"
         duration = positive("duration", self.duration, "s", remedy)
-        keep(self, speed=real("speed", self.speed, "rad/s"), duration=duration)
+        set_fields(self, speed=real("speed", self.speed, "rad/s"), duration=duration)
 
     @property
     def final_speed(self) -> float:
@@ -113,45 +113,45 @@ class SpinUp(Rotation):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """The end of the spin-up [s]."""
+        """End of the spin-up [s]."""
         return (self.duration,)
 
     @property
-    def settled(self) -> float:
-        """The end of the spin-up [s]."""
+    def steady_start(self) -> float:
+        """End of the spin-up [s]."""
         return self.duration
 
-    def turning(self, t: np.ndarray) -> Turning:
+    def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
-        angle, speed, slope = _LAWS[self.law](np.clip(t / self.duration, 0.0, 1.0))
-        # Constant time is counted from the end of the spin-up: the angle continues to the last digit.
+        angle, speed, acceleration = _LAWS[self.law](np.clip(t / self.duration, 0.0, 1.0))
+        # Time at constant speed counts from the spin-up's end: the angle is continuous to the last digit.
         angle = self.speed * (self.duration * angle + np.maximum(t - self.duration, 0.0))
-        slope = np.where((t >= 0) & (t < self.duration), slope, 0.0)
-        return angle, self.speed * speed, self.speed / self.duration * slope
+        acceleration = np.where((t >= 0) & (t < self.duration), acceleration, 0.0)
+        return angle, self.speed * speed, self.speed / self.duration * acceleration
 
     def with_speed(self, speed: float) -> SpinUp:
-        """A spin-up to another speed [rad/s] in the same time."""
+        """Copy the spin-up with another final speed [rad/s] and the same duration."""
         return replace(self, speed=speed)
 
 
-def _smooth(x: np.ndarray) -> Turning:
-    """Speed x - sin(2 pi x)/(2 pi) with its integral and derivative, on 0 <= x <= 1."""
+def _smooth(x: np.ndarray) -> Kinematics:
+    """Integral, value and derivative of the speed x - sin(2 pi x)/(2 pi), for 0 <= x <= 1."""
     sine = np.sin(np.pi * x) / np.pi
-    # x^2/2 - sin(pi x)^2/(2 pi^2), as a product: the difference would lose all digits at small x.
-    integral = _minus_sine(np.pi * x) / np.pi * (x + sine) / 2
-    return integral, _minus_sine(2 * np.pi * x) / (2 * np.pi), 2 * (np.pi * sine) ** 2
+    # x^2/2 - sin(pi x)^2/(2 pi^2) as a product, because the difference cancels at small x.
+    integral = _subtract_sine(np.pi * x) / np.pi * (x + sine) / 2
+    return integral, _subtract_sine(2 * np.pi * x) / (2 * np.pi), 2 * (np.pi * sine) ** 2
 
 
-def _linear(x: np.ndarray) -> Turning:
-    """Speed x with its integral and derivative."""
+def _linear(x: np.ndarray) -> Kinematics:
+    """Integral, value and derivative of the speed x."""
     return x**2 / 2, x, np.ones_like(x)
 
 
-_LAWS: dict[str, Callable[[np.ndarray], Turning]] = {"smooth": _smooth, "linear": _linear}
+_LAWS: dict[str, Callable[[np.ndarray], Kinematics]] = {"smooth": _smooth, "linear": _linear}
 
 
-def _minus_sine(y: np.ndarray) -> np.ndarray:
-    """Difference y - sin(y) for y >= 0, by its Taylor series where the difference would cancel."""
+def _subtract_sine(y: np.ndarray) -> np.ndarray:
+    """Compute y - sin(y) for y >= 0, by its Taylor series for y < 1, where the difference cancels."""
     difference = y - np.sin(y)
     if y.size and y.min() >= 1:
         return difference
@@ -167,7 +167,7 @@ Interpolation = Literal["cubic", "pchip"]
 
 @dataclass(frozen=True)
 class SampledRotation(Rotation):
-    """Rotation about a fixed centre by a table of speeds.
+    """Rotation about a fixed centre with a tabulated speed.
 
     The angle is the exact integral of the interpolated speed, the acceleration its derivative.
 
@@ -178,12 +178,12 @@ class SampledRotation(Rotation):
     speeds : sequence of float
         Speeds at these times [rad/s].
     interpolation : "cubic" or "pchip"
-        A cubic spline, for smooth data, or monotone cubics, which do not overshoot at corners.
+        Cubic spline, for smooth data, or monotone cubics, which do not overshoot at corners.
 
     Raises
     ------
     ValueError
-        If the times do not ascend from 0, or there are not as many speeds as times.
+        If the times do not ascend from 0, a value is not finite, or the numbers of times and speeds differ.
     """
 
     times: Sequence[Annotated[float, Described("s", "t", "times of the table, from 0")]]
@@ -194,35 +194,35 @@ class SampledRotation(Rotation):
 
     def __post_init__(self) -> None:
         one_of("interpolation", self.interpolation, get_args(Interpolation))
-        times, speeds = _table(self.times, self.speeds)
-        keep(self, times=tuple(times.tolist()), speeds=tuple(speeds.tolist()))
+        times, speeds = _check_table(self.times, self.speeds)
+        set_fields(self, times=tuple(times.tolist()), speeds=tuple(speeds.tolist()))
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
-        return type(self), (self.times, self.speeds, self.interpolation)  # without the splines
+        return type(self), (self.times, self.speeds, self.interpolation)  # the cached splines are not pickled
 
     @property
     def final_speed(self) -> float:
-        """The last speed of the table [rad/s]."""
+        """Last speed of the table [rad/s]."""
         return self.speeds[-1]
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Times of the table between its ends [s]: there the pieces of the interpolation meet."""
+        """Inner times of the table [s], where the pieces of the interpolation meet."""
         return tuple(self.times[1:-1])
 
     @property
-    def settled(self) -> float:
-        """Where the last speeds of the table are the same and not splined: their first time [s]; else inf."""
-        same = np.cumprod(np.equal(self.speeds, self.final_speed)[::-1]).sum()
-        constant = same == len(self.times) or (same > 1 and self.interpolation == "pchip")
-        return self.times[-same] if constant else math.inf
+    def steady_start(self) -> float:
+        """Time from which the interpolated speed is constant [s], inf if never: splines oscillate."""
+        equal = np.cumprod(np.equal(self.speeds, self.final_speed)[::-1]).sum()  # number of last speeds alike
+        constant = equal == len(self.times) or (equal > 1 and self.interpolation == "pchip")
+        return self.times[-equal] if constant else math.inf
 
     @property
     def end(self) -> float:
-        """The last time of the table [s]."""
+        """Last time of the table [s]."""
         return self.times[-1]
 
-    def turning(self, t: np.ndarray) -> Turning:
+    def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         angle, speed, acceleration = self._splines
         return angle(t), speed(t), acceleration(t)
@@ -236,13 +236,13 @@ class SampledRotation(Rotation):
         return speed.antiderivative(), speed, speed.derivative()
 
     def with_speed(self, speed: float) -> SampledRotation:
-        """The table with all speeds in proportion, so that it ends at another speed [rad/s]."""
+        """Copy the rotation with all speeds scaled so that the last is another speed [rad/s]."""
         _check_scalable(self.final_speed)
         return replace(self, speeds=[v / self.final_speed * speed for v in self.speeds])
 
 
-def _table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Times and speeds of a table, checked."""
+def _check_table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Validate the times and speeds of a table, and convert them to arrays."""
     t, v = real_array("times", times), real_array("speeds", speeds)
     if len(t) != len(v) or len(t) < 2:
         raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
@@ -260,6 +260,7 @@ def _table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray,
 
 
 def _check_scalable(final_speed: float) -> None:
+    """Raise a ValueError for a final speed of 0, which cannot be scaled to another."""
     if final_speed == 0:
         raise ValueError(
             "with_speed: this motion ends at rest, so that no factor leads to another final speed; "
@@ -269,25 +270,26 @@ def _check_scalable(final_speed: float) -> None:
 
 @dataclass(frozen=True)
 class RotationFunction(Rotation):
-    """Rotation about a fixed centre by functions of time, checked once against each other.
+    """Rotation about a fixed centre by functions of time; their consistency is checked at construction.
 
-    Made from a lambda it is not `picklable`: workers and stores need functions defined in a module.
+    Lambdas are not `picklable`: workers and stores need functions defined in a module.
 
     Parameters
     ----------
     angle, speed, acceleration : callable
-        Functions of an array of times [s]: angle [rad], its derivative [rad/s], and the next [rad/s2].
+        Functions of an array of times [s]: angle [rad], speed [rad/s] and acceleration [rad/s2].
     t_end : float
-        Time up to which they are checked and the motion is defined [s].
+        Time up to which the functions are checked and the motion is defined [s].
     breakpoints : tuple of float
-        Times at which one of them, or a derivative, jumps or has a kink [s].
+        Times at which one of the functions, or of their derivatives, jumps or has a kink [s].
     scale : float
-        Factor on all three.
+        Factor that multiplies all three functions.
 
     Raises
     ------
     ValueError
-        If a function is not vectorised or finite, or is not the derivative of the one before.
+        If a function is not vectorised or not finite, or the speed or the acceleration is not the
+        derivative of the function before it.
     """
 
     angle: Callable[[np.ndarray], np.ndarray | float]
@@ -302,33 +304,33 @@ class RotationFunction(Rotation):
             if not callable(getattr(self, name)):
                 raise InvalidValue(name, getattr(self, name), "give a function of the time")
         t_end, scale = positive("t_end", self.t_end, "s"), real("scale", self.scale)
-        keep(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
+        set_fields(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
         check_consistent(self, t_end)
 
     @property
     def final_speed(self) -> float:
-        """The speed at `t_end` [rad/s]."""
-        return float(self.turning(np.array(self.t_end))[1])
+        """Speed at `t_end` [rad/s]."""
+        return float(self.kinematics(np.array(self.t_end))[1])
 
     @property
     def end(self) -> float:
-        """Time up to which the motion was checked [s]."""
+        """Time up to which the motion is defined [s]."""
         return self.t_end
 
-    def turning(self, t: np.ndarray) -> Turning:
+    def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
-        named = ("angle", self.angle), ("speed", self.speed), ("acceleration", self.acceleration)
-        angle, speed, acceleration = (self.scale * _evaluate(name, f, t) for name, f in named)
+        functions = ("angle", self.angle), ("speed", self.speed), ("acceleration", self.acceleration)
+        angle, speed, acceleration = (self.scale * _evaluate(name, f, t) for name, f in functions)
         return angle, speed, acceleration
 
     def with_speed(self, speed: float) -> RotationFunction:
-        """The motion with angle, speed and acceleration in proportion, to end at another speed [rad/s]."""
+        """Copy the rotation with all functions scaled so that it ends at another speed [rad/s]."""
         _check_scalable(self.final_speed)
         return replace(self, scale=self.scale * real("speed", speed, "rad/s") / self.final_speed)
 
 
 def _evaluate(name: str, function: Callable, t: np.ndarray) -> np.ndarray:
-    """Values of a user's function; a constant stands for an array of them."""
+    """Evaluate a user's function, which may return a constant, at times t [s]."""
     try:
         values = np.asarray(function(t), dtype=float)
     except Exception as error:  # whatever a user's function may raise

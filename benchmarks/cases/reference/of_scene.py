@@ -63,5 +63,5 @@ def _monomials(profile: Profile) -> list[mpf]:
 def _tip(tip: bd.TipMass | None, mass: mpf, L: mpf) -> Tip | None:
     if tip is None:
         return None
-    inertias = (tip.inertia, tip.inertia_transverse, tip.axial_inertia)
+    inertias = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     return Tip(mpf(tip.mass) / (mass * L), mpf(tip.offset) / L, *(mpf(j) / (mass * L**3) for j in inertias))
