@@ -225,11 +225,9 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
         """Caliper or mechanism that tables describe."""
-        texts = [
-            f"{part}: {_explain_list(tables[part])}" for part in PARTS if isinstance(tables.get(part), str)
-        ]
+        texts = [part for part in PARTS if isinstance(tables.get(part), str)]
         if texts:
-            raise ConfigError(source, texts)
+            raise ConfigError(source, [f"{part}: {_explain_list(tables[part])}" for part in texts], texts)
         return mechanism_from_dict(tables, source)
 
     def solve(self, design: CaliperInput | MechanismInput) -> PlanarAnswer:
