@@ -16,12 +16,12 @@ from beamdyn.common.app.screens import Handle, Slider
 from beamdyn.common.array_checks import Numbers
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results import plain
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_from
 from brakes.config.forklift import ForkliftInput, StageName
-from brakes.config.wording import in_range, of_file
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import answer_figure, truck
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop

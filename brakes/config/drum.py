@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from brakes.config.wording import in_range, of_file
+from beamdyn.common.edge.wording import in_range, of_file
 from brakes.drum import (
     BrakeResult,
     DrumBrake,

@@ -12,7 +12,7 @@ from pydantic import model_validator
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from brakes.config.wording import of_file
+from beamdyn.common.edge.wording import of_file
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
 from brakes.forklift.vehicle import STANDARD_GRAVITY
 
