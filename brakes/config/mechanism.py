@@ -247,7 +247,9 @@ class MechanismInput(CoreSection):
             tuple(self.bodies), tuple(j for j in joints if j.name not in roles.centring), tuple(loads)
         )
         centring = tuple(j for j in joints if j.name in roles.centring)
-        return Caliper(mechanism, **dict(roles) | {"centring": centring}, name=self.title)
+        given: dict[str, Any] = dict(roles)
+        given |= {"centring": centring, "pads": tuple(given["pads"])}
+        return Caliper(mechanism, **given, name=self.title)
 
     def _check_run(self, loads: Mapping[str, Load]) -> None:
         run = self.run

@@ -1,4 +1,4 @@
-"""Types of the inputs of joints and loads, with their descriptions: checks, files and forms follow from them."""
+"""Types of the inputs of joints and loads, described for checks, files and forms."""
 
 from __future__ import annotations
 

@@ -21,13 +21,13 @@ class MadeSection(CoreSection):
     """A table made from a core class: its keys are the arguments of the class."""
 
     made: ClassVar[type]
-    keys: ClassVar[Mapping[str, str]]  # by argument; those of a pair are named "tip[0]" and "tip[1]"
+    key_of: ClassVar[Mapping[str, str]]  # by argument; those of a pair are named "tip[0]" and "tip[1]"
 
     @property
     def given(self) -> dict[str, Any]:
         """The arguments of the core class."""
         given: dict[str, Any] = {}
-        for name, key in self.keys.items():
+        for name, key in self.key_of.items():
             value, (argument, pair, _) = _core_of(getattr(self, key)), name.partition("[")
             given[argument] = (*given.get(argument, ()), value) if pair else value
         return given
@@ -35,7 +35,7 @@ class MadeSection(CoreSection):
     @cached_property
     def core(self) -> Any:
         """The core object."""
-        with of_file(self.keys):
+        with of_file(self.key_of):
             return self.made(**self.given)
 
 
@@ -63,16 +63,11 @@ def section_of(
     -------
     type of MadeSection
     """
-    fields = fields_of(made, tables)
+    fields: dict[str, Any] = fields_of(made, tables)
     if kind:
         fields = {"kind": (Annotated[Literal[kind], Field(description="kind of motion")], kind)} | fields
-    section = create_model(
-        f"{made.__name__}Input",
-        __base__=base,
-        __doc__=base.__doc__ if base.__doc__ else made.__doc__,
-        **fields,
-    )
-    section.made, section.keys = made, {name: _key(name, hint) for name, hint in _arguments(made).items()}
+    section = create_model(f"{made.__name__}Input", __base__=base, __doc__=made.__doc__, **fields)
+    section.made, section.key_of = made, {name: _key(name, hint) for name, hint in _arguments(made).items()}
     return section
 
 
@@ -93,7 +88,8 @@ def fields_of(
     TypeError
         If an argument is not described.
     """
-    defaults, fields = signature(made).parameters, {}
+    defaults = signature(made).parameters
+    fields: dict[str, Any] = {}
     for name, hint in _arguments(made).items():
         if name in leave_out:
             continue
@@ -139,8 +135,9 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
+    """Key of an argument; those of a pair "tip" are "tip_x" and "tip_y" unless others are described."""
     described = description(hint)
-    return described.key or name if described else name
+    return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 
 
 def _is_described(hint: Any) -> bool:
