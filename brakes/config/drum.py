@@ -85,28 +85,17 @@ else:
 class LoadInput(Section):
     """[load]: the force on the shoes, or the torque or pressure that the brake is to give: exactly one."""
 
-    force: Annotated[float, Quantity("N", symbol="P", meaning="force on each shoe", above=0)] | None = None
-    cylinder_bore: (
-        Annotated[
-            float,
-            Quantity("m", symbol="d", meaning="bore of the wheel cylinder, with line_pressure", above=0),
-        ]
-        | None
-    ) = None
-    line_pressure: (
-        Annotated[
-            float, Quantity("Pa", symbol="p_h", meaning="pressure in the line, with cylinder_bore", above=0)
-        ]
-        | None
-    ) = None
-    torque: (
-        Annotated[float, Quantity("N m", symbol="M", meaning="torque that the brake is to give", above=0)]
-        | None
-    ) = None
-    peak_pressure: (
-        Annotated[float, Quantity("Pa", symbol="p_max", meaning="largest pressure on any lining", above=0)]
-        | None
-    ) = None
+    force: Annotated[float | None, Quantity("N", "P", "force on each shoe", above=0)] = None
+    cylinder_bore: Annotated[
+        float | None, Quantity("m", "d", "bore of the wheel cylinder, with line_pressure", above=0)
+    ] = None
+    line_pressure: Annotated[
+        float | None, Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
+    ] = None
+    torque: Annotated[float | None, Quantity("N m", "M", "torque that the brake is to give", above=0)] = None
+    peak_pressure: Annotated[
+        float | None, Quantity("Pa", "p_max", "largest pressure on any lining", above=0)
+    ] = None
 
     @model_validator(mode="after")
     def _one(self) -> LoadInput:
@@ -140,8 +129,7 @@ class DrumBrakeInput(Section):
         "forward"
     )
     friction: Annotated[
-        float,
-        Quantity(symbol="mu", meaning="friction of the linings", least=0, most=10, remedy="35 % is 0.35"),
+        float, Quantity("", "mu", "friction of the linings", least=0, most=10, remedy="35 % is 0.35")
     ]
 
 

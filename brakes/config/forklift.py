@@ -102,29 +102,19 @@ else:
 class ForcesInput(Section):
     """[forces]: the inputs of the forces in one brake."""
 
-    piston_force: Annotated[
-        float, Quantity("N", symbol="P_T", meaning="force of the piston on the trailing shoe", above=0)
-    ]
-    torque: (
-        Annotated[
-            float,
-            Quantity(
-                "N m", symbol="T", meaning="torque of one brake; if not given, that of the stop", above=0
-            ),
-        ]
-        | None
-    ) = None
-    lining_friction: (
-        Annotated[
-            float,
-            Quantity(
-                symbol="mu_l",
-                meaning="friction of the linings: compared with what the torque needs, or gives the torque",
-                above=0,
-            ),
-        ]
-        | None
-    ) = None
+    piston_force: Annotated[float, Quantity("N", "P_T", "force of the piston on the trailing shoe", above=0)]
+    torque: Annotated[
+        float | None, Quantity("N m", "T", "torque of one brake; if not given, that of the stop", above=0)
+    ] = None
+    lining_friction: Annotated[
+        float | None,
+        Quantity(
+            "",
+            "mu_l",
+            "friction of the linings: compared with what the torque needs, or gives the torque",
+            above=0,
+        ),
+    ] = None
 
 
 class ForkliftInput(Section):

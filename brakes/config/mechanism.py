@@ -125,31 +125,23 @@ _QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuant
 class RunInput(Section):
     """[run]: the stroke, the finger's force, and what else is to be computed."""
 
-    finger: Annotated[
-        float, Quantity("N", symbol="P", meaning="force of the finger on the hand lever", above=0)
-    ] = 40.0
+    finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[str | None, Field(description="load that drives a stroke of a plain mechanism")] = None
-    travel: Annotated[float, TravelQuantity("m", meaning="travel of the cable or of the driver")] | None = (
-        None
-    )
+    travel: Annotated[float | None, TravelQuantity("m", "", "travel of the cable or of the driver")] = None
     points: Annotated[int, Field(description="positions of the stroke", ge=2)] = 100
-    friction: Annotated[float, Quantity(symbol="mu", meaning="coefficient of friction", least=0)] = 0.0
-    wear: list[Annotated[float, Quantity("m", meaning="thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
+    friction: Annotated[float, Quantity("", "mu", "coefficient of friction", least=0)] = 0.0
+    wear: list[Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
 
 
 class CaliperStopInput(Section):
     """[stop]: the vehicle that this brake alone stops."""
 
-    mass: Annotated[float, Quantity("kg", symbol="M", meaning="mass, wheels included", above=0)]
-    speed: Annotated[float, Quantity("m/s", symbol="v", meaning="speed", least=0)]
-    friction: Annotated[float, Quantity(symbol="mu", meaning="friction of pads and rim", above=0)]
-    wheel_inertia: Annotated[
-        float, Quantity("kg m2", symbol="J", meaning="moment of inertia of all wheels", least=0)
-    ] = 0.0
-    tyre_radius: Annotated[float, Quantity("m", symbol="R", meaning="rolling radius", above=0)] | None = None
-    rim_radius: Annotated[float, Quantity("m", symbol="r", meaning="radius at the pads", above=0)] | None = (
-        None
-    )
+    mass: Annotated[float, Quantity("kg", "M", "mass, wheels included", above=0)]
+    speed: Annotated[float, Quantity("m/s", "v", "speed", least=0)]
+    friction: Annotated[float, Quantity("", "mu", "friction of pads and rim", above=0)]
+    wheel_inertia: Annotated[float, Quantity("kg m2", "J", "moment of inertia of all wheels", least=0)] = 0.0
+    tyre_radius: Annotated[float | None, Quantity("m", "R", "rolling radius", above=0)] = None
+    rim_radius: Annotated[float | None, Quantity("m", "r", "radius at the pads", above=0)] = None
 
     def with_force(self, pad_force: float) -> StoppingDistance:
         """The stopping distance with a force on each pad [N]."""
@@ -192,23 +184,14 @@ def _model_of(name: str) -> type[CaliperInput]:
     design = NAMED[name]
     dimensions = section_of(design, tables=_QUANTITIES, base=DimensionsInput)
     return create_model(
-        f"{design.__name__}Input",
-        __base__=CaliperInput,
-        __doc__=CaliperInput.__doc__,
-        dimensions=(dimensions, dimensions()),
+        f"{design.__name__}Input", __base__=CaliperInput, dimensions=(dimensions, dimensions())
     )
 
 
-# Joints and loads ---------------------------------------------------------------------------------
-
-
-@cache
-def section_of_part(part: type[Part]) -> type[MadeSection]:
-    """The table of a joint or load."""
-    return section_of(part, tables=_QUANTITIES)
-
-
 # Any mechanism ------------------------------------------------------------------------------------
+
+
+SECTIONS = {part.key(): section_of(part, tables=_QUANTITIES) for part in (*JOINTS, *LOADS)}  # by table
 
 
 class RolesInput(Section):
@@ -271,7 +254,7 @@ class MechanismInput(CoreSection):
 _ROLES = fields_of(Caliper, leave_out=("mechanism", "centring", "name"))
 _Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_ROLES)
 _TABLES: dict[str, Any] = {"caliper": (_Roles | None, None)} | {
-    part.key(): (list[section_of_part(part)], []) for part in (*JOINTS, *LOADS)
+    key: (list[section], []) for key, section in SECTIONS.items()
 }
 CompleteMechanismInput = create_model(
     "CompleteMechanismInput", __base__=MechanismInput, __module__=__name__, **_TABLES

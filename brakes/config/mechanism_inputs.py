@@ -10,11 +10,11 @@ from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
 from brakes.config.mechanism import (
+    SECTIONS,
     CaliperInput,
     CompleteMechanismInput,
     PointQuantity,
     named,
-    section_of_part,
 )
 from brakes.planar import JOINTS, LOADS, Part
 from brakes.planar.points import Point as Coordinates
@@ -22,7 +22,7 @@ from brakes.planar.points import Point as Coordinates
 
 def _keys(part: type[Part]) -> str:
     """The kind of part, and its required and optional keys, as help text."""
-    fields, keys = section_of_part(part).model_fields, {True: [], False: []}
+    fields, keys = SECTIONS[part.key()].model_fields, {True: [], False: []}
     for key, described in descriptions(part).items():
         otherwise = described.meaning.partition("; ")[2]  # such as "the ground if not given"
         keys[fields[key].is_required()].append(f"{key} ({otherwise})" if otherwise else key)
