@@ -61,7 +61,7 @@ class Shoe:
         Annotated[Numbers, Described("rad", "alpha1", _START, key="lining_start")],
         Annotated[Numbers, Described("rad", "alpha2", _END, key="lining_end")],
     ]
-    pivot: tuple[
+    pivot: tuple[  # files give b and c, the pin is at (b, -c)
         Annotated[Numbers, Described("m", "b", _OFFSET, key="pivot_offset")],
         Annotated[Numbers, Described("m", "c", _DEPTH, above=0, key="pivot_depth")],
     ]
