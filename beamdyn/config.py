@@ -192,15 +192,13 @@ class StiffnessInput(_BeamInput):
 
     mass_per_length: Annotated[Along, Varying("kg/m", "rho A", "mass per length", above=0)]
     bending_stiffness: Annotated[Along, Varying("N m2", "E I", "bending stiffness", above=0)]
-    axial_stiffness: Annotated[Along, Varying("N", "E A", "axial stiffness, for stretch", above=0)] | None = (
+    axial_stiffness: Annotated[Along | None, Varying("N", "E A", "axial stiffness, for stretch", above=0)] = (
         None
     )
-    outer_fibre: (
-        Annotated[
-            Along, Varying("m", "c", "distance of the outer fibre from the neutral axis, for strain", above=0)
-        ]
-        | None
-    ) = None
+    outer_fibre: Annotated[
+        Along | None,
+        Varying("m", "c", "distance of the outer fibre from the neutral axis, for strain", above=0),
+    ] = None
 
     @cached_property
     def core(self) -> Beam:
@@ -250,9 +248,7 @@ class ModelInput(Section):
 
     damping_ratio: Annotated[
         float,
-        Quantity(
-            symbol="zeta", meaning="modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"
-        ),
+        Quantity("", "zeta", "modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"),
     ] = Scene.damping_ratio
     gravity: Annotated[float, Quantity("m/s2", "g", "gravity")] = Scene.gravity
     stretch: Annotated[bool, Field(description="keep the stretch of the beam and its Coriolis coupling")] = (

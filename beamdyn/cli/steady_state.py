@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
@@ -14,9 +14,6 @@ from beamdyn.cli.values import (
     parse_speeds,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
-
-if TYPE_CHECKING:
-    pass
 
 
 @app.command

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from types import NoneType
+from typing import Any, Literal, get_origin
 
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, in_unit, refuse
+from beamdyn.common.described import Described, described_hints, description, kinds_of
 
 Numbers = Any  # a float, or an array of floats: one value a case
 
@@ -45,6 +48,26 @@ def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
     except (TypeError, ValueError):
         raise InvalidValue(name, value, "give two numbers" + in_unit(unit), unit=unit) from None
     return numbers(f"{name}[0]", first, unit), numbers(f"{name}[1]", second, unit)
+
+
+def keep_checked(core: object) -> None:
+    """Replace the described numbers of a frozen dataclass by floats or arrays of floats; None stays.
+
+    Raises
+    ------
+    InvalidValue
+        If one is not finite, is negative, or is 0 where its description excludes that.
+    """
+    for name, hint in described_hints(type(core)).items():
+        value, (kind, *others), described = getattr(core, name), kinds_of(hint), description(hint)
+        if described is None or get_origin(kind) is Literal or (value is None and NoneType in others):
+            continue
+        checked = pair if get_origin(kind) is tuple else _check_of(described)
+        object.__setattr__(core, name, checked(name, value, described.unit))
+
+
+def _check_of(described: Described) -> Callable[[str, Any, str], Any]:
+    return positive if described.above == 0 else not_negative if described.least == 0 else numbers
 
 
 def together(**values: Any) -> None:

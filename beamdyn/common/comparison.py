@@ -7,8 +7,31 @@ from dataclasses import dataclass
 from beamdyn.common.digits import supported
 
 
+class Verdict:
+    """Whether a published number and ours agree, as far as that was to be expected."""
+
+    reason: str
+
+    @property
+    def agrees(self) -> bool:
+        """Whether they agree."""
+        raise NotImplementedError
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether they agree, or differ for a known reason."""
+        return self.agrees != bool(self.reason)
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        if self.agrees:
+            return "agrees" if not self.reason else "agrees, which is unexpected"
+        return f"differs: {self.reason or 'unexpected'}"
+
+
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Verdict):
     """A published value and the computed one.
 
     Parameters
@@ -53,18 +76,6 @@ class Comparison:
     def agrees(self) -> bool:
         """Whether the deviation is within the bound."""
         return abs(self.deviation) <= self.bound
-
-    @property
-    def as_expected(self) -> bool:
-        """Whether they agree, or differ for a known reason."""
-        return self.agrees != bool(self.reason)
-
-    @property
-    def verdict(self) -> str:
-        """In words."""
-        if self.agrees:
-            return "agrees" if not self.reason else "agrees, which is unexpected"
-        return f"differs: {self.reason or 'unexpected'}"
 
     def cells(self) -> list[str]:
         """Its row of the table."""

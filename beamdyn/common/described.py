@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
+from functools import cache
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+
+from beamdyn.common.checks import not_negative, positive, real
 
 
 @dataclass(frozen=True)
@@ -27,6 +33,8 @@ class Described:
         Its key in files, if that is not the name of the argument.
     required : bool
         Whether files must give it, even where the argument has a default.
+    default : object, optional
+        Value where files leave it out, though the argument has no default.
     """
 
     unit: str = ""
@@ -40,6 +48,7 @@ class Described:
     remedy: str = ""
     key: str = ""
     required: bool = False
+    default: object = None
 
     @property
     def bounds(self) -> str:
@@ -51,3 +60,44 @@ class Described:
             "at most": self.most,
         }
         return ", ".join(f"{word} {bound:g}" for word, bound in words.items() if bound is not None)
+
+    def check(self, name: str, value: Any) -> None:
+        """Refuse a value that is no finite number, is negative, or is 0 where the bounds exclude that.
+
+        Raises
+        ------
+        InvalidValue
+            With the name.
+        """
+        bounded = positive if self.above == 0 else not_negative if self.least == 0 else real
+        bounded(name, value, self.unit, self.remedy)
+
+
+def description(hint: Any) -> Described | None:
+    """Description in an annotation, or in one of its parts."""
+    parts = (hint, *get_args(hint))
+    found = (entry for part in parts for entry in getattr(part, "__metadata__", ()))
+    return next((entry for entry in found if isinstance(entry, Described)), None)
+
+
+def kinds_of(hint: Any) -> list[Any]:
+    """Types that an annotation allows, without their descriptions."""
+    if get_origin(hint) is Annotated:
+        return kinds_of(get_args(hint)[0])
+    if get_origin(hint) in (Union, UnionType):
+        return [kind for part in get_args(hint) for kind in kinds_of(part)]
+    return [hint]
+
+
+@cache
+def described_hints(made: Callable[..., Any]) -> dict[str, Any]:
+    """Annotations of the described arguments of a dataclass or function, in their order."""
+    hints = get_type_hints(made, include_extras=True)
+    return {name: hint for name, hint in hints.items() if description(hint)}
+
+
+@cache
+def descriptions(made: Callable[..., Any]) -> dict[str, Described]:
+    """Descriptions of the arguments of a dataclass or function, in their order."""
+    hints = described_hints(made)
+    return {name: found for name, hint in hints.items() if (found := description(hint))}

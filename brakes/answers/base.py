@@ -65,9 +65,10 @@ class BrakeType(ABC, Generic[FileModel]):
 
     1. Its mechanics is a room of its own, ``brakes/name``, entered among the layers in ``pyproject.toml``:
        SI floats or arrays in, a frozen `Result` out, no input or output.
-    2. ``brakes/config/name.py`` describes its file: a `Section` with a field for each table, which is a
-       `Section` itself; each number is described by a `Quantity`. The form, the inputs that can be swept
-       and the messages about mistakes follow from this description.
+    2. Each input is described once: `Described` in the annotation of a field of a core class, from which
+       `section_of` makes the table of the file, or `Quantity` in a `Section` where there is no such class.
+       ``brakes/config/name.py`` has the `Section` with a field for each table.  The form, the inputs that
+       can be swept and the messages about mistakes follow from it; `keep_checked` checks the core's fields.
     3. ``brakes/drawings/name.py`` draws the result.
     4. ``brakes/answers/name.py`` derives from `Answer` and from `BrakeType`, sets the attributes below and
        writes `solve` and `outputs`. Where the mechanics takes arrays derive from `ArrayBrakeType`, which

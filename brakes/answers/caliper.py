@@ -15,11 +15,13 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Slider
+from beamdyn.common.described import descriptions
 from beamdyn.common.edge.config import ConfigError, parse, read
 from beamdyn.common.edge.input_sweep import Output, numbers
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.wording import in_range
 from brakes.answers.base import TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
@@ -32,10 +34,8 @@ from brakes.answers.planar import (
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
 from brakes.config.mechanism import CaliperInput, MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
-from brakes.config.wording import in_range
 from brakes.drawings.caliper import caliper_figure
 from brakes.planar import AssemblyError, Mechanism, OutOfReachError, solve
-from brakes.planar.described import inputs_of
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _STROKE_HEADS = (
@@ -225,11 +225,9 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
         """Caliper or mechanism that tables describe."""
-        texts = [
-            f"{part}: {_explain_list(tables[part])}" for part in PARTS if isinstance(tables.get(part), str)
-        ]
+        texts = [part for part in PARTS if isinstance(tables.get(part), str)]
         if texts:
-            raise ConfigError(source, texts)
+            raise ConfigError(source, [f"{part}: {_explain_list(tables[part])}" for part in texts], texts)
         return mechanism_from_dict(tables, source)
 
     def solve(self, design: CaliperInput | MechanismInput) -> PlanarAnswer:
@@ -294,7 +292,7 @@ def names_table(name: str) -> RenderableType:
     design = NAMED[name]()
     rows = [
         (key, _show_dimension(getattr(design, key), entry.unit), entry.meaning)
-        for key, entry in inputs_of(NAMED[name]).items()
+        for key, entry in descriptions(NAMED[name]).items()
     ]
     return table(f"{name}: {design.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))
 

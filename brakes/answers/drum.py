@@ -14,7 +14,7 @@ from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_from
+from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult
@@ -22,27 +22,27 @@ from brakes.drum import BrakeResult
 _MM, _MPA = 1e-3, 1e6
 
 _WHOLE = (
-    Output("torque", "torque of the brake", lambda r: r.torque, "N m"),
-    Output("c_star", "brake factor C* = torque / (force radius)", lambda r: r.c_star),
-    Output("c_star_slope", "dC*/dmu", lambda r: r.c_star_slope),
-    Output("force", "force on each shoe", lambda r: r.force, "N"),
-    Output("peak_pressure", "largest pressure on a lining", lambda r: r.peak_pressure, "MPa", _MPA),
-    Output("locking_friction", "friction at self-locking", lambda r: r.locking_friction),
-    Output("margin", "margin to self-locking, 1 - mu / locking mu", lambda r: r.margin),
+    take("torque", "torque of the brake", "N m"),
+    take("c_star", "brake factor C* = torque / (force radius)"),
+    take("c_star_slope", "dC*/dmu"),
+    take("force", "force on each shoe", "N"),
+    take("peak_pressure", "largest pressure on a lining", "MPa", _MPA),
+    take("locking_friction", "friction at self-locking"),
+    take("margin", "margin to self-locking, 1 - mu / locking mu"),
 )
 _SHOE = (
-    Output("torque", "torque", lambda s: s.torque, "N m"),
-    Output("c_star", "shoe factor C*", lambda s: s.c_star),
-    Output("c_star_slope", "dC*/dmu", lambda s: s.c_star_slope),
-    Output("peak_pressure", "largest pressure", lambda s: s.peak_pressure, "MPa", _MPA),
-    Output("normal", "resultant of the pressure N", lambda s: _size(s.normal), "N"),
-    Output("tangential", "resultant of the friction T", lambda s: _size(s.tangential), "N"),
-    Output("pin", "pin reaction R", lambda s: _size(s.pin_reaction), "N"),
+    take("torque", "torque", "N m"),
+    take("c_star", "shoe factor C*"),
+    take("c_star_slope", "dC*/dmu"),
+    take("peak_pressure", "largest pressure", "MPa", _MPA),
+    Output("normal", "resultant of the pressure N", lambda s: resultant(s.normal), "N"),
+    Output("tangential", "resultant of the friction T", lambda s: resultant(s.tangential), "N"),
+    Output("pin", "pin reaction R", lambda s: resultant(s.pin_reaction), "N"),
     Output("pin_x", "pin reaction, towards the shoe's side", lambda s: s.pin_reaction[..., 0], "N"),
     Output("pin_y", "pin reaction, upward", lambda s: s.pin_reaction[..., 1], "N"),
-    Output("effective_arm", "effective arm of the friction", lambda s: s.effective_arm, "mm", _MM),
-    Output("locking_friction", "friction at self-locking", lambda s: s.locking_friction),
-    Output("closure", "residual moment / (P (a + c))", lambda s: s.closure),
+    take("effective_arm", "effective arm of the friction", "mm", _MM),
+    take("locking_friction", "friction at self-locking"),
+    take("closure", "residual moment / (P (a + c))"),
 )
 
 
@@ -108,10 +108,6 @@ class DrumAnswer(Answer):
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings."""
         return self.result.to_dict()
-
-
-def _size(vector: np.ndarray) -> np.ndarray:
-    return np.hypot(vector[..., 0], vector[..., 1])
 
 
 def _on_rim(r: float, angle: float) -> tuple[float, float]:

@@ -16,12 +16,12 @@ from beamdyn.common.app.screens import Handle, Slider
 from beamdyn.common.array_checks import Numbers
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results import plain
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
-from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_from
+from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.forklift import ForkliftInput, StageName
-from brakes.config.wording import in_range, of_file
 from brakes.drawings.duo_servo import duo_servo, free_bodies
 from brakes.drawings.forklift import answer_figure, truck
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
@@ -29,74 +29,63 @@ from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow
 _MM, _KN, _DEG = 1e-3, 1e3, pi / 180
 
 _VEHICLE = (
-    Output("distance", "stopping distance, from the driver's reaction", lambda s: s.distance, "m"),
-    Output("time", "time to rest", lambda s: s.time, "s"),
-    Output("acceleration", "acceleration, wheels locked", lambda s: s.acceleration, "m/s2"),
-    Output("torque_per_brake", "torque of one brake", lambda s: s.torque_per_brake, "N m"),
-    Output("reaction_distance", "distance in the reaction time", lambda s: s.reaction_distance, "m"),
-    Output("rise_distance", "distance while the force rises", lambda s: s.rise_distance, "m"),
-    Output("braking_distance", "distance with the full force", lambda s: s.braking_distance, "m"),
-    Output("speed_lost_in_rise", "speed lost while the force rises", lambda s: s.speed_lost_in_rise, "m/s"),
-    Output(
-        "speed_gained_coasting",
-        "speed a coasting truck would gain in reaction, not counted",
-        lambda s: s.speed_gained_coasting,
-        "m/s",
-    ),
-    Output("front_load", "front axle's load, sliding", lambda s: s.front_load, "kN", _KN),
-    Output("rear_load", "rear axle's load, sliding", lambda s: s.rear_load, "kN", _KN),
-    Output("standing_front_load", "front axle's load, at rest", lambda s: s.standing_front_load, "kN", _KN),
-    Output("standing_rear_load", "rear axle's load, at rest", lambda s: s.standing_rear_load, "kN", _KN),
+    take("distance", "stopping distance, from the driver's reaction", "m"),
+    take("time", "time to rest", "s"),
+    take("acceleration", "acceleration, wheels locked", "m/s2"),
+    take("torque_per_brake", "torque of one brake", "N m"),
+    take("reaction_distance", "distance in the reaction time", "m"),
+    take("rise_distance", "distance while the force rises", "m"),
+    take("braking_distance", "distance with the full force", "m"),
+    take("speed_lost_in_rise", "speed lost while the force rises", "m/s"),
+    take("speed_gained_coasting", "speed a coasting truck would gain in reaction, not counted", "m/s"),
+    take("front_load", "front axle's load, sliding", "kN", _KN),
+    take("rear_load", "rear axle's load, sliding", "kN", _KN),
+    take("standing_front_load", "front axle's load, at rest", "kN", _KN),
+    take("standing_rear_load", "rear axle's load, at rest", "kN", _KN),
 )
 
 _MOTION = (
-    Output("seating_turn", "stage 1: turn of each shoe", lambda m: m.seating_turn, "deg", _DEG),
-    Output("seating_travel", "stage 1: travel of each piston", lambda m: m.seating_travel, "mm", _MM),
-    Output("drum_turn", "stage 2: turn of drum and shoes", lambda m: m.drum_turn, "deg", _DEG),
-    Output("right_travel", "right piston at the end, outward", lambda m: m.right_travel, "mm", _MM),
-    Output("left_travel", "left piston at the end, outward", lambda m: m.left_travel, "mm", _MM),
-    Output("tip_gap", "least gap of the shoe's tip to the drum", lambda m: m.tip_gap, "mm", _MM),
-    Output(
-        "lining_penetration",
-        "a concentric lining enters the drum by",
-        lambda m: m.lining_penetration,
-        "mm",
-        _MM,
-    ),
-    Output("penetration_angle", "... at, up from the horizontal", lambda m: m.penetration_angle, "deg", _DEG),
+    take("seating_turn", "stage 1: turn of each shoe", "deg", _DEG),
+    take("seating_travel", "stage 1: travel of each piston", "mm", _MM),
+    take("drum_turn", "stage 2: turn of drum and shoes", "deg", _DEG),
+    take("right_travel", "right piston at the end, outward", "mm", _MM),
+    take("left_travel", "left piston at the end, outward", "mm", _MM),
+    take("tip_gap", "least gap of the shoe's tip to the drum", "mm", _MM),
+    take("lining_penetration", "a concentric lining enters the drum by", "mm", _MM),
+    take("penetration_angle", "... at, up from the horizontal", "deg", _DEG),
 )
 
 _ARMS = (
-    Output("a1", "arm of P_L", lambda v: v.a1, "mm", _MM),
-    Output("a2", "arm of P_T", lambda v: v.a2, "mm", _MM),
+    take("a1", "arm of P_L", "mm", _MM),
+    take("a2", "arm of P_T", "mm", _MM),
     Output("b", "arm of Q", lambda v: v.b1, "mm", _MM),
-    Output("alpha1", "angle of P_L", lambda v: v.alpha1, "deg", _DEG),
-    Output("alpha2", "angle of P_T", lambda v: v.alpha2, "deg", _DEG),
-    Output("gamma", "angle of Q", lambda v: v.gamma, "deg", _DEG),
+    take("alpha1", "angle of P_L", "deg", _DEG),
+    take("alpha2", "angle of P_T", "deg", _DEG),
+    take("gamma", "angle of Q", "deg", _DEG),
 )
 
 _FORCES = (
-    Output("torque", "torque of the brake T", lambda f: f.torque, "N m"),
-    Output("piston_force", "piston on the trailing shoe P_T", lambda f: f.piston_force, "N"),
-    Output("A", "leading shoe: drum's normal force A", lambda f: f.A, "N"),
-    Output("B", "leading shoe: friction force B", lambda f: f.B, "N"),
-    Output("C", "trailing shoe: drum's normal force C", lambda f: f.C, "N"),
-    Output("D", "trailing shoe: friction force D", lambda f: f.D, "N"),
-    Output("Q", "adjuster Q", lambda f: f.Q, "N"),
-    Output("P_L", "leading shoe on its piston P_L", lambda f: f.P_L, "N"),
-    Output("lining_friction", "friction of the lining, B/A = D/C", lambda f: f.lining_friction),
-    Output("locking_friction", "friction at self-locking", lambda f: f.locking_friction),
-    Output("margin", "margin to self-locking", lambda f: f.margin),
-    Output("c_star", "brake factor C* = T / (P_T r)", lambda f: f.c_star),
-    Output("c_star_slope", "dC*/dmu", lambda f: f.c_star_slope),
-    Output("leading_share", "share of the leading shoe in the torque", lambda f: f.leading_share),
-    Output("trailing_share", "share of the trailing shoe", lambda f: f.trailing_share),
+    take("torque", "torque of the brake T", "N m"),
+    take("piston_force", "piston on the trailing shoe P_T", "N"),
+    take("A", "leading shoe: drum's normal force A", "N"),
+    take("B", "leading shoe: friction force B", "N"),
+    take("C", "trailing shoe: drum's normal force C", "N"),
+    take("D", "trailing shoe: friction force D", "N"),
+    take("Q", "adjuster Q", "N"),
+    take("P_L", "leading shoe on its piston P_L", "N"),
+    take("lining_friction", "friction of the lining, B/A = D/C"),
+    take("locking_friction", "friction at self-locking"),
+    take("margin", "margin to self-locking"),
+    take("c_star", "brake factor C* = T / (P_T r)"),
+    take("c_star_slope", "dC*/dmu"),
+    take("leading_share", "share of the leading shoe in the torque"),
+    take("trailing_share", "share of the trailing shoe"),
     Output(
         "bolt_x", "cylinder bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
     ),
     Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
-    Output("bolts", "cylinder bolts, resultant", lambda f: _size(f.bolt_force), "N"),
-    Output("residual", "residual of the equations, over T/r", lambda f: f.residual),
+    Output("bolts", "cylinder bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
+    take("residual", "residual of the equations, over T/r"),
 )
 
 
@@ -108,10 +97,6 @@ def stage_outputs(stages: Sequence[StageName]) -> tuple[Output, ...]:
         "forces": take_from(lambda answer: answer.forces, _FORCES),
     }
     return tuple(output for stage in stages for output in groups[stage])
-
-
-def _size(vector: np.ndarray) -> np.ndarray:
-    return np.hypot(vector[..., 0], vector[..., 1])
 
 
 @dataclass(frozen=True)
@@ -310,7 +295,7 @@ def _stop(design: ForkliftInput) -> Stop:
 def _forces(design: ForkliftInput, motion: ShoeMotion | None, torque: Numbers | None) -> InternalForces:
     levers = motion.levers if motion is not None else design.levers and design.levers.core
     assert design.forces is not None and levers is not None
-    with of_file({"friction = ": "lining_friction = "}):
+    with of_file({"friction": "lining_friction"}):
         return internal_forces(
             levers,
             piston_force=design.forces.piston_force,

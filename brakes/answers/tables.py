@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,16 @@ from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_r
 from beamdyn.common.edge.tables import table
 
 _SHOWN = 24  # rows of a sweep
+
+
+def take(name: str, words: str, unit: str = "", scale: float = 1.0) -> Output:
+    """The output that is the attribute of its name."""
+    return Output(name, words, attrgetter(name), unit, scale)
+
+
+def resultant(vector: np.ndarray) -> np.ndarray:
+    """Length of vectors (..., 2)."""
+    return np.hypot(vector[..., 0], vector[..., 1])
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:

@@ -9,7 +9,8 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.checks import count, not_negative, positive, real_array
+from beamdyn.common.checks import count, not_negative, one_of, positive, real_array
+from beamdyn.common.described import Described
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
 from brakes.planar import (
     Equilibrium,
@@ -20,24 +21,17 @@ from brakes.planar import (
     solve_with_friction,
     stroke,
 )
-from brakes.planar.described import Described, check_inputs
+from brakes.planar.inputs import check_inputs
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # N, a firm squeeze
 _NOISE = 1e-9  # rounding, over the largest force
 _CLOSED = 1e-12  # Newton's last step, over the travel
 
-Split = Annotated[
-    Literal["equal force", "equal work"],
-    Described("choice", "how the rim loads the two pads", choices=("equal force", "equal work")),
-]
-LeverRatio = Annotated[
-    float, Described("number", "travel of the finger over that of the cable", bound="positive")
-]
-Clearance = Annotated[
-    float, Described("number", "mean gap between pad and rim, open", unit="m", bound="positive")
-]
-PivotRadius = Annotated[float, Described("number", "radius of the pivots", unit="m", bound="not negative")]
+Split = Annotated[Literal["equal force", "equal work"], Described(meaning="how the rim loads the two pads")]
+LeverRatio = Annotated[float, Described(meaning="travel of the finger over that of the cable", above=0)]
+Clearance = Annotated[float, Described("m", meaning="mean gap between pad and rim, open", above=0)]
+PivotRadius = Annotated[float, Described("m", meaning="radius of the pivots", least=0)]
 
 
 class _Forces(NamedTuple):
@@ -81,8 +75,11 @@ class Caliper:
 
     mechanism: Mechanism
     centring: tuple[Joint, ...] = ()
-    cable: str = CABLE
-    pads: tuple[str, str] = (RIGHT_PAD, LEFT_PAD)
+    cable: Annotated[str, Described(meaning="load that closes the brake", required=True)] = CABLE
+    pads: Annotated[tuple[str, str], Described(meaning="forces on the right and left pad", required=True)] = (
+        RIGHT_PAD,
+        LEFT_PAD,
+    )
     split: Split = "equal force"
     lever_ratio: LeverRatio = 4.0
     clearance: Clearance = 1.25e-3
@@ -91,6 +88,7 @@ class Caliper:
 
     def __post_init__(self) -> None:
         check_inputs(self)
+        one_of("split", self.split, ("equal force", "equal work"))
         for name in (self.cable, *self.pads):
             self.mechanism.load(name).with_magnitude(None)  # raises if it is a spring
         if len({self.cable, *self.pads}) < 3:

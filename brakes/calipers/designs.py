@@ -22,15 +22,15 @@ from brakes.calipers.caliper import (
     Split,
 )
 from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
-from brakes.planar.described import Described
+from brakes.planar.inputs import DescribedPoint
 from brakes.planar.points import Point
 
 MM = 1e-3
 RIGHT, LEFT = "right arm", "left arm"
 
 
-def _point(meaning: str) -> Described:
-    return Described("point", meaning, unit="m")
+def _point(meaning: str) -> DescribedPoint:
+    return DescribedPoint("m", meaning=meaning)
 
 
 @dataclass(frozen=True, kw_only=True)

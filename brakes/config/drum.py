@@ -6,14 +6,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
-from brakes.config.wording import in_range, of_file
+from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
+from beamdyn.common.edge.wording import in_range, of_file
 from brakes.drum import (
     BrakeResult,
     DrumBrake,
@@ -58,107 +59,43 @@ def drum_from_dict(data: Mapping[str, Any], source: str = "drum brake") -> DrumI
     return validated(DrumInput, data, source)
 
 
-FaceWidth = Annotated[
-    float, Quantity("m", symbol="w", meaning="width of the lining along the drum's axis", above=0)
-]
-LiningStart = Annotated[
-    float,
-    Quantity("rad", symbol="alpha1", meaning="start of the lining, from straight down, where the pin is"),
-]
-LiningEnd = Annotated[
-    float, Quantity("rad", symbol="alpha2", meaning="end of the lining, from straight down")
-]
-PivotOffset = Annotated[
-    float,
-    Quantity("m", symbol="b", meaning="distance of the pin from the brake's line of symmetry, to its shoe"),
-]
-PivotDepth = Annotated[
-    float, Quantity("m", symbol="c", meaning="depth of the pin below the drum's centre", above=0)
-]
-ForceArm = Annotated[
-    float, Quantity("m", symbol="a", meaning="height of the actuating force above the drum's centre")
-]
-PressureZero = Annotated[
-    Literal["axis", "pivot"],
-    Field(description="line where the pressure vanishes: straight down (axis), or through the pin (pivot)"),
-]
-
-_KEYS = {
-    "lining[0]": "lining_start",
-    "lining[1]": "lining_end",
-    "pivot[0]": "pivot_offset",
-    "pivot[1]": "pivot_depth",
-}
-
-
-class ShoeInput(CoreSection):
+class ShoeInput(MadeSection):
     """[shoe]: a shoe on a fixed pin, described as if it lay on the right of the drum's centre."""
 
-    drum_radius: Annotated[float, Quantity("m", symbol="r", meaning="inner radius of the drum", above=0)]
-    face_width: FaceWidth
-    lining_start: LiningStart
-    lining_end: LiningEnd
-    pivot_offset: PivotOffset
-    pivot_depth: PivotDepth
-    force_arm: ForceArm
-    pressure_zero: PressureZero = Shoe.pressure_zero
-
-    @cached_property
-    def core(self) -> Shoe:
-        """The shoe."""
-        with of_file(_KEYS):
-            return Shoe(
-                self.drum_radius,
-                self.face_width,
-                (self.lining_start, self.lining_end),
-                (self.pivot_offset, -self.pivot_depth),
-                self.force_arm,
-                self.pressure_zero,
-            )
+    @property
+    def given(self) -> dict[str, Any]:
+        """The arguments of `Shoe`, whose pin lies at minus its depth."""
+        given = super().given
+        offset, depth = given["pivot"]
+        return given | {"pivot": (offset, -depth)}
 
 
-class SecondShoeInput(Section):
-    """[second_shoe]: the inputs in which the second shoe differs from [shoe]."""
+_Shoe = section_of(Shoe, base=ShoeInput)
+_SHOE = fields_of(Shoe, leave_out=("drum_radius", "pressure_zero"))
+_DIFFERENCES: dict[str, Any] = {key: (annotation | None, None) for key, (annotation, _) in _SHOE.items()}
 
-    face_width: FaceWidth | None = None
-    lining_start: LiningStart | None = None
-    lining_end: LiningEnd | None = None
-    pivot_offset: PivotOffset | None = None
-    pivot_depth: PivotDepth | None = None
-    force_arm: ForceArm | None = None
-
-    def completed_by(self, first: ShoeInput) -> Shoe:
-        """The second shoe: the inputs given here, the others as on the first."""
-        given = {name: value for name, value in self if value is not None}
-        with of_file({}):
-            return ShoeInput.model_construct(**(dict(first) | given)).core
+if TYPE_CHECKING:
+    _ShoeInput = ShoeInput
+    _SecondShoeInput = Section
+else:
+    _ShoeInput = _Shoe
+    _SecondShoeInput = create_model("SecondShoeInput", __base__=Section, **_DIFFERENCES)
 
 
 class LoadInput(Section):
     """[load]: the force on the shoes, or the torque or pressure that the brake is to give: exactly one."""
 
-    force: Annotated[float, Quantity("N", symbol="P", meaning="force on each shoe", above=0)] | None = None
-    cylinder_bore: (
-        Annotated[
-            float,
-            Quantity("m", symbol="d", meaning="bore of the wheel cylinder, with line_pressure", above=0),
-        ]
-        | None
-    ) = None
-    line_pressure: (
-        Annotated[
-            float, Quantity("Pa", symbol="p_h", meaning="pressure in the line, with cylinder_bore", above=0)
-        ]
-        | None
-    ) = None
-    torque: (
-        Annotated[float, Quantity("N m", symbol="M", meaning="torque that the brake is to give", above=0)]
-        | None
-    ) = None
-    peak_pressure: (
-        Annotated[float, Quantity("Pa", symbol="p_max", meaning="largest pressure on any lining", above=0)]
-        | None
-    ) = None
+    force: Annotated[float | None, Quantity("N", "P", "force on each shoe", above=0)] = None
+    cylinder_bore: Annotated[
+        float | None, Quantity("m", "d", "bore of the wheel cylinder, with line_pressure", above=0)
+    ] = None
+    line_pressure: Annotated[
+        float | None, Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
+    ] = None
+    torque: Annotated[float | None, Quantity("N m", "M", "torque that the brake is to give", above=0)] = None
+    peak_pressure: Annotated[
+        float | None, Quantity("Pa", "p_max", "largest pressure on any lining", above=0)
+    ] = None
 
     @model_validator(mode="after")
     def _one(self) -> LoadInput:
@@ -192,8 +129,7 @@ class DrumBrakeInput(Section):
         "forward"
     )
     friction: Annotated[
-        float,
-        Quantity(symbol="mu", meaning="friction of the linings", least=0, most=10, remedy="35 % is 0.35"),
+        float, Quantity("", "mu", "friction of the linings", least=0, most=10, remedy="35 % is 0.35")
     ]
 
 
@@ -201,8 +137,8 @@ class DrumInput(CoreSection):
     """A drum brake: the tables [brake], [shoe], [load] and, where it differs, [second_shoe]."""
 
     brake: DrumBrakeInput
-    shoe: ShoeInput
-    second_shoe: SecondShoeInput | None = None
+    shoe: _ShoeInput
+    second_shoe: _SecondShoeInput | None = None
     load: LoadInput
 
     @cached_property
@@ -216,8 +152,12 @@ class DrumInput(CoreSection):
         return (simplex if self.brake.assembly == "simplex" else duplex)(self.shoe.core, second)
 
     def _second(self) -> Shoe | None:
+        """The second shoe: what [second_shoe] gives, and the rest of the first."""
+        if self.second_shoe is None:
+            return None
+        given = {key: value for key, value in self.second_shoe if value is not None}
         try:
-            return self.second_shoe and self.second_shoe.completed_by(self.shoe)
+            return _Shoe.model_construct(**dict(self.shoe) | given).core
         except InvalidValue as error:
             raise replace(error, field=f"second_shoe.{error.field}") from None
 
@@ -230,5 +170,5 @@ class DrumInput(CoreSection):
             As for `brakes.drum.brake_torque`.
         """
         reverse = self.brake.direction == "reverse"
-        with in_range(), of_file(_KEYS):
+        with in_range(), of_file(_Shoe.key_of):
             return brake_torque(self.core, friction=self.brake.friction, **self.load.given, reverse=reverse)

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache, cached_property
 from os import PathLike
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, create_model
+from pydantic import Field, create_model
 
+from beamdyn.common.described import described_hints, description
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity, show
-from brakes.calipers import NAMED, Caliper, Design, StoppingDistance, stop
+from brakes.calipers import NAMED, Caliper, StoppingDistance, stop
 from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
-from brakes.planar.described import Described
-from brakes.planar.described import inputs_of as described_inputs
+from brakes.planar.inputs import DescribedDirection, DescribedPoint, is_list
 from brakes.planar.points import Point as Coordinates
 
 __all__ = [
@@ -115,6 +116,7 @@ def _two(given: object, example: str) -> list[Any]:
 
 
 Point = Annotated[Coordinates, PointQuantity("m", meaning="point in the drawing")]
+_QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuantity}
 
 
 # A caliper's run ----------------------------------------------------------------------------------
@@ -123,31 +125,23 @@ Point = Annotated[Coordinates, PointQuantity("m", meaning="point in the drawing"
 class RunInput(Section):
     """[run]: the stroke, the finger's force, and what else is to be computed."""
 
-    finger: Annotated[
-        float, Quantity("N", symbol="P", meaning="force of the finger on the hand lever", above=0)
-    ] = 40.0
+    finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[str | None, Field(description="load that drives a stroke of a plain mechanism")] = None
-    travel: Annotated[float, TravelQuantity("m", meaning="travel of the cable or of the driver")] | None = (
-        None
-    )
+    travel: Annotated[float | None, TravelQuantity("m", "", "travel of the cable or of the driver")] = None
     points: Annotated[int, Field(description="positions of the stroke", ge=2)] = 100
-    friction: Annotated[float, Quantity(symbol="mu", meaning="coefficient of friction", least=0)] = 0.0
-    wear: list[Annotated[float, Quantity("m", meaning="thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
+    friction: Annotated[float, Quantity("", "mu", "coefficient of friction", least=0)] = 0.0
+    wear: list[Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
 
 
 class CaliperStopInput(Section):
     """[stop]: the vehicle that this brake alone stops."""
 
-    mass: Annotated[float, Quantity("kg", symbol="M", meaning="mass, wheels included", above=0)]
-    speed: Annotated[float, Quantity("m/s", symbol="v", meaning="speed", least=0)]
-    friction: Annotated[float, Quantity(symbol="mu", meaning="friction of pads and rim", above=0)]
-    wheel_inertia: Annotated[
-        float, Quantity("kg m2", symbol="J", meaning="moment of inertia of all wheels", least=0)
-    ] = 0.0
-    tyre_radius: Annotated[float, Quantity("m", symbol="R", meaning="rolling radius", above=0)] | None = None
-    rim_radius: Annotated[float, Quantity("m", symbol="r", meaning="radius at the pads", above=0)] | None = (
-        None
-    )
+    mass: Annotated[float, Quantity("kg", "M", "mass, wheels included", above=0)]
+    speed: Annotated[float, Quantity("m/s", "v", "speed", least=0)]
+    friction: Annotated[float, Quantity("", "mu", "friction of pads and rim", above=0)]
+    wheel_inertia: Annotated[float, Quantity("kg m2", "J", "moment of inertia of all wheels", least=0)] = 0.0
+    tyre_radius: Annotated[float | None, Quantity("m", "R", "rolling radius", above=0)] = None
+    rim_radius: Annotated[float | None, Quantity("m", "r", "radius at the pads", above=0)] = None
 
     def with_force(self, pad_force: float) -> StoppingDistance:
         """The stopping distance with a force on each pad [N]."""
@@ -157,15 +151,13 @@ class CaliperStopInput(Section):
 # A named caliper ----------------------------------------------------------------------------------
 
 
-class DimensionsInput(CoreSection):
+class DimensionsInput(MadeSection):
     """[dimensions] of a named caliper."""
-
-    design: ClassVar[type[Design]]
 
     @cached_property
     def core(self) -> Caliper:
         """The caliper."""
-        return self.design(**dict(self)).build()
+        return self.made(**self.given).build()
 
 
 class CaliperInput(Section):
@@ -190,98 +182,21 @@ class CaliperInput(Section):
 def _model_of(name: str) -> type[CaliperInput]:
     """The model of a caliper's file, with the dimensions of its design."""
     design = NAMED[name]
-    dimensions = create_model(
-        f"{design.__name__}Dimensions",
-        __base__=DimensionsInput,
-        __doc__=DimensionsInput.__doc__,
-        **_fields_of(design),
-    )
-    dimensions.design = design
+    dimensions = section_of(design, tables=_QUANTITIES, base=DimensionsInput)
     return create_model(
-        f"{design.__name__}Input",
-        __base__=CaliperInput,
-        __doc__=CaliperInput.__doc__,
-        dimensions=(dimensions, dimensions()),
+        f"{design.__name__}Input", __base__=CaliperInput, dimensions=(dimensions, dimensions())
     )
-
-
-# Joints and loads ---------------------------------------------------------------------------------
-
-
-class PartInput(CoreSection):
-    """A joint or load: its keys are the inputs that its class describes."""
-
-    part: ClassVar[type[Part]]
-
-    @cached_property
-    def core(self) -> Part:
-        """The joint or load."""
-        return self.part(**dict(self))
-
-
-@cache
-def model_of_part(part: type[Part]) -> type[PartInput]:
-    """The model of the tables of a joint or load."""
-    model = create_model(
-        f"{part.__name__}Input", __base__=PartInput, __doc__=f"[[{part.key()}]].", **_fields_of(part)
-    )
-    model.part = part
-    return model
-
-
-def _fields_of(core: type) -> dict[str, Any]:
-    """Annotation and default of each described input of a core class."""
-    defaults = {field.name: field.default for field in dataclasses.fields(core)}
-    return {key: _field_of(d, defaults[key]) for key, d in described_inputs(core).items()}
-
-
-def _field_of(described: Described, default: object) -> tuple[Any, Any]:
-    annotation = _KINDS[described.kind](described)
-    if default is None:
-        return annotation | None, None
-    if default is dataclasses.MISSING:
-        return annotation, ... if described.default is None else described.default
-    return annotation, default
-
-
-def _number(d: Described) -> Any:
-    words: dict[str, Any] = {"symbol": d.symbol, "meaning": d.meaning, "remedy": d.remedy}
-    bounds: dict[str, Any] = {"positive": {"above": 0.0}, "not negative": {"least": 0.0}}.get(
-        d.bound or "", {}
-    )
-    return Annotated[float, Quantity(d.unit, **words, **bounds)]
-
-
-def _point(d: Described) -> Any:
-    return Annotated[Coordinates, PointQuantity(d.unit, meaning=d.meaning)]
-
-
-def _list_of(kind: Any, meaning: str) -> Any:
-    return Annotated[list[kind], AfterValidator(tuple), Field(description=meaning)]
-
-
-_KINDS: dict[str, Callable[[Described], Any]] = {
-    "name": lambda d: Annotated[str, Field(description=d.meaning)],
-    "names": lambda d: _list_of(str, d.meaning),
-    "choice": lambda d: Annotated[Literal[d.choices], Field(description=d.meaning)],
-    "flag": lambda d: Annotated[bool, Field(description=d.meaning)],
-    "number": _number,
-    "point": _point,
-    "points": lambda d: _list_of(_point(d), d.meaning),
-    "direction": lambda d: Annotated[Coordinates, DirectionQuantity(meaning=d.meaning)],
-}
 
 
 # Any mechanism ------------------------------------------------------------------------------------
 
 
-class RolesInput(Section):
-    """[caliper] of a mechanism: its cable and pads, and what `Caliper` describes (added by `_Roles`)."""
+SECTIONS = {part.key(): section_of(part, tables=_QUANTITIES) for part in (*JOINTS, *LOADS)}  # by table
 
-    cable: Annotated[str, Field(description="load that closes the brake")]
-    pads: Annotated[
-        list[str], Field(description="forces on the right and left pad", min_length=2, max_length=2)
-    ]
+
+class RolesInput(Section):
+    """[caliper] of a mechanism: its centring joints, and what `Caliper` describes (added by `_Roles`)."""
+
     centring: Annotated[list[str], Field(description="joints that hold only until the pads touch")] = []  # noqa: RUF012
 
 
@@ -315,8 +230,9 @@ class MechanismInput(CoreSection):
             tuple(self.bodies), tuple(j for j in joints if j.name not in roles.centring), tuple(loads)
         )
         centring = tuple(j for j in joints if j.name in roles.centring)
-        rest = {key: value for key, value in roles if key not in ("centring", "pads")}
-        return Caliper(mechanism, centring, pads=(roles.pads[0], roles.pads[1]), name=self.title, **rest)
+        given: dict[str, Any] = dict(roles)
+        given |= {"centring": centring, "pads": tuple(given["pads"])}
+        return Caliper(mechanism, **given, name=self.title)
 
     def _check_run(self, loads: Mapping[str, Load]) -> None:
         run = self.run
@@ -335,9 +251,10 @@ class MechanismInput(CoreSection):
             raise InvalidInput("run.travel", float(run.travel), bound, unit=unit)
 
 
-_Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_fields_of(Caliper))
+_ROLES = fields_of(Caliper, leave_out=("mechanism", "centring", "name"))
+_Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_ROLES)
 _TABLES: dict[str, Any] = {"caliper": (_Roles | None, None)} | {
-    part.key(): (list[model_of_part(part)], []) for part in (*JOINTS, *LOADS)
+    key: (list[section], []) for key, section in SECTIONS.items()
 }
 CompleteMechanismInput = create_model(
     "CompleteMechanismInput", __base__=MechanismInput, __module__=__name__, **_TABLES
@@ -364,9 +281,8 @@ def _table_with_points(table: Any, part: type[Part], known: Mapping[str, Any]) -
         return known.get(value, value) if isinstance(value, str) else value
 
     replaced = {}
-    for key, described in described_inputs(part).items():
-        if described.kind == "point" and key in table:
-            replaced[key] = place(table[key])
-        elif described.kind == "points" and isinstance(table.get(key), list):
-            replaced[key] = [place(value) for value in table[key]]
+    for key, hint in described_hints(part).items():
+        if isinstance(description(hint), DescribedPoint) and key in table:
+            many = is_list(hint) and isinstance(table[key], list)
+            replaced[key] = [place(value) for value in table[key]] if many else place(table[key])
     return table | replaced

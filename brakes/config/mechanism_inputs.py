@@ -5,19 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from beamdyn.common.described import descriptions
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
-from brakes.config.mechanism import CaliperInput, CompleteMechanismInput, PointQuantity, model_of_part, named
+from brakes.config.mechanism import (
+    SECTIONS,
+    CaliperInput,
+    CompleteMechanismInput,
+    PointQuantity,
+    named,
+)
 from brakes.planar import JOINTS, LOADS, Part
-from brakes.planar.described import inputs_of
 from brakes.planar.points import Point as Coordinates
 
 
 def _keys(part: type[Part]) -> str:
     """The kind of part, and its required and optional keys, as help text."""
-    fields, keys = model_of_part(part).model_fields, {True: [], False: []}
-    for key, described in inputs_of(part).items():
+    fields, keys = SECTIONS[part.key()].model_fields, {True: [], False: []}
+    for key, described in descriptions(part).items():
         otherwise = described.meaning.partition("; ")[2]  # such as "the ground if not given"
         keys[fields[key].is_required()].append(f"{key} ({otherwise})" if otherwise else key)
     return f"{part.label}: {'; '.join(', '.join(some) for some in (keys[True], keys[False]) if some)}"

@@ -9,14 +9,21 @@ theta is alpha - delta). In axes turned by delta the same formulas hold for both
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, not_negative, numbers, pair, positive, together
+from beamdyn.common.array_checks import Numbers, keep_checked, not_negative, positive, together
 from beamdyn.common.checks import one_of, refuse
+from beamdyn.common.described import Described
 from beamdyn.common.results import Result
 
+_START = "start of the lining, from straight down, where the pin is"
+_END = "end of the lining, from straight down"
+_OFFSET = "distance of the pin from the brake's line of symmetry, to its shoe"
+_DEPTH = "depth of the pin below the drum's centre"
+_FORCE_ARM = "height of the actuating force above the drum's centre"
+_PRESSURE_ZERO = "line where the pressure vanishes: straight down (axis), or through the pin (pivot)"
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 
 
@@ -48,24 +55,24 @@ class Shoe:
         above the pin, or the arc empty, over the pin, or past the pressure's second zero.
     """
 
-    drum_radius: Numbers
-    face_width: Numbers
-    lining: tuple[Numbers, Numbers]
-    pivot: tuple[Numbers, Numbers]
-    force_arm: Numbers
-    pressure_zero: Literal["axis", "pivot"] = "axis"
+    drum_radius: Annotated[Numbers, Described("m", "r", "inner radius of the drum", above=0)]
+    face_width: Annotated[Numbers, Described("m", "w", "width of the lining along the drum's axis", above=0)]
+    lining: tuple[
+        Annotated[Numbers, Described("rad", "alpha1", _START, key="lining_start")],
+        Annotated[Numbers, Described("rad", "alpha2", _END, key="lining_end")],
+    ]
+    pivot: tuple[  # files give b and c, the pin is at (b, -c)
+        Annotated[Numbers, Described("m", "b", _OFFSET, key="pivot_offset")],
+        Annotated[Numbers, Described("m", "c", _DEPTH, above=0, key="pivot_depth")],
+    ]
+    force_arm: Annotated[
+        Numbers, Described("m", "a", "height of the actuating force above the drum's centre")
+    ]
+    pressure_zero: Annotated[Literal["axis", "pivot"], Described(meaning=_PRESSURE_ZERO)] = "axis"
 
     def __post_init__(self) -> None:
         one_of("pressure_zero", self.pressure_zero, ("axis", "pivot"))
-        cleaned = {
-            "drum_radius": positive("drum_radius", self.drum_radius, "m"),
-            "face_width": positive("face_width", self.face_width, "m"),
-            "lining": pair("lining", self.lining, "rad"),
-            "pivot": pair("pivot", self.pivot, "m"),
-            "force_arm": numbers("force_arm", self.force_arm, "m"),
-        }
-        for name, value in cleaned.items():
-            object.__setattr__(self, name, value)
+        keep_checked(self)
         (a1, a2), (b, y) = self.lining, self.pivot
         together(drum_radius=self.drum_radius, face_width=self.face_width, force_arm=self.force_arm,
                  lining_start=a1, lining_end=a2, pivot_x=b, pivot_y=y)  # fmt: skip

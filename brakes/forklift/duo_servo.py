@@ -9,13 +9,16 @@ psi, until the right piston reaches its bottom. A piston's position is where its
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, numbers, pair, positive, together
+from beamdyn.common.array_checks import Numbers, keep_checked, positive, together
 from beamdyn.common.checks import refuse
+from beamdyn.common.described import Described
 from beamdyn.common.results import Result
 from brakes.forklift.levers import Levers
+from brakes.forklift.vehicle import ACUTE
 
 
 @dataclass(frozen=True)
@@ -45,27 +48,31 @@ class DuoServo:
         If a length is not positive, or a pin is not inside the drum on its side.
     """
 
-    drum_radius: Numbers
-    tip: tuple[Numbers, Numbers]
-    adjuster: tuple[Numbers, Numbers]
-    face_tilt: Numbers
-    contact_angle: Numbers
-    piston_bottom: Numbers
-    piston_stroke: Numbers | None = None
+    drum_radius: Annotated[Numbers, Described("m", "r", "inner radius of the drum", above=0)]
+    tip: tuple[
+        Annotated[Numbers, Described("m", "x_t", "pin of the shoe's tip, from the centre", above=0)],
+        Annotated[Numbers, Described("m", "y_t", "pin of the shoe's tip, above the centre", above=0)],
+    ]
+    adjuster: tuple[
+        Annotated[Numbers, Described("m", "x_a", "pin of the adjuster, from the centre", above=0)],
+        Annotated[Numbers, Described("m", "y_a", "pin of the adjuster, above the centre: negative", below=0)],
+    ]
+    face_tilt: Annotated[Numbers, Described("rad", "alpha", "tilt of the pistons' faces", **ACUTE)]
+    contact_angle: Annotated[
+        Numbers, Described("rad", "", "where the lining touches first, up from the horizontal", **ACUTE)
+    ]
+    piston_bottom: Annotated[
+        Numbers, Described("m", "", "travel of a piston from rest to its bottom, inward", above=0)
+    ]
+    piston_stroke: Annotated[
+        Numbers | None,
+        Described(
+            "m", "", "largest travel of a piston from rest, outward; not checked if not given", above=0
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
-        cleaned = {
-            "drum_radius": positive("drum_radius", self.drum_radius, "m"),
-            "tip": pair("tip", self.tip, "m"),
-            "adjuster": pair("adjuster", self.adjuster, "m"),
-            "face_tilt": numbers("face_tilt", self.face_tilt, "rad"),
-            "contact_angle": numbers("contact_angle", self.contact_angle, "rad"),
-            "piston_bottom": positive("piston_bottom", self.piston_bottom, "m"),
-        }
-        if self.piston_stroke is not None:
-            cleaned["piston_stroke"] = positive("piston_stroke", self.piston_stroke, "m")
-        for name, value in cleaned.items():
-            object.__setattr__(self, name, value)
+        keep_checked(self)
         self._check_pins()
         for name in ("face_tilt", "contact_angle"):
             bad = np.abs(np.asarray(getattr(self, name))) >= np.pi / 2
@@ -83,7 +90,9 @@ class DuoServo:
             bound = "it must lie inside the drum (drum_radius)"
             refuse(far >= self.drum_radius, f"distance of {name} from the centre", far, "m", bound)
 
-    def move_shoes(self, clearance: Numbers) -> ShoeMotion:
+    def move_shoes(
+        self, clearance: Annotated[Numbers, Described("m", "c_L", "between lining and drum at rest", above=0)]
+    ) -> ShoeMotion:
         """Compute the motion of the shoes through both stages.
 
         Parameters

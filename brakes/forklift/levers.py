@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, numbers, positive, together
+from beamdyn.common.array_checks import Numbers, keep_checked, together
 from beamdyn.common.checks import refuse
+from beamdyn.common.described import Described
 
 
 @dataclass(frozen=True)
@@ -37,20 +39,17 @@ class Levers:
         If a length is not positive, or P_L and Q, or P_T and Q, more than 90 degrees apart.
     """
 
-    drum_radius: Numbers
-    a1: Numbers
-    a2: Numbers
-    b1: Numbers
-    b2: Numbers
-    alpha1: Numbers
-    alpha2: Numbers
-    gamma: Numbers
+    drum_radius: Annotated[Numbers, Described("m", "r", "inner radius of the drum", above=0)]
+    a1: Annotated[Numbers, Described("m", "a1", "arm of P_L, on the leading shoe", above=0)]
+    a2: Annotated[Numbers, Described("m", "a2", "arm of P_T, on the trailing shoe", above=0)]
+    b1: Annotated[Numbers, Described("m", "b1", "arm of Q on the leading shoe", above=0)]
+    b2: Annotated[Numbers, Described("m", "b2", "arm of Q on the trailing shoe", above=0)]
+    alpha1: Annotated[Numbers, Described("rad", "alpha1", "angle of P_L, below the horizontal")]
+    alpha2: Annotated[Numbers, Described("rad", "alpha2", "angle of P_T, below the horizontal")]
+    gamma: Annotated[Numbers, Described("rad", "gamma", "angle of Q, above the horizontal")]
 
     def __post_init__(self) -> None:
-        for name in ("drum_radius", "a1", "a2", "b1", "b2"):
-            object.__setattr__(self, name, positive(name, getattr(self, name), "m"))
-        for name in ("alpha1", "alpha2", "gamma"):
-            object.__setattr__(self, name, numbers(name, getattr(self, name), "rad"))
+        keep_checked(self)
         together(**vars(self))
         for name, value in (("alpha1 + gamma", self.phi1), ("alpha2 - gamma", self.phi2)):
             bound = "the piston's force and the adjuster's are more than a right angle apart"

@@ -17,15 +17,17 @@ The paper's equation (3) and its tables differ; `brakes.reproduce.forklift_as_pr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, not_negative, numbers, pair, positive, together
+from beamdyn.common.array_checks import Numbers, keep_checked, together
 from beamdyn.common.checks import refuse
+from beamdyn.common.described import Described
 from beamdyn.common.results import Result
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
+ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
 
 
 @dataclass(frozen=True)
@@ -52,24 +54,23 @@ class Truck:
         load, is not between the axles and above the ground.
     """
 
-    empty_mass: Numbers
-    empty_cg: tuple[Numbers, Numbers]
-    load_mass: Numbers
-    load_cg: tuple[Numbers, Numbers]
-    front_wheel_radius: Numbers
-    wheelbase: Numbers
+    empty_mass: Annotated[Numbers, Described("kg", "m", "mass of the empty truck", above=0)]
+    empty_cg: tuple[
+        Annotated[Numbers, Described("m", "x", "the empty truck's centre of gravity, behind the front axle")],
+        Annotated[Numbers, Described("m", "y", "the empty truck's centre of gravity, above the front axle")],
+    ]
+    load_mass: Annotated[Numbers, Described("kg", "m_L", "mass of the load", least=0, default=0.0)]
+    load_cg: tuple[
+        Annotated[
+            Numbers, Described("m", "x_L", "the load's centre, behind the front axle: negative", default=0.0)
+        ],
+        Annotated[Numbers, Described("m", "y_L", "the load's centre, above the front axle", default=0.0)],
+    ]
+    front_wheel_radius: Annotated[Numbers, Described("m", "r1", "radius of the front wheels", above=0)]
+    wheelbase: Annotated[Numbers, Described("m", "L", "distance of the axles", above=0)]
 
     def __post_init__(self) -> None:
-        cleaned = {
-            "empty_mass": positive("empty_mass", self.empty_mass, "kg"),
-            "empty_cg": pair("empty_cg", self.empty_cg, "m"),
-            "load_mass": not_negative("load_mass", self.load_mass, "kg"),
-            "load_cg": pair("load_cg", self.load_cg, "m"),
-            "front_wheel_radius": positive("front_wheel_radius", self.front_wheel_radius, "m"),
-            "wheelbase": positive("wheelbase", self.wheelbase, "m"),
-        }
-        for name, value in cleaned.items():
-            object.__setattr__(self, name, value)
+        keep_checked(self)
         (x, y), (xl, yl) = self.empty_cg, self.load_cg
         together(empty_mass=self.empty_mass, load_mass=self.load_mass, wheelbase=self.wheelbase,
                  front_wheel_radius=self.front_wheel_radius,
@@ -140,24 +141,15 @@ class StopConditions:
         If a value is out of bounds.
     """
 
-    slope: Numbers
-    speed: Numbers
-    friction: Numbers
-    reaction_time: Numbers
-    rise_time: Numbers
-    gravity: Numbers = STANDARD_GRAVITY
+    slope: Annotated[Numbers, Described("rad", "beta", "slope, downhill as it travels", **ACUTE)]
+    speed: Annotated[Numbers, Described("m/s", "V", "speed before the stop", above=0)]
+    friction: Annotated[Numbers, Described("", "mu", "friction of tyres on the ground", above=0)]
+    reaction_time: Annotated[Numbers, Described("s", "t1", "time before the brakes act", least=0)]
+    rise_time: Annotated[Numbers, Described("s", "t2", "time in which the brake force rises", least=0)]
+    gravity: Annotated[Numbers, Described("m/s2", "g", "gravity", above=0)] = STANDARD_GRAVITY
 
     def __post_init__(self) -> None:
-        cleaned = {
-            "slope": numbers("slope", self.slope, "rad"),
-            "speed": positive("speed", self.speed, "m/s"),
-            "friction": positive("friction", self.friction),
-            "reaction_time": not_negative("reaction_time", self.reaction_time, "s"),
-            "rise_time": not_negative("rise_time", self.rise_time, "s"),
-            "gravity": positive("gravity", self.gravity, "m/s2"),
-        }
-        for name, value in cleaned.items():
-            object.__setattr__(self, name, value)
+        keep_checked(self)
         bound = "it must be less than a right angle; give rad"
         refuse(np.abs(self.slope) >= np.pi / 2, "slope", self.slope, "rad", bound)
         together(**vars(self))

@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from brakes.planar.described import Body, Coefficient, Described, Direction, DrawnPoint, Length, Other
+from beamdyn.common.described import Described
+from brakes.planar.inputs import Body, Coefficient, DescribedPoint, Direction, DrawnPoint, Length, Other
 from brakes.planar.part import Joint, OneWay, Shape
 from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
 from brakes.planar.rows import FrictionLaw, Line, Path, Row, Turn
@@ -43,14 +44,7 @@ class Pin(Joint):
     at_other: DrawnPoint | None = None
     radius: Annotated[
         float,
-        Described(
-            "number",
-            "radius of the pivot",
-            unit="m",
-            symbol="r",
-            bound="not negative",
-            remedy="give the radius of the pivot",
-        ),
+        Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot"),
     ] = 0.0
     friction: Coefficient = 0.0
 
@@ -222,7 +216,7 @@ class RotationLock(Joint):
 
     body: Body
     other: Other
-    ratio: Annotated[float, Described("number", "ratio of the angles")] = 1.0
+    ratio: Annotated[float, Described(meaning="ratio of the angles")] = 1.0
 
     def rows(self) -> tuple[Row, ...]:
         """One row: the couple on the body [N m]."""
@@ -248,8 +242,8 @@ class Cable(Joint):
     label = "cables of fixed length"
     one_way = SLACK
 
-    bodies: Annotated[tuple[str, ...], Described("names", "body of each point")]
-    points: Annotated[tuple[Point, ...], Described("points", "points in the drawing", unit="m")]
+    bodies: Annotated[tuple[str, ...], Described(meaning="body of each point")]
+    points: tuple[Annotated[Point, DescribedPoint("m", meaning="points in the drawing")], ...]
     length: Length | None = None
 
     def __post_init__(self) -> None:

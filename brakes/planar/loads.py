@@ -12,7 +12,8 @@ from typing import Annotated
 
 import numpy as np
 
-from brakes.planar.described import Body, Described, Direction, DrawnPoint, NewtonMetres, Newtons, Other
+from beamdyn.common.described import Described
+from brakes.planar.inputs import Body, Direction, DrawnPoint, NewtonMetres, Newtons, Other
 from brakes.planar.joints import SLACK
 from brakes.planar.part import AppliedLoad, Load, Shape
 from brakes.planar.points import GROUND, Point, check_distinct, path_length, unit_vector
@@ -45,7 +46,7 @@ class Force(AppliedLoad):
     at: DrawnPoint
     direction: Direction
     magnitude: Newtons | None = None
-    follows: Annotated[bool, Described("flag", "whether it turns with the body")] = False
+    follows: Annotated[bool, Described(meaning="whether it turns with the body")] = False
 
     @property
     def has_coordinate(self) -> bool:
@@ -154,10 +155,8 @@ class Spring(Load):
     other: Other
     at: DrawnPoint
     to: DrawnPoint
-    stiffness: Annotated[
-        float, Described("number", "stiffness", unit="N/m", symbol="k", bound="not negative")
-    ]
-    free_length: Annotated[float, Described("number", "length without force", unit="m", bound="not negative")]
+    stiffness: Annotated[float, Described("N/m", "k", "stiffness", least=0)]
+    free_length: Annotated[float, Described("m", meaning="length without force", least=0)]
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -195,10 +194,8 @@ class TorsionSpring(Load):
     label = "torsion springs"
 
     body: Body
-    stiffness: Annotated[
-        float, Described("number", "stiffness", unit="N m/rad", symbol="k", bound="not negative")
-    ]
-    free_angle: Annotated[float, Described("number", "angle without moment, from the drawing", unit="rad")]
+    stiffness: Annotated[float, Described("N m/rad", "k", "stiffness", least=0)]
+    free_angle: Annotated[float, Described("rad", meaning="angle without moment, from the drawing")]
     other: Other = GROUND
 
     def row(self) -> Row:

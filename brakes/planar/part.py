@@ -7,7 +7,8 @@ from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
-from brakes.planar.described import Described, check_inputs
+from beamdyn.common.described import Described
+from brakes.planar.inputs import check_inputs
 from brakes.planar.points import GROUND, End, Point
 from brakes.planar.rows import FrictionLaw, Row
 
@@ -54,7 +55,7 @@ class Part:
     label: ClassVar[str] = ""
     one_way: ClassVar[OneWay | None] = None
 
-    name: Annotated[str, Described("name", "name")]
+    name: Annotated[str, Described(meaning="name")]
 
     def __post_init__(self) -> None:
         check_inputs(self, f"{self.title}: ")
@@ -104,7 +105,7 @@ class Joint(Part):
     In order to write a new joint:
 
     1. Derive a frozen dataclass from `Joint`, in a module of its own.  Its fields are its inputs; annotate
-       each by a type of `described` or by ``Annotated[type, Described(...)]``.  Checks, TOML tables and forms
+       each by a type of `inputs` or by ``Annotated[type, Described(...)]``.  Checks, TOML tables and forms
        follow from that; the table's name is the class name in snake case.
     2. `rows` returns what the joint forbids: each `Line`, `Path` or `Turn` has the value 0 as long as the
        joint holds, and is an unknown reaction.  The force of the joint is the one on the first body of the

@@ -8,23 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Protocol
 
 from rich.console import Console
 
+from beamdyn.common.comparison import Verdict
 from beamdyn.common.edge.tables import comparison_table
 from beamdyn.common.pictures import save_figure
 from brakes.published import load
 from brakes.reproduce import caliper, drum, forklift
-
-
-class Verdict(Protocol):
-    """A printed number beside ours."""
-
-    @property
-    def as_expected(self) -> bool:
-        """Whether they agree, or differ for a known reason."""
-        ...
 
 
 def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 from rich.console import Group
 
+from beamdyn.common.comparison import Verdict
 from beamdyn.common.edge.tables import table
 from brakes.published.errata import Erratum
 
 
 @dataclass(frozen=True)
-class Cell:
+class Cell(Verdict):
     """A printed number beside ours.
 
     Parameters
@@ -40,18 +41,6 @@ class Cell:
     def agrees(self) -> bool:
         """Whether ours rounds to what is printed."""
         return abs(self.ours - float(self.printed)) <= self.step / 2 * (1 + 1e-12)
-
-    @property
-    def as_expected(self) -> bool:
-        """Whether they agree, or differ for a known reason."""
-        return self.agrees != bool(self.reason)
-
-    @property
-    def verdict(self) -> str:
-        """The comparison in words."""
-        if self.agrees:
-            return "agrees, which is unexpected" if self.reason else "agrees"
-        return f"differs: {self.reason or 'unexpected'}"
 
     @property
     def texts(self) -> list[str]:

@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from beamdyn.common.described import descriptions
 from brakes import calipers
 from brakes.planar import Bar, Spring
-from brakes.planar.described import inputs_of
 
 BUILT = {name: design().build() for name, design in calipers.NAMED.items()}
 SYMMETRIC = ("single-pivot", "centre-pull", "cantilever", "v-brake")
@@ -46,7 +46,7 @@ def test_symmetric_calipers_are_symmetric(name):
 def test_the_size_of_a_caliper_does_not_matter(name):
     """Twice the dimensions: the same advantage at twice the travel."""
     design = calipers.NAMED[name]
-    units = {key: described.unit for key, described in inputs_of(design).items()}
+    units = {key: described.unit for key, described in descriptions(design).items()}
     values = {key: getattr(design(), key) for key in units}
     assert list(units) == [field.name for field in dataclasses.fields(design)]
     doubled = {

@@ -18,6 +18,7 @@ from beamdyn.common.edge import input_sweep
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.wording import in_degrees
 from brakes import drum, forklift
 from brakes.answers.drum import BRAKE
 from brakes.answers.forklift import FORKLIFT as TYPE
@@ -25,7 +26,6 @@ from brakes.answers.forklift import solve_stages
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
 from brakes.config.sweeps import numeric_inputs, with_arrays
-from brakes.config.wording import in_degrees
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -60,7 +60,7 @@ P, Q = (0.0, 0.0), (1.0, 0.0)
         ),
         (
             lambda: Pin("pivot", "arm", GROUND, (0, math.nan)),
-            "pin 'pivot': at: y = nan: give a finite number in m",
+            "pin 'pivot': at: y = nan m: give a finite number in m",
         ),
         (
             lambda: Pin("pivot", "arm", GROUND, 3.0),
@@ -76,7 +76,7 @@ P, Q = (0.0, 0.0), (1.0, 0.0)
         (lambda: Force("push", "arm", P, (0, 0)), r"force 'push': direction = \(0, 0\) has no direction"),
         (
             lambda: Force("push", "arm", P, (1, 0), math.inf),
-            "force 'push': magnitude = inf: .* None for an unknown",
+            "force 'push': magnitude = inf N: give a finite number in N; or None for an unknown",
         ),
         (lambda: Moment("turn", "arm", "5 N m"), "moment 'turn': magnitude = '5 N m'"),
     ],

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from beamdyn.common.described import descriptions
 from brakes import planar
 from brakes.config.mechanism_inputs import PARTS
 from brakes.drawings.mechanism import draw_mechanism
@@ -22,7 +23,7 @@ from brakes.planar import (
     free_body,
     solve_with_friction,
 )
-from brakes.planar.described import Body, Coefficient, DrawnPoint, Other, inputs_of
+from brakes.planar.inputs import Body, Coefficient, DrawnPoint, Other
 from brakes.planar.rows import FrictionLaw, Line, Row
 
 
@@ -89,4 +90,4 @@ def test_it_is_drawn_and_its_inputs_are_checked():
 def test_every_kind_is_listed_exported_and_described(part: type[planar.Part]):
     assert part.__name__ in planar.__all__
     assert PARTS[part.key()].startswith(f"{part.label}: name, ")
-    assert all(described.meaning for described in inputs_of(part).values())
+    assert all(described.meaning for described in descriptions(part).values())

@@ -3,33 +3,48 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, reduce
-from inspect import signature
+from inspect import Parameter, signature
 from types import NoneType
-from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from pydantic import Discriminator, Field, Tag, create_model
 
-from beamdyn.common.described import Described
+from beamdyn.common.described import Described, description, kinds_of
 from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.edge.wording import of_file
 
 
 class MadeSection(CoreSection):
     """A table made from a core class: its keys are the arguments of the class."""
 
     made: ClassVar[type]
-    arguments: ClassVar[Mapping[str, str]]  # by key
+    key_of: ClassVar[Mapping[str, str]]  # by argument; those of a pair are named "tip[0]" and "tip[1]"
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The arguments of the core class."""
+        given: dict[str, Any] = {}
+        for name, key in self.key_of.items():
+            value, (argument, pair, _) = _core_of(getattr(self, key)), name.partition("[")
+            given[argument] = (*given.get(argument, ()), value) if pair else value
+        return given
 
     @cached_property
     def core(self) -> Any:
         """The core object."""
-        given = {self.arguments[key]: value for key, value in self if key in self.arguments}
-        return self.made(**{n: v.core if isinstance(v, CoreSection) else v for n, v in given.items()})
+        with of_file(self.key_of):
+            return self.made(**self.given)
 
 
-def section_of(made: type, kind: str = "", tables: Mapping[type, Any] | None = None) -> type[MadeSection]:
+Base = TypeVar("Base", bound=MadeSection)
+
+
+def section_of(
+    made: type, kind: str = "", tables: Mapping[type, Any] | None = None, base: type[Base] = MadeSection
+) -> type[Base]:
     """Make the table of a core class.
 
     Parameters
@@ -39,24 +54,51 @@ def section_of(made: type, kind: str = "", tables: Mapping[type, Any] | None = N
     kind : str
         Value of the key ``kind`` that tells the table from its alternatives; there is none if empty.
     tables : mapping, optional
-        By class of a field: what its table may be, where that does not follow from the class.
+        By class of a field, what its table may be, where that does not follow from the class; by class of
+        a description, the class of the `Quantity` that reads it.
+    base : type of MadeSection
+        Base class, which may have further keys.
 
     Returns
     -------
     type of MadeSection
     """
-    hints, defaults = get_type_hints(made, include_extras=True), signature(made).parameters
-    fields: dict[str, Any] = {}
+    fields: dict[str, Any] = fields_of(made, tables)
     if kind:
-        fields["kind"] = (Annotated[Literal[kind], Field(description="kind of motion")], kind)
-    arguments = {_description(hints[name]).key or name: name for name in defaults}
-    for key, name in arguments.items():
-        default = defaults[name].default
-        required = default is defaults[name].empty or _description(hints[name]).required
-        fields[key] = (_annotation(hints[name], tables or {}), ... if required else default)
-    section = create_model(f"{made.__name__}Input", __base__=MadeSection, __doc__=made.__doc__, **fields)
-    section.made, section.arguments = made, arguments
+        fields = {"kind": (Annotated[Literal[kind], Field(description="kind of motion")], kind)} | fields
+    section = create_model(f"{made.__name__}Input", __base__=base, __doc__=made.__doc__, **fields)
+    section.made, section.key_of = made, {name: _key(name, hint) for name, hint in _arguments(made).items()}
     return section
+
+
+def fields_of(
+    made: Callable[..., Any], tables: Mapping[type, Any] | None = None, leave_out: Collection[str] = ()
+) -> dict[str, Any]:
+    """Annotations and defaults, by key, of the table of a core class or function.
+
+    Parameters
+    ----------
+    made, tables
+        As for `section_of`.
+    leave_out : collection of str
+        Arguments that have no key.
+
+    Raises
+    ------
+    TypeError
+        If an argument is not described.
+    """
+    defaults = signature(made).parameters
+    fields: dict[str, Any] = {}
+    for name, hint in _arguments(made).items():
+        if name in leave_out:
+            continue
+        described = description(hint) or Described()
+        default = defaults[name].default if name in defaults else Parameter.empty
+        default = default if described.default is None else described.default
+        required = described.required or default is Parameter.empty
+        fields[_key(name, hint)] = (_annotation(hint, tables or {}), ... if required else default)
+    return fields
 
 
 def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
@@ -73,25 +115,56 @@ def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
     ]
 
 
-def _description(hint: Any) -> Described:
-    return hint.__metadata__[0] if get_origin(hint) is Annotated else Described()
+def _core_of(value: Any) -> Any:
+    """What the core takes for a value of a table."""
+    if isinstance(value, CoreSection):
+        return value.core
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
+    """Annotations by argument; a pair whose numbers are described apart has two, such as "tip[0]"."""
+    hints, arguments = get_type_hints(made, include_extras=True), {}
+    for name in signature(made).parameters:
+        parts = get_args(hints.get(name))
+        if get_origin(hints.get(name)) is tuple and Ellipsis not in parts and _is_described(parts[0]):
+            arguments |= {f"{name}[{place}]": part for place, part in enumerate(parts)}
+        elif name in hints:
+            arguments[name] = hints[name]
+    return arguments
+
+
+def _key(name: str, hint: Any) -> str:
+    """Key of an argument; those of a pair "tip" are "tip_x" and "tip_y" unless others are described."""
+    described = description(hint)
+    return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
+
+
+def _is_described(hint: Any) -> bool:
+    return get_origin(hint) is Annotated
 
 
 def _annotation(hint: Any, tables: Mapping[type, Any]) -> Any:
     """The annotation for pydantic that corresponds to one of the core."""
-    inner = get_args(hint)[0] if get_origin(hint) is Annotated else hint
-    parts = [part for part in get_args(inner) or (inner,) if part is not NoneType]
+    kinds, described = kinds_of(hint), description(hint)
+    kind, parts = kinds[0], get_args(kinds[0])
     read: Any
-    if known := [tables[part] for part in parts if part in tables]:
+    if known := [tables[each] for each in kinds if each in tables]:
         read = known[0]
-    elif get_origin(inner) is Literal:
-        read = Annotated[inner, Field(description=_description(hint).meaning)]
-    elif get_origin(hint) is Annotated:
-        read = Annotated[float, Quantity(**vars(_description(hint)))]
-    elif get_origin(parts[0]) is Annotated:
+    elif parts and _is_described(parts[0]):
         read = list[_annotation(parts[0], tables)]
-    elif hasattr(parts[0], "__dataclass_fields__"):
-        read = section_of(parts[0], tables=tables)
-    else:
+    elif described is None and hasattr(kind, "__dataclass_fields__"):
+        read = section_of(kind, tables=tables)
+    elif described is None:
         raise TypeError(f"{hint} is not described: give Annotated[{hint}, Described(...)]")
-    return read | None if NoneType in get_args(inner) else read
+    elif kind in (str, bool) or get_origin(kind) is Literal:
+        read = Annotated[kind, Field(description=described.meaning)]
+    elif parts and parts[0] is str:
+        number = None if Ellipsis in parts else len(parts)
+        read = Annotated[
+            list[str], Field(description=described.meaning, min_length=number, max_length=number)
+        ]
+    else:
+        quantity = tables.get(type(described), Quantity)
+        read = Annotated[float if kind is Any else kind, quantity(**vars(described))]
+    return read | None if NoneType in kinds else read
