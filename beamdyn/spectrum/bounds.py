@@ -49,12 +49,12 @@ from numpy.polynomial import legendre
 from beamdyn._version import __version__
 from beamdyn.common.checks import count, real
 from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import Space
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.fields.bending import HELD
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.equations.tension import axial_tension
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample

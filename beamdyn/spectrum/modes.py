@@ -14,7 +14,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.tension import axial_tension
+from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -32,7 +31,8 @@ from brakes.answers.planar import (
     select_rows,
 )
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
-from brakes.config.mechanism import CaliperInput, MechanismInput, mechanism_from_dict
+from brakes.config.caliper import CaliperInput
+from brakes.config.mechanism import MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
 from brakes.drawings.caliper import caliper_figure
 from brakes.planar import AssemblyError, Mechanism, OutOfReachError, solve
@@ -329,5 +329,5 @@ def _explain_list(text: str) -> str:
     try:
         tomllib.loads(f"parts = {text}")
     except (ValueError, RecursionError) as error:
-        return f"not valid TOML: {re.sub(r', column [0-9]+', '', str(error))}; {form}"
+        return f"not valid TOML: {str(error).rpartition(' (at line')[0] or error}; {form}"
     return form

@@ -24,7 +24,8 @@ from brakes.answers.planar import (
     select_rows,
     units_of,
 )
-from brakes.config.mechanism import CaliperInput, MechanismInput
+from brakes.config.caliper import CaliperInput
+from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import draw_open_and_closed
 from brakes.drawings.mechanism_stroke import plot_curves
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke

@@ -16,7 +16,8 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.tables import table
 from brakes.answers.base import Answer
-from brakes.config.mechanism import CaliperInput, MechanismInput
+from brakes.config.caliper import CaliperInput
+from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, Joint, Load, Mechanism, Position, Stroke

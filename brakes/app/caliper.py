@@ -6,7 +6,8 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import show
 from brakes.answers import caliper
 from brakes.app.screens import make_document
-from brakes.config.mechanism import CaliperInput, MechanismInput, parse_mechanism
+from brakes.config.caliper import CaliperInput
+from brakes.config.mechanism import MechanismInput, parse_mechanism
 
 
 def check_caliper(text: str, source: str) -> CaliperInput:

@@ -1,34 +1,23 @@
-"""Calipers and planar mechanisms in TOML: a named caliper and its dimensions, or bodies, joints and loads."""
+"""Any planar mechanism in TOML: bodies, joints and loads; and the choice between it and a named caliper."""
 
 from __future__ import annotations
 
-import dataclasses
-import math
 from collections.abc import Mapping
-from functools import cache, cached_property
+from functools import cached_property
 from os import PathLike
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field, create_model
 
 from beamdyn.common.described import described_hints, description
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
-from beamdyn.common.edge.inputs import Quantity, Section
-from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
-from beamdyn.common.edge.units import InvalidInput, quantity, show
-from brakes.calipers import NAMED, Caliper, StoppingDistance, stop
+from beamdyn.common.edge.inputs import Section
+from beamdyn.common.edge.sections import fields_of, section_of
+from beamdyn.common.edge.units import InvalidInput, show
+from brakes.calipers import NAMED, Caliper
+from brakes.config.caliper import QUANTITIES, Angle, CaliperInput, CaliperStopInput, Point, RunInput, model_of
 from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
-from brakes.planar.inputs import DescribedDirection, DescribedPoint, is_list
-from brakes.planar.points import Point as Coordinates
-
-__all__ = [
-    "CaliperInput",
-    "MechanismInput",
-    "load_mechanism",
-    "mechanism_from_dict",
-    "named",
-    "parse_mechanism",
-]
+from brakes.planar.inputs import DescribedPoint, is_list
 
 
 def load_mechanism(path: str | PathLike[str]) -> CaliperInput | MechanismInput:
@@ -61,137 +50,14 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
     """A caliper or a mechanism from the tables of a TOML file; see `load_mechanism`."""
     name = data.get("caliper")
     if isinstance(name, str):
-        return validated(_model_of(name) if name in NAMED else CaliperInput, data, source)
+        return validated(model_of(name) if name in NAMED else CaliperInput, data, source)
     return validated(CompleteMechanismInput, _with_points(data), source)
-
-
-def named(name: str) -> CaliperInput:
-    """A caliper of `calipers.NAMED` with its usual dimensions."""
-    return validated(_model_of(name), {"caliper": name}, name)
-
-
-# Kinds of values ----------------------------------------------------------------------------------
-
-
-class PointQuantity(Quantity):
-    """A point: two lengths."""
-
-    def parse(self, given: object) -> Any:
-        """Its coordinates [m]."""
-        if isinstance(given, str):
-            raise InvalidInput("", given, "no such point in [points]", 'name one, or give ["1 mm", "2 mm"]')
-        return tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
-
-
-class DirectionQuantity(Quantity):
-    """A direction: two numbers, or an angle from x anticlockwise."""
-
-    def parse(self, given: object) -> Any:
-        """Its components."""
-        if isinstance(given, str):
-            angle = quantity(given, "rad")
-            return math.cos(angle), math.sin(angle)
-        return tuple(Quantity().parse(value) for value in _two(given, '[1, 0] or "30 deg"'))
-
-
-class Angle(float):
-    """A travel that was given as an angle [rad]."""
-
-
-class TravelQuantity(Quantity):
-    """A travel: a length, or an angle where the driver is a moment."""
-
-    def convert(self, given: object) -> float:
-        """A length [m], or an `Angle` [rad]."""
-        try:
-            return Angle(quantity(given, "rad"))
-        except ValueError:
-            return quantity(given, "m")
-
-
-def _two(given: object, example: str) -> list[Any]:
-    if not isinstance(given, list) or len(given) != 2:
-        raise InvalidInput("", given, f"give two values, e.g. {example}")
-    return given
-
-
-Point = Annotated[Coordinates, PointQuantity("m", meaning="point in the drawing")]
-_QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuantity}
-
-
-# A caliper's run ----------------------------------------------------------------------------------
-
-
-class RunInput(Section):
-    """[run]: the stroke, the finger's force, and what else is to be computed."""
-
-    finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
-    driver: Annotated[str | None, Field(description="load that drives a stroke of a plain mechanism")] = None
-    travel: Annotated[float | None, TravelQuantity("m", "", "travel of the cable or of the driver")] = None
-    points: Annotated[int, Field(description="positions of the stroke", ge=2)] = 100
-    friction: Annotated[float, Quantity("", "mu", "coefficient of friction", least=0)] = 0.0
-    wear: list[Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
-
-
-class CaliperStopInput(Section):
-    """[stop]: the vehicle that this brake alone stops."""
-
-    mass: Annotated[float, Quantity("kg", "M", "mass, wheels included", above=0)]
-    speed: Annotated[float, Quantity("m/s", "v", "speed", least=0)]
-    friction: Annotated[float, Quantity("", "mu", "friction of pads and rim", above=0)]
-    wheel_inertia: Annotated[float, Quantity("kg m2", "J", "moment of inertia of all wheels", least=0)] = 0.0
-    tyre_radius: Annotated[float | None, Quantity("m", "R", "rolling radius", above=0)] = None
-    rim_radius: Annotated[float | None, Quantity("m", "r", "radius at the pads", above=0)] = None
-
-    def with_force(self, pad_force: float) -> StoppingDistance:
-        """The stopping distance with a force on each pad [N]."""
-        return stop(pad_force=pad_force, **dict(self))
-
-
-# A named caliper ----------------------------------------------------------------------------------
-
-
-class DimensionsInput(MadeSection):
-    """[dimensions] of a named caliper."""
-
-    @cached_property
-    def core(self) -> Caliper:
-        """The caliper."""
-        return self.made(**self.given).build()
-
-
-class CaliperInput(Section):
-    """A named caliper: its name, and where they differ its dimensions."""
-
-    caliper: Annotated[
-        Literal["eebrake", "single-pivot", "dual-pivot", "centre-pull", "cantilever", "v-brake"],
-        Field(description="name"),
-    ]
-    title: Annotated[str, Field(description="title")] = ""
-    run: RunInput = RunInput()
-    stop: CaliperStopInput | None = None
-
-    @property
-    def core(self) -> Caliper:
-        """The caliper."""
-        built = self.dimensions.core  # pyright: ignore[reportAttributeAccessIssue]  (added by _model_of)
-        return dataclasses.replace(built, name=self.title) if self.title else built
-
-
-@cache
-def _model_of(name: str) -> type[CaliperInput]:
-    """The model of a caliper's file, with the dimensions of its design."""
-    design = NAMED[name]
-    dimensions = section_of(design, tables=_QUANTITIES, base=DimensionsInput)
-    return create_model(
-        f"{design.__name__}Input", __base__=CaliperInput, dimensions=(dimensions, dimensions())
-    )
 
 
 # Any mechanism ------------------------------------------------------------------------------------
 
 
-SECTIONS = {part.key(): section_of(part, tables=_QUANTITIES) for part in (*JOINTS, *LOADS)}  # by table
+SECTIONS = {part.key(): section_of(part, tables=QUANTITIES) for part in (*JOINTS, *LOADS)}  # by table
 
 
 class RolesInput(Section):

@@ -9,13 +9,8 @@ from beamdyn.common.described import descriptions
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.units import show
 from brakes.calipers import NAMED
-from brakes.config.mechanism import (
-    SECTIONS,
-    CaliperInput,
-    CompleteMechanismInput,
-    PointQuantity,
-    named,
-)
+from brakes.config.caliper import CaliperInput, PointQuantity, named
+from brakes.config.mechanism import SECTIONS, CompleteMechanismInput
 from brakes.planar import JOINTS, LOADS, Part
 from brakes.planar.points import Point as Coordinates
 

@@ -1,5 +1,6 @@
 """A sweep is the same to the bit: whatever computes it, in whatever order, interrupted or not."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -153,8 +154,11 @@ def test_ctrl_c_keeps_what_is_finished(undisturbed, tmp_path):
 
 def children(pid):
     """Processes that a process has started (Linux)."""
-    tasks = Path(f"/proc/{pid}/task").glob("*/children")
-    return [int(child) for task in tasks for child in task.read_text().split()]
+    found = []
+    for task in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(FileNotFoundError):  # a thread that has just ended
+            found += [int(child) for child in task.read_text().split()]
+    return found
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds the workers in /proc")

@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn.equations import explanations as why
+from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.damping import modal_damping
 from beamdyn.equations.discretization import Space, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Load, Term
 from beamdyn.equations.root_motion import exact_cos_sin
-from beamdyn.equations.tension import axial_tension
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.profile import FRACTION
