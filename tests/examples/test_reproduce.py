@@ -130,7 +130,7 @@ def test_tables_of_other_sources():
 
 def test_a_wrong_value_in_the_tables_is_seen():
     case = load("rotating_beams")["case"][0]
-    good = others.solved(case, "ritz")
-    assert others.summary("x", "Ritz", [good]).as_expected
+    good = others.solve_case(case, "ritz")
+    assert others.summarize("x", "Ritz", [good]).as_expected
     printed, ours, error = good
-    assert not others.summary("x", "Ritz", [(printed, ours * (1 + 1e-9), error)]).as_expected
+    assert not others.summarize("x", "Ritz", [(printed, ours * (1 + 1e-9), error)]).as_expected
