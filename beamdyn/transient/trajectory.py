@@ -16,7 +16,18 @@ _REFINEMENTS = 4  # of a maximum, each on a grid 17 times as fine
 
 
 class Path(Protocol):
-    """Coordinates over time, from any integrator."""
+    """Coordinates over time, from any integrator.
+
+    In order to add an integrator:
+
+    1. Write a function of the equations (`ModalSystem`), the initial coordinates and velocities, the end
+       and the tolerance, which returns a path.  It asks the equations for C, K and f at arrays of times.
+    2. Steps end at the motion's breakpoints, as `beamdyn.transient.step_size.split_at_breakpoints` has them.
+    3. `samples` are several in each step, so that no maximum is missed; `at` interpolates between them.
+    4. It estimates its time-integration error of the tip deflection [m], or states nan.
+    5. `TransientRequest` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs none
+       of this: it is passed as ``method=`` itself.
+    """
 
     @property
     def start(self) -> float:

@@ -62,7 +62,19 @@ class Line:
 class Motion(ABC):
     """Base class of motions; its defaults are those of a smooth, unlimited motion without a road.
 
-    Motions are hashable and, unless made from functions, picklable.
+    In order to add a motion, write a subclass in a module of its own:
+
+    1. It is a frozen dataclass: it is hashed, and pickled unless it is made from functions.  Its fields are
+       ``Annotated[float, Described(unit, symbol, meaning, bounds)]``, from which its table in files and its
+       form are made; `__post_init__` checks them.
+    2. `at` takes times of any shape and returns angle, speed, acceleration and the carrier's acceleration;
+       each is the derivative of the one before.  A rotation about a fixed centre derives from `Rotation`.
+    3. `with_speed` copies it with another final speed: sweeps and loci over speed need no more.
+    4. `breakpoints` lists the times at which it or a derivative jumps: steps in time end there.
+       `steady_start` is the time from which the speed is constant, `end` the last time.
+    5. A translation that lasts at steady speed gives `lines`, `road_multiple`, `road_acceleration` and
+       `steady_acceleration`, on which the steady response and the resonance speeds rest.
+    6. To be named in files and forms, it stands in `KINDS` of `beamdyn.scene.motion`.
     """
 
     @abstractmethod
