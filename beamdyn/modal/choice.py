@@ -16,6 +16,10 @@ from beamdyn.scene.scene import Scene
 DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+_MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
+_MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
+_USUAL_IN_ALL = 200  # of the first candidate: many short segments need few functions each
+_FEWEST_ON_SEGMENT = 5  # of several segments
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
@@ -39,9 +43,9 @@ def solve_to_tolerance(
     model = choose_model(scene, discretization, speeds, modes, tolerance, cheapest=True)
     result = solve_with_error(model, speeds, modes, extra)
     while isinstance(discretization, str) and not result.meet(tolerance):
-        if (finer := result.model.discretization.finer()) is None:
+        if (finer := _refine(result.model)) is None:
             break
-        result = solve_with_error(Model(scene, finer), speeds, modes, extra)
+        result = solve_with_error(finer, speeds, modes, extra)
     return result
 
 
@@ -86,44 +90,78 @@ def choose_model(
     Raises
     ------
     ValueError
-        If the discretization is unknown or has too few functions for the modes.
+        If the discretization is unknown or has too few functions for the modes, or the beam has too many
+        segments.
     """
-    if not isinstance(discretization, str):
-        return Model(scene, _check_size(discretization, modes))
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
-    target = target if discretization == "ritz" else max(target, _FEM_TARGET)
+    target = max(target, least_target(discretization))
     model = None
-    for candidate in _list_candidates(discretization, scene, modes, target, cheapest):
-        model = Model(scene, candidate)
-        if solve_with_error(model, ends, modes).meet(target):
+    for model in list_models(scene, discretization, modes, target, cheapest):
+        if not isinstance(discretization, str) or solve_with_error(model, ends, modes).meet(target):
             break
     assert model is not None
     return model
 
 
-def _list_candidates(
-    name: str, scene: Scene, modes: int, target: float, cheapest: bool
-) -> Iterator[Discretization]:
-    """Yield discretizations of one kind, from the smallest sensible one to the finest."""
+def least_target(discretization: DiscretizationChoice) -> float:
+    """Smallest target at which a discretization aims: 1e-7 for finite elements, else 0."""
+    return _FEM_TARGET if discretization == "fem" else 0.0
+
+
+def list_models(
+    scene: Scene, discretization: DiscretizationChoice, modes: int, target: float, cheapest: bool
+) -> Iterator[Model]:
+    """List the models to try, from the smallest sensible one to the finest; of an instance, that one.
+
+    The other parameters and what is raised are those of `choose_model`.
+    """
+    segments = len(scene.beam.breakpoints) - 1
+    if segments > _MOST_SEGMENTS:
+        raise ValueError(
+            f"the beam has {segments} segments between its stations and breakpoints: at most {_MOST_SEGMENTS}; "
+            "give fewer stations, or its properties as polynomials or functions of x/L"
+        )
+    if isinstance(discretization, str):
+        model = Model(scene, _find_first(discretization, segments, modes, target, cheapest))
+    else:
+        model = Model(scene, _check_size(discretization, modes))
+    return _list_from(model, isinstance(discretization, str))
+
+
+def _list_from(model: Model | None, refining: bool) -> Iterator[Model]:
+    while model is not None:
+        yield model
+        model = _refine(model) if refining else None
+
+
+def _refine(model: Model) -> Model | None:
+    """The next finer model; None if there is none that is affordable."""
+    finer, segments = model.discretization.finer(), len(model.scene.beam.breakpoints) - 1
+    if finer is None or (isinstance(finer, Ritz) and finer.functions * segments > _MOST_IN_ALL):
+        return None
+    return Model(model.scene, finer)
+
+
+def _find_first(name: str, segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
+    """Find the smallest sensible discretization of one kind."""
     if name not in _FIRST_CANDIDATE:
         raise ValueError(
             f"discretization = {name!r}: give {', '.join(map(repr, _FIRST_CANDIDATE))}, "
             "a beamdyn.Ritz or a beamdyn.Fem"
         )
-    first = _FIRST_CANDIDATE[name](len(scene.beam.breakpoints) - 1, modes, target, cheapest)
+    first = _FIRST_CANDIDATE[name](segments, modes, target, cheapest)
     while not first.fits(modes) and (finer := first.finer()) is not None:
         first = finer
-    candidate: Discretization | None = _check_size(first, modes)
-    while candidate is not None:
-        yield candidate
-        candidate = candidate.finer()
+    return _check_size(first, modes)
 
 
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
-    fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
-    total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
-    return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
+    if cheapest:
+        fewest = _FEWEST_FUNCTIONS if segments == 1 else _FEWEST_ON_SEGMENT
+        return Ritz(min(max(fewest, -(-int(np.ceil(4 + 1.3 * modes - np.log10(target))) // segments)), MOST_FUNCTIONS))
+    most = max(_FEWEST_ON_SEGMENT, _USUAL_IN_ALL // segments)
+    return Ritz(min(max(5, 10 + 2 * modes), most, MOST_FUNCTIONS))
 
 
 def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:

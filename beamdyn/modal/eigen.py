@@ -81,14 +81,21 @@ class Solver:
         return len(self.growth)
 
     @property
+    def softening(self) -> float:
+        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        lowest = -float(self.growth[0])
+        return lowest if lowest > 2 * _BACKWARD * np.abs(self.growth).max() else 0.0
+
+    @property
     def critical_speed(self) -> float:
         """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
-        return float(1 / np.sqrt(-self.growth[0])) if self.growth[0] < 0 else np.inf
+        return self.softening**-0.5 if self.softening else np.inf
 
     @property
     def critical_rounding(self) -> float:
         """Estimated relative rounding error of the critical speed."""
-        return float(2 * _BACKWARD * np.abs(self.growth).max() / abs(self.growth[0]))
+        softening = self.softening
+        return float(2 * _BACKWARD * np.abs(self.growth).max() / softening) if softening else np.inf
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """Compute the `count` lowest modes at each speed [rad/s]."""

@@ -9,7 +9,7 @@ import numpy as np
 from beamdyn.modal.eigen import Eigen
 from beamdyn.modal.model import Model
 
-_UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
+UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
 
 
@@ -68,7 +68,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         relative = np.abs(distance) / np.abs(s)
         truncation = relative / 3 if order is not None else _ritz_error(distance, s, model)
         error = truncation + fine.rounding[:, :modes] + model.discretization.rounding
-    return EstimatedModes(model, coarse, fine, np.where(error < _UNRESOLVED, error, np.inf))  # nan, too
+    return EstimatedModes(model, coarse, fine, np.where(error < UNRESOLVED, error, np.inf))  # nan, too
 
 
 def _ritz_error(distance: np.ndarray, s: np.ndarray, model: Model) -> np.ndarray:

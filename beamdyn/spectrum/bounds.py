@@ -67,6 +67,10 @@ _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a t
 _NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
 _MOST_STEPS = 12  # of the search for z from a Ritz value
 _LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
+# Functions on all segments with which a bound of the critical speed is sought, the relative square at which it
+# is close enough to the Ritz value, and the shares of this square that are tried.
+_PROOF_SIZES, _CLOSE = (24, 48, 96), 1 - 1e-6
+_SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 12)])
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
 _FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility over 1/EI: aimed at, and accepted
 
@@ -208,6 +212,36 @@ def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
     return TipMass(tip.mass / mass, tip.offset / length, *(j / (mass * length**2) for j in moments))
 
 
+def bound_critical_speed(scene: Scene) -> float:
+    """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
+
+    By the theorem of this module with z = 0 and k = 1: the stiffness at that speed, and so at every slower
+    one, is positive.
+    """
+    scaled, time = _nondimensional(scene)
+    if (flexibility := _flexibility(scaled.beam.bending_stiffness)) is None:
+        return 0.0
+    proved, most, segments = 0.0, _most_functions(scaled.beam), len(scaled.beam.breakpoints) - 1
+    for total in _PROOF_SIZES:
+        size = min(most, max(6, total // segments))
+        split = Split(scaled, size, 1.0, flexibility)
+        proved = max(proved, _prove_stiff(split))
+        if proved >= _CLOSE * split.ritz_critical_speed**2:
+            break
+    return float(_widen(np.sqrt(np.array(proved)), -8) / time)
+
+
+def _prove_stiff(split: Split) -> float:
+    """Largest squared speed, of a descending list, for which the stiffness is proved positive; 0 if none."""
+    softening = float(np.maximum(-split.spin, 0) @ split.tails)
+    largest = min(1 / max(softening, _EPS), split.ritz_critical_speed**2)
+    for squared in largest * _SHARES:
+        form = split.stiffness_form(squared)
+        if form is not None and np.isfinite(form).all() and np.linalg.eigvalsh(form)[0] >= 0:
+            return float(squared)
+    return 0.0
+
+
 # The search ---------------------------------------------------------------------------------------
 
 
@@ -303,22 +337,37 @@ class Split:
 
     def _ritz_values(self, mass: np.ndarray, modes: int) -> np.ndarray:
         """Ritz values of z, from which the search starts."""
+        return -np.real(self._solver(mass).solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
+
+    @cached_property
+    def ritz_critical_speed(self) -> float:
+        """Critical speed in the space of the head: never below the exact one but by rounding."""
+        return self._solver(self._sum(self.mass)[self._square]).critical_speed
+
+    def _solver(self, mass: np.ndarray) -> Solver:
         zero = np.zeros_like(mass)
-        K0, K2 = self.stiffness[self._square], self._sum(self.spin)[self._square]
-        solver = Solver(SteadyPencil(mass, zero, zero, K0, K2, zero[0]))
-        return -np.real(solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
+        K0, K2 = self._K, self._sum(self.spin)[self._square]
+        return Solver(SteadyPencil(mass, zero, zero, K0, K2, zero[0]))
 
     def upper_form(self, z: float) -> np.ndarray:
         """Q_z on the head plus the rounding allowance: with k + 1 eigenvalues <= 0, mode k is at most z."""
         form = (self.stiffness + self._sum(self._coefficients(z)))[self._square]
-        return form + self._allowance(z) * np.eye(len(form))
+        return form + self._allowance(self._absolute_coefficients(z)) * np.eye(len(form))
 
     def lower_form(self, z: float) -> np.ndarray | None:
         """Q_z - R/q minus the rounding allowance: with <= k eigenvalues < 0, mode k is at least z."""
-        tail = np.maximum(self.unit * self._absolute_coefficients(z) - self._coefficients(z), 0) @ self.tails
+        return self._lower_form(self._coefficients(z), self._absolute_coefficients(z))
+
+    def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
+        """The same at z = 0 and another speed: without eigenvalues < 0, no slower speed is critical."""
+        return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
+
+    def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
+        """Q - R/q minus the rounding allowance, for coefficients c_j and the sums of their absolute terms."""
+        tail = np.maximum(self.unit * terms - coefficients, 0) @ self.tails
         if tail >= 1:
             return None
-        coupling, allowance = self._sum(self._coefficients(z))[:, self.head], self._allowance(z)
+        coupling, allowance = self._sum(coefficients)[:, self.head], self._allowance(terms)
         defect = coupling - self.stiffness[:, self.head] @ np.linalg.solve(self._K, coupling[self.head])
         error = self.compliance.max() * (self.condition * allowance) ** 2  # rounding error, squared
         one = np.eye(len(self.head))
@@ -355,10 +404,10 @@ class Split:
         """Sums of the absolute values of the terms of the coefficients c_j(z)."""
         return self.speed**2 * self.spin_terms + abs(z) * self.mass
 
-    def _allowance(self, z: float) -> float:
-        """Bound of the rounding error of Q_z: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
+    def _allowance(self, terms: np.ndarray) -> float:
+        """Bound of the rounding error of Q: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
         traces = np.trace(self.forms, axis1=1, axis2=2)
-        return float(self.unit * (np.trace(self.stiffness) + self._absolute_coefficients(z) @ traces))
+        return float(self.unit * (np.trace(self.stiffness) + terms @ traces))
 
     def _sum(self, coefficients: np.ndarray) -> np.ndarray:
         return np.tensordot(coefficients, self.forms, 1)

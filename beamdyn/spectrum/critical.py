@@ -20,14 +20,21 @@ from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
     choose_model,
+    least_target,
+    list_models,
     warn_of_missed_tolerance,
 )
 from beamdyn.modal.eigen import Solver
+from beamdyn.modal.error_estimate import UNRESOLVED
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import LARGE_DEFLECTION
+from beamdyn.spectrum.bounds import bound_critical_speed
+from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.modes import static_load
 
+_SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
+_TO_HALF = 4  # steps from a basis to one of about half its size
 _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
 
 # Critical speed -----------------------------------------------------------------------------------
@@ -40,9 +47,14 @@ class CriticalPoint(Result):
     Parameters
     ----------
     speed : float
-        Critical speed [rad/s]; inf if there is none.
+        Critical speed [rad/s]; inf if there is none, or if none was found: `searched` says which.
     error : float
-        Its estimated relative error.
+        Its estimated relative error; 0 if there is none, inf if it is unresolved.
+    searched : float
+        Where `speed` is inf, the speed below which there is certainly none [rad/s]: inf by `reason`, else
+        by guaranteed bounds, and 0 if these prove nothing.  Where `speed` is finite, `speed`.
+    reason : str
+        Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
         What limits the answer.
     provenance : Provenance
@@ -51,6 +63,8 @@ class CriticalPoint(Result):
 
     speed: float
     error: float
+    searched: float
+    reason: str
     warnings: tuple[str, ...]
     provenance: Provenance
 
@@ -59,6 +73,8 @@ def critical_speed(
     scene: Scene, discretization: DiscretizationChoice = "ritz", tolerance: float | None = None
 ) -> float:
     """Compute the critical speed [rad/s], at which the first frequency vanishes; inf if there is none.
+
+    A warning is issued if there may be one where none was found, or if its error is large.
 
     Parameters
     ----------
@@ -84,6 +100,9 @@ def critical_point(
 ) -> CriticalPoint:
     """Compute the critical speed and its error: the lowest with a singular stiffness K0 + omega^2 K2.
 
+    Whether there is one is decided first, by `decide_buckling`; if there is, it is sought with finer and finer
+    discretizations, because it may belong to a short bend at the tip.
+
     Parameters
     ----------
     scene : Scene
@@ -99,31 +118,94 @@ def critical_point(
     """
     start = perf_counter()
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-    model = choose_model(scene, discretization, np.zeros(1), 1, target, cheapest=tolerance is not None)
-    while True:
-        speed, error = _critical(model)
-        finer = None if not isinstance(discretization, str) else model.discretization.finer()
-        if finer is None or error <= max(target, 3 * model.solver.critical_rounding):
-            break
-        model = Model(scene, finer)
-    names = str(model.discretization), str(model.coarser.discretization)
-    texts = () if tolerance is None else tuple(warn_of_missed_tolerance(error, target))
+    goal = max(target, least_target(discretization))
+    modes = _SIZED_FOR if isinstance(discretization, str) else 1
+    models = list_models(scene, discretization, modes, goal, tolerance is not None)
+    buckling = decide_buckling(scene)
+    if buckling.exists is False and not scene.stretch:
+        none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
+        return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
+    found = _search(models, goal)
+    if np.isinf(found.speed) and discretization == "fem":
+        found = _search(list_models(scene, "ritz", modes, goal, tolerance is not None), goal)
+    searched = found.speed if np.isfinite(found.speed) else bound_critical_speed(scene)
     return CriticalPoint(
-        speed, error, texts, Provenance(__version__, *names, wall_time=perf_counter() - start)
+        speed=found.speed,
+        error=found.error,
+        searched=searched,
+        reason=buckling.why,
+        warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
+        provenance=Provenance(
+            __version__, str(found.model.discretization), str(found.coarse.discretization), perf_counter() - start
+        ),
     )
 
 
-def _critical(model: Model) -> tuple[float, float]:
-    fine, coarse = model.solver.critical_speed, model.coarser.solver.critical_speed
-    if np.isinf(fine):
-        return fine, 0.0
-    if np.isinf(coarse):
-        return fine, 1.0
-    order = model.discretization.order
-    speed = fine if order is None else fine + (fine - coarse) / (2**order - 1)
-    return float(speed), float(
-        abs(fine - coarse) / speed + model.solver.critical_rounding + model.discretization.rounding
-    )
+@dataclass(frozen=True)
+class _Found:
+    """Critical speed of a model [rad/s] and its relative error, by comparison with a coarser model."""
+
+    model: Model
+    coarse: Model
+    speed: float
+    error: float
+
+
+def _search(models: Iterator[Model], target: float) -> _Found:
+    """Refine until the error meets the target or rounding, or the models end."""
+    found = None
+    for model in models:
+        found = _compare(model)
+        if np.isfinite(found.speed) and found.error <= max(target, 3 * model.solver.critical_rounding):
+            break
+    assert found is not None
+    return found
+
+
+def _compare(model: Model) -> _Found:
+    """Compare a model with one of about half its size.
+
+    A basis that lacks a few functions only would differ too little where convergence is slow: where the error
+    falls as a power p >= 1 of the size, it is at most the distance from the basis of half the size.
+    """
+    order, solver = model.discretization.order, model.solver
+    coarse = model.coarser if order is not None else _halve(model)
+    fine_softening, coarse_softening = solver.softening, coarse.solver.softening
+    distance = fine_softening - coarse_softening
+    softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
+    if softening <= 0:
+        return _Found(model, coarse, np.inf, np.inf)
+    error = abs(distance) / (2 * softening) + solver.critical_rounding + model.discretization.rounding
+    return _Found(model, coarse, float(softening**-0.5), float(error) if error < UNRESOLVED else np.inf)
+
+
+def _halve(model: Model) -> Model:
+    """The model with a basis of about half the size."""
+    discretization = model.discretization
+    for _ in range(_TO_HALF):
+        discretization = discretization.coarser()
+    return Model(model.scene, discretization)
+
+
+def _critical_warnings(
+    found: _Found,
+    buckling: Buckling,
+    searched: float,
+    discretization: DiscretizationChoice,
+    tolerance: float | None,
+) -> Iterator[str]:
+    if discretization == "fem" and found.model.discretization.order is None:
+        yield f"finite elements find no critical speed: it was sought with {found.model.discretization}"
+    if np.isinf(found.speed):
+        exists = "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
+        yield (
+            f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
+            f"there is certainly none below {searched:.4g} rad/s"
+        )
+    elif tolerance is not None:
+        yield from warn_of_missed_tolerance(found.error, tolerance)
+    elif found.error > 1e-6:
+        yield f"estimated relative error of the critical speed {found.error:.1g}: the model did not resolve it"
 
 
 # Setting angles at which the locus changes its character -----------------------------------------

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from mpmath import mp, mpc, mpf
 
 import beamdyn as bd
 from beamdyn.scene.profile import Profile
-from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
+from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues, critical_speed
 
 _DIGITS = 40
 
@@ -16,23 +17,33 @@ _DIGITS = 40
 def exact(scene: bd.Scene, speed: float, count: int = 3, digits: int = 30) -> list[mpc]:
     """The lowest s of exp(s t) [1/s] of a beam without breakpoints, stretch and damping."""
     with mp.workdps(_DIGITS):
-        beam, mount = scene.beam, scene.mount
-        L, mass, stiffness = (
-            mpf(beam.length),
-            *map(_monomials, (beam.mass_per_length, beam.bending_stiffness)),
-        )
-        tau = mp.sqrt(mass[0] * L**4 / stiffness[0])
-        squares = bending_eigenvalues(
-            gamma=mpf(speed) * tau,
-            delta=-_cosine(mount.setting_angle) * mpf(mount.radius) / L,
-            bending_angle=mpf(mount.bending_angle),
-            mass=[c / mass[0] for c in mass],
-            stiffness=[c / stiffness[0] for c in stiffness],
-            tip=_tip(beam.tip, mass[0], L),
-            count=count,
-            digits=digits,
-        )
+        tau = _time_unit(scene.beam)
+        squares = bending_eigenvalues(mpf(speed) * tau, **_parameters(scene), count=count, digits=digits)
         return [mp.sqrt(mpc(-z)) / tau for z in squares]
+
+
+def exact_critical_speed(scene: bd.Scene, digits: int = 30) -> mpf:
+    """The critical speed [rad/s] of such a beam; inf if a basis of 48 functions has none."""
+    with mp.workdps(_DIGITS):
+        return critical_speed(**_parameters(scene), digits=digits) / _time_unit(scene.beam)
+
+
+def _time_unit(beam: bd.Beam) -> mpf:
+    mass, stiffness = (_monomials(p)[0] for p in (beam.mass_per_length, beam.bending_stiffness))
+    return mp.sqrt(mass * mpf(beam.length) ** 4 / stiffness)
+
+
+def _parameters(scene: bd.Scene) -> dict[str, Any]:
+    """The nondimensional arguments of the power series."""
+    beam, mount, L = scene.beam, scene.mount, mpf(scene.beam.length)
+    mass, stiffness = map(_monomials, (beam.mass_per_length, beam.bending_stiffness))
+    return {
+        "delta": -_cosine(mount.setting_angle) * mpf(mount.radius) / L,
+        "bending_angle": mpf(mount.bending_angle),
+        "mass": [c / mass[0] for c in mass],
+        "stiffness": [c / stiffness[0] for c in stiffness],
+        "tip": _tip(beam.tip, mass[0], L),
+    }
 
 
 def relative_errors(found: bd.Modes, truth: list[mpc]) -> list[float]:
