@@ -14,6 +14,7 @@ from beamdyn.common.edge.program import NoAnswer
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from beamdyn.spectrum.critical import CriticalPoint
     from beamdyn.spectrum.modes import Locus, Modes
 
 
@@ -117,7 +118,7 @@ def critical(
     json: Path | None = None,
     force: Flag = False,
 ) -> None:
-    """Critical speed, at which the rotating beam buckles.
+    """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed.
 
     Parameters
     ----------
@@ -131,15 +132,13 @@ def critical(
         Overwrite a file that exists.
     """
     from beamdyn import critical_point, load_scene
-    from beamdyn.common.digits import supported
     from beamdyn.common.edge.tables import console
 
     outputs = Outputs(json=json, force=force)
     outputs.check()
     result = critical_point(load_scene(scene), discretization)
-    value = supported(result.speed, result.error * result.speed, 12)
-    none = "no critical speed: the beam buckles at no speed"
-    console().print(none if value == "inf" else f"critical speed: {value} rad/s; above it the beam buckles")
+    console().print(_describe_critical(result))
+    warn(result.warnings)
     write(result, outputs)
 
 
@@ -209,6 +208,20 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
     console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
     console().print(result.excited())
     write(result, outputs)
+
+
+def _describe_critical(result: CriticalPoint) -> str:
+    """The sentence on the critical speed, and on how far it was looked where none was found."""
+    from math import isinf
+
+    from beamdyn.common.digits import supported
+
+    if not isinf(result.speed):
+        value = supported(result.speed, result.error * result.speed, 12)
+        return f"critical speed: {value} rad/s; above it the beam buckles: {result.reason}"
+    if isinf(result.searched):
+        return f"no critical speed: {result.reason}"
+    return f"no critical speed found; there is certainly none below {result.searched:.4g} rad/s"
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:

@@ -96,8 +96,15 @@ def choose_model(
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
     model = None
-    for model in list_models(scene, discretization, modes, target, cheapest):
-        if not isinstance(discretization, str) or solve_with_error(model, ends, modes).meet(target):
+    for finer in list_models(scene, discretization, modes, target, cheapest):
+        try:
+            met = not isinstance(discretization, str) or solve_with_error(finer, ends, modes).meet(target)
+        except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
+            if model is None:
+                raise
+            break
+        model = finer
+        if met:
             break
     assert model is not None
     return model
@@ -150,18 +157,21 @@ def _find_first(name: str, segments: int, modes: int, target: float, cheapest: b
             "a beamdyn.Ritz or a beamdyn.Fem"
         )
     first = _FIRST_CANDIDATE[name](segments, modes, target, cheapest)
-    while not first.fits(modes) and (finer := first.finer()) is not None:
+    on_segment = -(-modes // segments) if isinstance(first, Ritz) else modes
+    while not first.fits(on_segment) and (finer := first.finer()) is not None:
         first = finer
-    return _check_size(first, modes)
+    if not first.fits(on_segment):
+        raise _too_few_functions(first, modes)
+    return first
 
 
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
-    if cheapest:
-        fewest = _FEWEST_FUNCTIONS if segments == 1 else _FEWEST_ON_SEGMENT
-        return Ritz(min(max(fewest, -(-int(np.ceil(4 + 1.3 * modes - np.log10(target))) // segments)), MOST_FUNCTIONS))
-    most = max(_FEWEST_ON_SEGMENT, _USUAL_IN_ALL // segments)
-    return Ritz(min(max(5, 10 + 2 * modes), most, MOST_FUNCTIONS))
+    fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else _FEWEST_ON_SEGMENT
+    total = int(np.ceil(4 + 1.3 * modes - np.log10(target)))
+    many = max(fewest, _USUAL_IN_ALL // segments)
+    functions = max(fewest, -(-total // segments)) if cheapest else min(10 + 2 * modes, many)
+    return Ritz(min(functions, MOST_FUNCTIONS))
 
 
 def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
@@ -186,8 +196,12 @@ def ensure_size(discretization: DiscretizationChoice, modes: int) -> Discretizat
 def _check_size(discretization: Discretization, modes: int) -> Discretization:
     """Raise a ValueError if the discretization has too few functions for the modes."""
     if not discretization.fits(modes):
-        raise ValueError(
-            f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "
-            "has too few functions; ask for fewer modes"
-        )
+        raise _too_few_functions(discretization, modes)
     return discretization
+
+
+def _too_few_functions(discretization: Discretization, modes: int) -> ValueError:
+    return ValueError(
+        f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "
+        "has too few functions; ask for fewer modes"
+    )

@@ -7,6 +7,8 @@ basis.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +23,7 @@ _EPS = np.finfo(float).eps
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms and to its norm
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 _LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
+_LARGEST_SHIFT = 256  # largest exponent of 4 of a shift: beyond it numbers overflow
 _LARGEST_BATCHED = 64  # size of matrices up to which one batched call computes all eigenvectors
 _ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it: measured
 _REAL = 1e-8  # relative growth rate of a mode below which it counts as stable: rounding of a double root
@@ -68,7 +71,8 @@ class Solver:
 
     def __init__(self, pencil: SteadyPencil) -> None:
         self.pencil = pencil
-        L = np.linalg.cholesky(pencil.K0)
+        with _explained():
+            L = np.linalg.cholesky(pencil.K0)
         growth, Q = np.linalg.eigh(_transform_by_inverse(L, pencil.K2))
         self.growth = growth
         self.basis = solve_triangular(L, Q, trans="T", lower=True)
@@ -98,10 +102,17 @@ class Solver:
         return float(2 * _BACKWARD * np.abs(self.growth).max() / softening) if softening else np.inf
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes at each speed [rad/s]."""
-        if self.pencil.conservative:
-            return self._solve_conservative(speeds, count)
-        modes = [self._solve_coupled(speed, count) for speed in speeds]
+        """Compute the `count` lowest modes at each speed [rad/s].
+
+        Raises
+        ------
+        LinAlgError
+            A ValueError: if stiffness and mass span more digits than double precision has.
+        """
+        with _explained():
+            if self.pencil.conservative:
+                return self._solve_conservative(speeds, count)
+            modes = [self._solve_coupled(speed, count) for speed in speeds]
         return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
@@ -159,6 +170,18 @@ class Solver:
         return s, T @ (z / norm), rounding
 
 
+@contextmanager
+def _explained() -> Iterator[None]:
+    """Say what a factorization that fails means."""
+    try:
+        yield
+    except np.linalg.LinAlgError as error:
+        raise np.linalg.LinAlgError(
+            "stiffness, mass and speed span more digits than double precision has: give a lower speed, a smaller "
+            "tip inertia, or properties and breakpoints that vary less"
+        ) from error
+
+
 def _transform_by_inverse(L: np.ndarray, A: np.ndarray) -> np.ndarray:
     """Compute L^-1 A L^-T for triangular L and symmetric A."""
     return _symmetrize(solve_triangular(L, solve_triangular(L, A, lower=True).T, lower=True))
@@ -205,15 +228,32 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _find_shift(M: np.ndarray, d: np.ndarray, smallest: float) -> np.ndarray:
-    """Find shifts (S,), `smallest` times a power of 4, that make diag(d) + shift M positive definite."""
-    shift = np.full(len(d), smallest)
-    low = np.ones(len(d), dtype=bool)
-    while low.any():
-        K = shift[low, None, None] * M
-        K[:, np.arange(len(M)), np.arange(len(M))] += d[low]
-        low[low] = np.linalg.eigvalsh(K)[:, 0] < _LEAST_STIFFNESS / 2
-        shift[low] *= 4
-    return shift
+    """Find shifts (S,), `smallest` times a power of 4, that make diag(d) + shift M positive definite.
+
+    Raises
+    ------
+    LinAlgError
+        If rounding hides whether a shift does.
+    """
+    low, high = np.full(len(d), -1), np.zeros(len(d), dtype=int)  # exponents that fail, and that are tried
+    failing = np.arange(len(d))
+    while (failing := failing[~_are_definite(M, d[failing], smallest * 4.0 ** high[failing])]).size:
+        low[failing], high[failing] = high[failing], np.maximum(1, 2 * high[failing])
+        if high.max() > _LARGEST_SHIFT:
+            raise np.linalg.LinAlgError
+    while (wide := np.flatnonzero(high - low > 1)).size:
+        middle = (low[wide] + high[wide]) // 2
+        definite = _are_definite(M, d[wide], smallest * 4.0**middle)
+        low[wide], high[wide] = np.where(definite, low[wide], middle), np.where(definite, middle, high[wide])
+    return smallest * 4.0**high
+
+
+def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    """Whether diag(d) + shift M is positive definite beyond rounding, for d (S, n) and shifts (S,)."""
+    K = shift[:, None, None] * M
+    K[:, np.arange(len(M)), np.arange(len(M))] += d
+    values = np.linalg.eigvalsh(K)
+    return values[:, 0] >= np.maximum(_LEAST_STIFFNESS / 2, len(M) * _BACKWARD * values[:, -1])
 
 
 def _solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

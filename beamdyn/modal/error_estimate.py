@@ -59,28 +59,48 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     coarse = model.coarser
     fine = model.solver.solve(speeds, min(modes + extra, model.solver.size))
     s = fine.eigenvalue[:, :modes]
-    distance = s - coarse.solver.eigenvalues(speeds, modes)
+    squared, distance = s**2, s**2 - coarse.solver.eigenvalues(speeds, modes) ** 2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation: removes the leading term of the error
-        s = s + distance / (2**order - 1)
-        fine = Eigen(np.concatenate([s, fine.eigenvalue[:, modes:]], axis=1), fine.vector, fine.rounding)
+        squared = squared + distance / (2**order - 1)
+        extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, modes:]], axis=1)
+        fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.abs(distance) / np.abs(s)
-        truncation = relative / 3 if order is not None else _ritz_error(distance, s, model)
-        error = truncation + fine.rounding[:, :modes] + model.discretization.rounding
-    return EstimatedModes(model, coarse, fine, np.where(error < UNRESOLVED, error, np.inf))  # nan, too
+        relative = np.abs(distance) / (2 * np.abs(squared))
+        truncation = relative / 3 if order is not None else _ritz_error(distance, squared, model)
+    error = truncation + fine.rounding[:, :modes] + model.discretization.rounding
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
+    resolved &= ~_may_be_passed(squared, distance, resolved)
+    return EstimatedModes(model, coarse, fine, np.where(resolved, error, np.inf))
 
 
-def _ritz_error(distance: np.ndarray, s: np.ndarray, model: Model) -> np.ndarray:
-    """Relative truncation error of Ritz eigenvalues s (S, k), by their distance from a smaller basis's.
+def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Eigenvalues of given squares that lie near s.
+
+    The squares are smooth in speed and size, and real if the equations are conservative; the eigenvalues
+    themselves turn from imaginary to real where a square passes zero.
+    """
+    root = np.sqrt(squared)
+    return np.where(np.real(root * s.conj()) < 0, -root, root)
+
+
+def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
+    """Whether a higher mode that is not resolved may in truth be lower than this one: shape (S, k)."""
+    reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
+    lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
+    return -np.real(squared) > lowest
+
+
+def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.ndarray:
+    """Relative truncation error of Ritz eigenvalues s (S, k), by the distance of s^2 from a smaller basis's.
 
     Usually further functions change s by less than the last ones did.  Exceptions are modes that only every
     other function changes, and modes whose distance is small by accident: where convergence is slow, a margin
-    measured on random scenes is added.  Where s vanishes, the scale of s^2 is the lowest
-    squared frequency at rest.
+    measured on random scenes is added, for the distances of all modes, relative to the higher mode of two.
+    Where s vanishes, the scale of s^2 is the lowest squared frequency at rest.
     """
-    relative = np.abs(distance) / np.abs(s)
-    scale = np.maximum(np.abs(s) ** 2, model.solver.lowest_at_rest)
-    relative_squared = np.abs(distance * (s - distance / 2)) / scale
-    largest = relative_squared.max(axis=1, keepdims=True)
+    half, size = np.abs(distance) / 2, np.abs(squared)
+    scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), model.solver.lowest_at_rest)
+    largest = (half[:, None, :] / scale).max(axis=2)
+    relative = half / size
     return np.where(largest > _SLOW, np.maximum(3 * relative, 0.3 * largest), relative)
