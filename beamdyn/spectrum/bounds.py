@@ -70,7 +70,7 @@ _LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it w
 # Functions on all segments with which a bound of the critical speed is sought, the relative square at which it
 # is close enough to the Ritz value, and the shares of this square that are tried.
 _PROOF_SIZES, _CLOSE = (24, 48, 96), 1 - 1e-6
-_SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 12)])
+_SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
 _FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility over 1/EI: aimed at, and accepted
 

@@ -67,14 +67,12 @@ def decide_buckling(scene: Scene) -> Buckling:
         return Buckling(True, "the rotation topples the tip body, however stiff the beam")
     if form.stiffens:
         return Buckling(False, "the rotation stiffens the beam against every deflection")
-    if form.tension_at_root > 0 and form.tension_at_tip >= 0 and form.toppling >= 0:
-        return _decide_by_string(form)
-    return Buckling(None, "the least stiffness by rotation is within rounding of zero")
+    return _decide_by_string(form)
 
 
 @dataclass(frozen=True)
 class _SpinForm:
-    """The form F of a scene: numbers that are nan where rounding hides their sign.
+    """The form F of a scene.
 
     Parameters
     ----------
@@ -133,7 +131,7 @@ class _SpinForm:
     @property
     def stiffens(self) -> bool:
         """Whether F >= 0 is known without the string."""
-        if not (self.tension_at_root >= 0 and self.tension_at_tip >= 0 and self.toppling >= 0):
+        if min(self.tension_at_root, self.tension_at_tip, self.toppling) < 0:
             return False
         flat = self.toppling == 0  # then T_12 is 0, too, and T_11 has the sign of the tension at the tip
         return self.cos_squared == 0 or (self.inward <= 0 and (flat or self.tip_determinant >= 0))
@@ -146,9 +144,12 @@ class _SpinForm:
 
 
 def _sum(*terms: float) -> float:
-    """Add terms; nan if the sum is within their rounding errors, though not all are zero."""
-    total, size = math.fsum(terms), math.fsum(map(abs, terms))
-    return total if abs(total) > _ROUNDING * size or not size else math.nan
+    """Add terms; 0 if the sum is within their rounding errors.
+
+    A critical speed that hangs on less than these errors lies beyond 1e6 sqrt(EI / (rho A L^4)).
+    """
+    total = math.fsum(terms)
+    return total if abs(total) > _ROUNDING * math.fsum(map(abs, terms)) else 0.0
 
 
 # The string ---------------------------------------------------------------------------------------
