@@ -22,8 +22,8 @@ class Space(Protocol):
         """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
         ...
 
-    def load(self, weight: Profile) -> np.ndarray:
-        """Integrate over xi the weight times phi_i: shape (n,)."""
+    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
+        """Integrate over xi the weight times the `order`-th derivative of phi_i: shape (n,)."""
         ...
 
     def end(self, order: int) -> np.ndarray:

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
@@ -70,8 +70,11 @@ class Equations:
         Mount of the beam on the carrier.
     gravity : float
         Gravitational acceleration [m/s2].
+    shapes : dict of str to ndarray, shape (m, n)
+        Shapes of the n coordinates of each field, in columns, as coefficients of the m functions of the
+        discretization; the identity before a reduction.
     deflections : dict of str to Deflection
-        Shapes and loads of the coordinates of each field that deflects the beam.
+        Functions and loads of each field that deflects the beam.
     """
 
     blocks: dict[str, slice]
@@ -79,6 +82,7 @@ class Equations:
     loads: tuple[Load, ...]
     mount: Mount
     gravity: float
+    shapes: dict[str, np.ndarray]
     deflections: dict[str, Deflection]
 
     @property
@@ -96,12 +100,12 @@ class Equations:
     def deflection(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Derivatives with respect to x/L of the deflection per coordinate, at xi (k,): shape (n, k)."""
         xi = np.asarray(xi, dtype=float)
-        return self._over_coordinates(lambda d: d.evaluate(xi, order), xi.shape)
+        return self._over_coordinates(lambda d: d.space.evaluate(xi, order), xi.shape)
 
     @cached_property
     def tip(self) -> np.ndarray:
         """Tip deflection per coordinate, shape (n,)."""
-        return self._over_coordinates(lambda d: d.tip)
+        return self._over_coordinates(lambda d: d.space.end(0))
 
     @property
     def P(self) -> np.ndarray:
@@ -116,10 +120,10 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Gather a quantity of the deflections over all coordinates; 0 for fields that do not deflect."""
+        """Gather a quantity of the functions over all coordinates; 0 for fields that do not deflect."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
-            values[self.blocks[name]] = quantity(deflection)
+            values[self.blocks[name]] = self.shapes[name].T @ quantity(deflection)
         return values
 
     # Matrices and loads as functions of the root's motion -------------------------------------------
@@ -192,7 +196,7 @@ class Equations:
             blocks=_place_blocks({name: shapes[name].shape[1] for name in self.blocks}),
             terms=tuple(terms),
             loads=tuple(loads),
-            deflections={name: d.reduced(shapes[name]) for name, d in self.deflections.items()},
+            shapes={name: self.shapes[name] @ shapes[name] for name in self.blocks},
         )
 
 
@@ -216,21 +220,25 @@ def _place_blocks(sizes: Mapping[str, int]) -> dict[str, slice]:
 
 
 def assemble_equations(scene: Scene, discretization: Discretization) -> Equations:
-    """Assemble the equations of motion of a scene, field by field.
+    """Assemble the equations of motion of a scene in a discretization: see `assemble_over`."""
+    return assemble_over(scene, discretization.spaces(scene.beam))
+
+
+def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
+    """Assemble the equations of motion of a scene over function spaces, field by field.
 
     Parameters
     ----------
     scene : Scene
         Beam, mount, damping and gravity.
-    discretization : Discretization
-        Ritz functions or finite elements.
+    spaces : Spaces
+        Function spaces on the beam.
 
     Returns
     -------
     Equations
         Without the terms whose factor or matrix is zero in the scene.
     """
-    spaces = discretization.spaces(scene.beam)
     fields = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
     return Equations(
         blocks=_place_blocks({name: field.size for name, field in fields.items()}),
@@ -238,5 +246,6 @@ def assemble_equations(scene: Scene, discretization: Discretization) -> Equation
         loads=tuple(f for field in fields.values() for f in field.loads if f.factor),
         mount=scene.mount,
         gravity=scene.gravity,
+        shapes={name: np.eye(field.size) for name, field in fields.items()},
         deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
     )

@@ -169,9 +169,9 @@ class FemSpace:
         matrix = _GRAMS[order].assemble(self.basis, weight=self.weights(weight))
         return matrix.toarray()[np.ix_(self.free, self.free)]
 
-    def load(self, weight: Profile) -> np.ndarray:
-        """Integrate the weight times function i."""
-        return _load.assemble(self.basis, weight=self.weights(weight))[self.free]
+    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
+        """Integrate the weight times the `order`-th derivative of function i."""
+        return _LOADS[order].assemble(self.basis, weight=self.weights(weight))[self.free]
 
     def end(self, order: int) -> np.ndarray:
         """Evaluate the `order`-th derivatives at the tip."""
@@ -214,4 +214,15 @@ def _load(v: Any, w: Any) -> Any:
     return w.weight * v
 
 
+@LinearForm
+def _slope_load(v: Any, w: Any) -> Any:
+    return w.weight * v.grad[0]
+
+
+@LinearForm
+def _curvature_load(v: Any, w: Any) -> Any:
+    return w.weight * v.hess[0][0]
+
+
 _GRAMS = (_product, _slopes, _curvatures)
+_LOADS = (_load, _slope_load, _curvature_load)

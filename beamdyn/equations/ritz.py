@@ -147,9 +147,9 @@ class RitzSpace:
         phi = self.samples[order]
         return (phi * self.weights(weight)) @ phi.T
 
-    def load(self, weight: Profile) -> np.ndarray:
-        """Integrate the weight times function i."""
-        return self.samples[0] @ self.weights(weight)
+    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
+        """Integrate the weight times the `order`-th derivative of function i."""
+        return self.samples[order] @ self.weights(weight)
 
     @cached_property
     def _tip_values(self) -> list[np.ndarray]:

@@ -138,7 +138,8 @@ class Beam:
         tip : TipMass, optional
             Rigid body at the tip.
         breakpoints : sequence of float
-            Fractions x/L where the section jumps or has a kink.
+            Fractions x/L where the section jumps or has a kink.  A callable is sampled at intervals of
+            2.5e-5: what is narrower is seen only between breakpoints, or in a Table.
 
         Returns
         -------
@@ -194,7 +195,8 @@ class Beam:
         tip : TipMass, optional
             Rigid body at the tip.
         breakpoints : sequence of float
-            Fractions x/L where a property jumps or has a kink.
+            Fractions x/L where a property jumps or has a kink.  A callable is sampled at intervals of
+            2.5e-5: what is narrower is seen only between breakpoints, or in a Table.
 
         Returns
         -------

@@ -83,7 +83,9 @@ class TimeError:
         return _MARGIN * (float(self.modes.sum()) + self.interpolation)
 
 
-def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps]) -> TimeError:
+def estimate_time_error(
+    system: ModalSystem, checks: Sequence[CheckedSteps], output: np.ndarray | None = None
+) -> TimeError:
     """Estimate the time-integration error of the tip deflection from the local errors of some steps.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
@@ -96,12 +98,14 @@ def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps]) -> 
         The equations.
     checks : sequence of CheckedSteps
         Checked steps of each segment.
+    output : ndarray, shape (n,), optional
+        Another quantity than the tip deflection [m], per unit of each coordinate: its error is then found.
 
     Returns
     -------
     TimeError
     """
-    n, tip = system.size, system.tip
+    n, tip = system.size, system.tip if output is None else output
     total, interpolation, unresolved = np.zeros(n), 0.0, np.zeros(n, dtype=bool)
     for check in checks:
         maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))

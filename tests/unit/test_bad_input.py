@@ -1,10 +1,11 @@
 """What beam, mount and scene refuse: each message names the key, the value and the remedy."""
 
 import math
+import re
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
@@ -104,7 +105,7 @@ def test_section_is_accepted_if_and_only_if_flat_and_slender(width, thickness):
         (lambda x: "wide", ["failed on an array"]),
         (lambda: 0.01, ["failed on an array"]),
         (lambda x: np.where(x < 0.4, 0.01, 0.02), ["not smooth near x/L = 0.4", "breakpoints"]),
-        (lambda x: 0.01 + np.abs(x - 0.3), ["not smooth near x/L = 0.", "breakpoints"]),
+        (lambda x: 0.01 + np.abs(x - 0.3), ["not smooth near x/L = 0.3;", "breakpoints"]),
         (Polynomial([0.01, -0.02]), ["-0.01", "x/L = 1.000", "positive"]),
         (Polynomial([0.01, math.nan]), ["polynomial", "not finite"]),
         (Table([0, 1], [0.01, -0.01]), ["-0.01", "x/L = 1.000", "positive"]),
@@ -133,6 +134,30 @@ def test_jump_without_a_breakpoint_is_refused(place, ratio):
 
     refused(lambda: as_profile("width", width), "width", "not smooth near", "breakpoints")
     assert as_profile("width", width, (place,)).breakpoints == (0, place, 1)
+
+
+@pytest.mark.parametrize("width", [2.6e-5, 3e-5, 2e-4])
+@settings(max_examples=20)
+@given(st.floats(1e-3, 1 - 1e-3))
+def test_narrow_notch_without_breakpoints_is_refused(width, place):
+    """What is wider than the 2.5e-5 of the docstring is seen wherever it stands."""
+
+    def depth(x):
+        return np.where(np.abs(x - place) < width / 2, 0.1, 1.0)
+
+    with pytest.raises(ValueError, match="breakpoints") as refusal:
+        as_profile("depth", depth)
+    found = re.search("not smooth near x/L = ([^;]*)", str(refusal.value))
+    assert found and abs(float(found[1]) - place) <= width / 2 + 8e-5  # four digits, a spacing
+    ends = place - width / 2, place + width / 2
+    assert as_profile("depth", depth, ends).breakpoints == pytest.approx((0, *ends, 1), abs=1e-15)
+
+
+def test_narrow_bump_is_refused():
+    def bump(x):
+        return 1 + 1e-3 * np.exp(-(((x - 0.41803) / 1e-4) ** 2))
+
+    refused(lambda: as_profile("height", bump), "height", "not smooth near x/L = 0.418")
 
 
 @pytest.mark.parametrize("breakpoints", [(0,), (1.0,), (-0.1,), (0.5, 20), (math.nan,), 0.4, "0.4", [[0.4]]])

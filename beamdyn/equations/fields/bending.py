@@ -117,7 +117,7 @@ class Bending(Field):
         """Assemble eqs. (14) of Lee and Yoo (2019), corrected, with tip body and bending angle."""
         space = spaces.functions(HELD)
         op = bending_operators(scene.beam, space)
-        deflection = Deflection(space, np.eye(space.size), op.P, op.Q)
+        deflection = Deflection(space, op.P, op.Q)
         return FieldEquations(space.size, (*_terms(scene, op),), (*_loads(scene, op),), deflection)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -65,38 +65,21 @@ class Load:
 
 @dataclass(frozen=True)
 class Deflection:
-    """Transverse deflection of the beam by the coordinates q of a field: u = sum_j q_j (vectors.T phi)_j.
+    """Transverse deflection of the beam by a field: its trial functions, and their loads.
 
     Parameters
     ----------
     space : Space
-        Trial functions phi of x/L.
-    vectors : ndarray, shape (n, m)
-        Shape of each coordinate, as coefficients of phi; the identity before a reduction.
-    P : ndarray, shape (m,)
+        Trial functions phi_i of x/L.
+    P : ndarray, shape (n,)
         Load under a unit root acceleration in the direction of bending [kg].
-    Q : ndarray, shape (m,)
+    Q : ndarray, shape (n,)
         Load under a unit angular acceleration [kg m].
     """
 
     space: Space
-    vectors: np.ndarray
     P: np.ndarray
     Q: np.ndarray
-
-    def evaluate(self, xi: np.ndarray, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the shapes over x/L at xi of shape (k,): shape (m, k)."""
-        return self.vectors.T @ self.space.evaluate(xi, order)
-
-    @property
-    def tip(self) -> np.ndarray:
-        """Tip deflection per coordinate, shape (m,)."""
-        return self.vectors.T @ self.space.end(0)
-
-    def reduced(self, vectors: np.ndarray) -> Deflection:
-        """Transform to reduced coordinates, with q = `vectors` @ q_reduced."""
-        P, Q = vectors.T @ self.P, vectors.T @ self.Q
-        return replace(self, vectors=self.vectors @ vectors, P=P, Q=Q)
 
 
 @dataclass(frozen=True)

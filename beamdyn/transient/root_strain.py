@@ -1,0 +1,67 @@
+"""Bending strain at the root during a run, and its time-integration error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.root_moment import RootMoment, root_moment
+from beamdyn.scene.scene import Scene
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.time_error import CheckedSteps, estimate_time_error
+from beamdyn.transient.trajectory import Path, Trajectory
+
+_TIMES_CHECKED = 257  # of a run, at which the strain per coordinate is compared
+
+
+@dataclass(frozen=True)
+class RootStrain:
+    """Bending strain of the outer fibre at the root.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        Equations of motion of the run.
+    moment : RootMoment
+        Bending moment at the root.
+    per_moment : float
+        Strain per bending moment [1/(N m)].
+    """
+
+    system: ModalSystem
+    moment: RootMoment
+    per_moment: float
+
+    @classmethod
+    def of_scene(cls, scene: Scene, discretization: Discretization, system: ModalSystem) -> RootStrain:
+        """Strain in the coordinates of the equations of a scene; a ValueError without an outer fibre."""
+        beam, root = scene.beam, np.zeros(1)
+        if beam.outer_fibre is None:
+            raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
+        per_moment = beam.outer_fibre(root)[0] / beam.bending_stiffness(root)[0]
+        return cls(system, root_moment(scene, discretization, system.equations), float(per_moment))
+
+    def at(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Strain at times t [s] of shape (T,), with coordinates q and velocities v (T, n): shape (T,)."""
+        return self.per_moment * self.moment.at(self.system.root(t), q, v)
+
+    def time_error(self, path: Path, of_tip: float) -> float:
+        """Time-integration error of the strain on a path, given that of the tip deflection [m].
+
+        It is nan where that of the tip is not known, and 0 where the beam stays in equilibrium.
+        """
+        if of_tip == 0 or not isinstance(path, Trajectory):
+            return of_tip
+        checks = [CheckedSteps.of_segment(segment) for segment in path.segments]
+        t = np.linspace(path.start, path.end, _TIMES_CHECKED)
+        return estimate_time_error(self.system, checks, self._largest_per_coordinate(t)).total
+
+    def _largest_per_coordinate(self, t: np.ndarray) -> np.ndarray:
+        """Strain per unit of each coordinate (n,), at that of the times t [s] at which it is largest."""
+        rows = np.zeros((len(t), self.system.size))
+        root = self.system.root(t)
+        for quantity, row in self.moment.position.items():
+            rows += np.outer(getattr(root, quantity), row)
+        return self.per_moment * rows[np.abs(rows).sum(axis=1).argmax()]
