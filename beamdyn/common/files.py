@@ -6,9 +6,8 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from secrets import token_hex
 
 ASIDE = ".unfinished-"  # begins the name of a file that is still being written
 
@@ -50,27 +49,35 @@ def output_path(
     path = Path(path)
     if suffixes and path.suffix.lower() not in suffixes:
         raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}")
-    if path.is_dir():
+    if os.path.isdir(path):
         raise IsADirectoryError(f"{path}: it is a folder; give the name of a file")
-    if path.is_file() and not force:
+    if os.path.isfile(path) and not _is_stream(path) and not force:
         raise FileExistsError(f"{path}: the file exists; {remedy}")
-    _try_to_write(path)
+    if os.path.exists(path) and not os.access(path, os.W_OK):
+        raise PermissionError(f"{path}: it is protected against writing; give another file")
+    if not _is_stream(path):
+        _try_to_write(path)
     return path
 
 
 def _try_to_write(path: Path) -> None:
+    """Write an empty file beside the file, and try its name."""
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {target.parent}; create it first")
-    if target.exists() and not os.access(target, os.W_OK):
-        raise PermissionError(f"{path}: it is protected against writing; give another name")
-    if target.exists() and not target.is_file():  # a device or a pipe
-        return
     try:
-        _empty_file(target.parent, target.suffix).unlink()
+        _empty_file(target.parent, path.suffix).unlink()
+        with suppress(FileNotFoundError):
+            target.stat()
     except OSError as error:
         reason = error.strerror or str(error)
-        raise OSError(f"{path}: it cannot be written ({reason}); give a file in another folder") from None
+        raise OSError(f"{path}: it cannot be written ({reason}); give another file") from None
+
+
+def _is_stream(path: Path) -> bool:
+    """Whether it is a device, a pipe, or a name of an open file such as /dev/stdout: nothing to replace."""
+    named = os.path.abspath(path.parent) in ("/dev", "/dev/fd", "/proc/self/fd")
+    return os.path.exists(path) and (named or not os.path.isfile(path))
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:
@@ -105,13 +112,14 @@ def replacing(path: str | Path) -> Iterator[Path]:
     KeyboardInterrupt
         If the program is interrupted meanwhile: names `path`.
     """
-    target = Path(os.path.realpath(path))
-    special = target.exists() and not target.is_file()
+    path = Path(path)
+    target, stream = Path(os.path.realpath(path)), _is_stream(path)
+    folder = Path(tempfile.gettempdir()) if stream else target.parent
     aside = None
     try:
-        aside = _empty_file(Path(tempfile.gettempdir()) if special else target.parent, target.suffix)
+        aside = _empty_file(folder, path.suffix)
         yield aside
-        _copy(aside, target) if special else _move(aside, target)
+        _copy(aside, path) if stream else _move(aside, target)
     except OSError as error:
         raise OSError(f"{path}: it could not be written ({error.strerror or error}){_kept(target)}") from None
     except KeyboardInterrupt:
@@ -124,12 +132,12 @@ def replacing(path: str | Path) -> Iterator[Path]:
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file in UTF-8 aside, and put it in its place; see `replacing`."""
     with replacing(path) as aside:
-        aside.write_text(text, encoding="utf-8", newline="")
+        aside.write_text(text, encoding="utf-8", errors="replace", newline="")
 
 
 def _empty_file(folder: Path, suffix: str) -> Path:
     """A new file, with the permissions that the user's files have."""
-    path = folder / f"{ASIDE}{token_hex(6)}{suffix}"
+    path = folder / f"{ASIDE}{os.urandom(6).hex()}{suffix}"
     os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     return path
 
@@ -143,10 +151,10 @@ def _move(aside: Path, target: Path) -> None:
     os.replace(aside, target)
 
 
-def _copy(aside: Path, target: Path) -> None:
-    """Write the content of a file to a device or a pipe."""
-    with aside.open("rb") as source, target.open("wb") as device:
-        shutil.copyfileobj(source, device)
+def _copy(aside: Path, stream: Path) -> None:
+    """Write the content of a file to a device, a pipe or an open file."""
+    with aside.open("rb") as source, stream.open("ab") as written:
+        shutil.copyfileobj(source, written)
 
 
 def _kept(target: Path) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,8 +47,10 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
     """
     path = output_path(path, SUFFIXES, force)
     figure: Any = drawn.figure  # of axes, a subfigure perhaps; of a figure, itself
+    content = BytesIO()  # matplotlib does not close a file that it cannot write
+    figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
     with replacing(path) as aside:
-        figure.figure.savefig(aside, dpi=150, bbox_inches="tight")
+        aside.write_bytes(content.getvalue())
     return path
 
 

@@ -54,9 +54,9 @@ class Result:
 
         Numbers that are not finite are null, but `load` gets them back.
         """
-        values, kept = _nullified(self.to_dict()), self.loadable()
-        content = values if kept is None else seal({**values, "record": _encode(kept)})
-        return json.dumps(content, indent=1, allow_nan=False) + "\n"
+        values, result = _nullified(self.to_dict()), self.loadable()
+        record = {} if result is None else {"record": _encode(result)}
+        return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
 
     def save(self, path: str | Path, force: bool = False) -> None:
         """Write the result as JSON, from which `beamdyn.load` makes it again; see `to_json`.
@@ -106,7 +106,7 @@ def load(path: str | Path) -> Any:
     try:
         content = unseal(Path(path).read_bytes())
         if "record" not in content:
-            raise ValueError("it holds no result")
+            raise ValueError("it has numbers only")
         return _decode(content["record"])
     except ValueError as error:
         remedy = "compute the result again; any JSON reader gets its numbers"

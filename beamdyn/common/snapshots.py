@@ -79,8 +79,8 @@ def encode(value: Any) -> Any:
     if isinstance(value, dict) and all(isinstance(key, str) for key in value):
         return {"dict": {key: encode(item) for key, item in value.items()}}
     if _is_known(type(value)):
-        values = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value)}
-        return {"object": [_name(type(value)), values]}
+        names = [f.name for f in dataclasses.fields(type(value))]
+        return {"object": [_name(type(value)), {name: encode(getattr(value, name)) for name in names}]}
     return {"left out": _describe(value)}
 
 

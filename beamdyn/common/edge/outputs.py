@@ -108,6 +108,17 @@ def write(
         save_figure(draw(), outputs.plot, outputs.force)
 
 
+def check_folder(option: str, folder: Path) -> None:
+    """Refuse, before anything is computed, a folder that cannot be made or written in."""
+    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise ValueError(f"--{option} = {folder}: {there} is a file; give a folder")
+    try:
+        output_path(there / "picture.png", force=True)
+    except OSError as error:
+        raise ValueError(f"--{option} = {folder}: {error}") from None
+
+
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
     """Turn a function that draws on axes into one that makes a figure."""
 
@@ -124,7 +135,7 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
 def _check_is_no_input(option: str, path: Path, inputs: Iterable[str | Path]) -> None:
     for read in inputs:
         if any(same_file(place, read) for place in (path, *Path(os.path.realpath(path)).parents)):
-            raise ValueError(f"--{option} = {path}: the command reads {read}; give the name of another file")
+            raise ValueError(f"--{option} = {path}: the command itself needs {read}; give another file")
 
 
 def _check_output(option: str, path: Path, force: bool) -> None:
