@@ -78,9 +78,10 @@ def encode(value: Any) -> Any:
         return {"list" if isinstance(value, list) else "tuple": [encode(item) for item in value]}
     if isinstance(value, dict) and all(isinstance(key, str) for key in value):
         return {"dict": {key: encode(item) for key, item in value.items()}}
-    if _is_known(type(value)):
-        names = [f.name for f in dataclasses.fields(type(value))]
-        return {"object": [_name(type(value)), {name: encode(getattr(value, name)) for name in names}]}
+    kind: Any = type(value)
+    if _is_known(kind):
+        values = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(kind)}
+        return {"object": [_name(kind), values]}
     return {"left out": _describe(value)}
 
 
