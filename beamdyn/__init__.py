@@ -12,6 +12,7 @@ from beamdyn._version import __version__ as __version__
 
 # The public names by their module.
 _NAMES = {
+    "common.results": ("load",),
     "config": ("load_scene",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
@@ -44,6 +45,7 @@ _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names
 __all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
 
 if TYPE_CHECKING:
+    from beamdyn.common.results import load
     from beamdyn.config import load_scene
     from beamdyn.equations.fem import Fem
     from beamdyn.equations.ritz import Ritz

@@ -54,7 +54,7 @@ def modes(
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import modes_csv, modes_table
 
-    outputs.check(shapes=shapes)
+    outputs.check(scene, shapes=shapes)
     loaded = load_scene(scene)
     question = Question.on_file(
         "beamdyn modes", scene, speed=speed, modes=modes, discretization=discretization, tolerance=tolerance
@@ -99,7 +99,7 @@ def locus(
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import locus_csv, locus_table
 
-    outputs.check()
+    outputs.check(scene)
     given = parse_speeds(speeds)
     question = Question.on_file(
         "beamdyn locus", scene, speeds=speeds, modes=modes, discretization=discretization, tolerance=tolerance
@@ -135,7 +135,7 @@ def critical(
     from beamdyn.common.edge.tables import console
 
     outputs = Outputs(json=json, force=force)
-    outputs.check()
+    outputs.check(scene)
     result = critical_point(load_scene(scene), discretization)
     console().print(_describe_critical(result))
     warn(result.warnings)
@@ -174,7 +174,7 @@ def limits(
     from beamdyn.result_tables import limits_table
 
     outputs = Outputs(json=json, force=force)
-    outputs.check()
+    outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
     result = setting_angle_limits(load_scene(scene), top, discretization)
     write(result, outputs)
@@ -202,7 +202,7 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
     from beamdyn.equations.terms import terms
 
     outputs = Outputs(json=json, force=force)
-    outputs.check()
+    outputs.check(scene)
     result = terms(load_scene(scene))
     heads = ("", "term", "symbol", "largest", "reason")
     console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))

@@ -73,9 +73,11 @@ def deliver(
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
 
-    show(tables)
     refusals = [refusal] if refusal else []
-    write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
+    try:
+        show(tables)
+    finally:  # the files of a long computation do not depend on who reads the tables
+        write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
     warn(warnings)
     if refusal:
         raise program.NoAnswer(refusal)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from beamdyn.cli.program import app
-from beamdyn.common.edge.outputs import Flag
+from beamdyn.common.edge.outputs import Flag, check_folder
 from beamdyn.common.edge.program import NoAnswer
 
 
@@ -23,8 +23,7 @@ def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False)
     from beamdyn.common.edge.tables import console
     from beamdyn.reproduce import compare_all
 
-    if output.exists() and not output.is_dir():
-        raise ValueError(f"--output = {output}: it is a file; give a folder")
+    check_folder("output", output)
     screen = console()
     checked = compare_all(screen, output, tables)
     unexpected = sum(not row.as_expected for row in checked)

@@ -48,7 +48,7 @@ def resonances(
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import crossings_csv, crossings_table
 
-    outputs.check()
+    outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
     options = {"modes": modes, "order": order, "discretization": discretization}
     question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options)
@@ -89,7 +89,7 @@ def steady(
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import steady_csv, steady_table
 
-    outputs.check()
+    outputs.check(scene)
     given = parse_speeds(speeds)
     options: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
     question = Question.on_file("beamdyn steady", scene, speeds=speeds, **options)

@@ -51,7 +51,7 @@ def tradeoff(
     from beamdyn.common.edge.tables import progress_bar
     from beamdyn.tradeoffs import tradeoff
 
-    outputs.check()
+    outputs.check(scene)
     given = None if speed is None else parse_speed("--speed", speed)
     end = None if t_end is None else parse_positive("--t-end", t_end, "s")
     limit = parse_positive("--budget", budget, "s")

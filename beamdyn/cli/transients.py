@@ -78,7 +78,7 @@ def simulate(
     from beamdyn.result_tables import transient_csv, transient_table
     from beamdyn.transient.simulate import simulate
 
-    outputs.check(series=series, animation=animation)
+    outputs.check(scene, series=series, animation=animation)
     end = parse_positive("--t-end", t_end, "s")
     span = None if window is None else parse_window(window, end)
     loaded = load_scene(scene)
@@ -133,7 +133,7 @@ def sweep(
     from beamdyn.result_tables import sweep_csv, sweep_table
     from beamdyn.transient.sweep import sweep
 
-    outputs.check()
+    outputs.check(scene, store)
     given, span, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
     question = Question.on_file(
         "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance

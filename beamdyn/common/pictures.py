@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from beamdyn.common.files import output_path, replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -13,6 +16,7 @@ if TYPE_CHECKING:
 # Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 SUFFIXES = (".png", ".svg", ".pdf")
+ANIMATION_SUFFIXES = (".gif",)
 
 
 def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> Path:
@@ -38,45 +42,50 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
         If the suffix is unknown.
     FileExistsError
         If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
+    OSError
+        If it cannot be written.
     """
     path = output_path(path, SUFFIXES, force)
     figure: Any = drawn.figure  # of axes, a subfigure perhaps; of a figure, itself
-    figure.figure.savefig(path, dpi=150, bbox_inches="tight")
+    content = BytesIO()  # matplotlib does not close a file that it cannot write
+    figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
+    with replacing(path) as aside:
+        aside.write_bytes(content.getvalue())
     return path
 
 
-def output_path(path: str | Path, suffixes: Sequence[str], force: bool = False) -> Path:
-    """Check that a file may be written.
+def save_animation(
+    figure: Figure, path: str | Path, frames: Iterable[object], dpi: float, rate: float, force: bool = False
+) -> None:
+    """Write an animation of a figure that changes.
 
     Parameters
     ----------
+    figure : Figure
+        The figure.
     path : str or Path
-        File to write.
-    suffixes : sequence of str
-        Suffixes allowed, in lower case, with their dots.
+        File to write, .gif.
+    frames : iterable
+        Each step to its next item draws one frame.
+    dpi : float
+        Resolution [1/inch].
+    rate : float
+        Frames per second.
     force : bool
         Overwrite a file that exists.
 
-    Returns
-    -------
-    Path
-
     Raises
     ------
-    ValueError
-        If the suffix is none of those allowed.
-    FileExistsError
-        If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
+    ValueError, FileExistsError, OSError
+        As for `save_figure`.
     """
-    path = Path(path)
-    if path.suffix.lower() not in suffixes:
-        raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}")
-    if path.exists() and not force:
-        raise FileExistsError(f"{path} exists; choose another name, or overwrite it with force")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no directory {path.parent}; create it first")
-    return path
+    from matplotlib import rc_context
+    from matplotlib.animation import PillowWriter
+
+    path = output_path(path, ANIMATION_SUFFIXES, force)
+    writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
+    with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames have one size
+        writer.setup(figure, str(aside), dpi)
+        for _ in frames:
+            writer.grab_frame()
+        writer.finish()

@@ -1,4 +1,4 @@
-"""Base of all results: provenance, and conversion to JSON."""
+"""Base of all results: provenance, conversion to JSON, and back."""
 
 from __future__ import annotations
 
@@ -9,6 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from beamdyn.common.files import output_path, write_text
+from beamdyn.common.records import seal, unseal
+from beamdyn.common.snapshots import decode, encode
 
 
 @dataclass(frozen=True)
@@ -41,21 +45,92 @@ class Result:
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
         return {f.name: plain(getattr(self, f.name)) for f in fields if f.repr}
 
-    def save(self, path: str | Path) -> None:
-        """Write the result as JSON; numbers that are not finite are written as null.
+    def loadable(self) -> Result | None:
+        """The result that `load` makes of this one's JSON; None if it makes none."""
+        return self
+
+    def to_json(self) -> str:
+        """The result as JSON: the numbers of `to_dict` for any program, and all that `load` needs.
+
+        Numbers that are not finite are null, but `load` gets them back.
+        """
+        values, result = _nullified(self.to_dict()), self.loadable()
+        record = {} if result is None else {"record": _encode(result)}
+        return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
+
+    def save(self, path: str | Path, force: bool = False) -> None:
+        """Write the result as JSON, from which `beamdyn.load` makes it again; see `to_json`.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+        force : bool
+            Overwrite a file that exists.
 
         Raises
         ------
         FileExistsError
-            If the file exists.
+            If the file exists and `force` is not set.
+        OSError
+            If it cannot be written.
         """
-        with open(path, "x", encoding="utf-8") as file:
-            file.write(to_json(self.to_dict()))
+        write_text(output_path(path, force=force), self.to_json())
 
 
-def to_json(values: dict[str, Any]) -> str:
-    """JSON text of a result's dictionary."""
-    return json.dumps(_nullified(values), indent=1, allow_nan=False) + "\n"
+def load(path: str | Path) -> Any:
+    """Read a result that `Result.save` or the option ``--json`` of a command has written.
+
+    It has the class, the numbers (to the bit), the scene and the provenance of the one that was written, and
+    does what that one does.  Only what is no data is missing, and an error says so where it is used:
+    functions and classes of the user's own (of a motion, a discretization, an integrator), and the
+    interpolation by `solve_ivp`.  A pickle keeps these as well.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ValueError
+        If the file is damaged, was changed, holds no result, or was written by a version whose results
+        had other fields.
+    OSError
+        If it cannot be read.
+    """
+    try:
+        content = unseal(Path(path).read_bytes())
+        if "record" not in content:
+            raise ValueError("it has numbers only")
+        return _decode(content["record"])
+    except ValueError as error:
+        remedy = "compute the result again; any JSON reader gets its numbers"
+        raise ValueError(f"{path}: no result can be loaded: {error}; {remedy}") from None
+
+
+def _encode(result: Result) -> dict[str, Any]:
+    """The fields, and the computed values that the result has kept, such as a modal truncation error."""
+    names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
+    kept = {
+        key: encode(value) for key, value in vars(result).items() if key not in names and _is_number(value)
+    }
+    return {"result": encode(result), "computed": kept}
+
+
+def _decode(record: Any) -> Any:
+    result = decode(record["result"])
+    for key, value in record["computed"].items():
+        object.__setattr__(result, key, decode(value))
+    return result
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, bool | int | float | np.generic | np.ndarray)
 
 
 def plain(value: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -10,6 +11,7 @@ import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
 from beamdyn.common.checks import count
+from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
@@ -65,7 +67,7 @@ class Fem:
     def spaces(self, beam: Beam) -> FemSpaces:
         """Build the function spaces on a beam."""
         order = 6 + min(8, max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree))
-        return FemSpaces(MeshLine(self.nodes(beam)), order)
+        return FemSpaces(self.nodes(beam), order)
 
     def coarser(self) -> Fem:
         """A mesh of half as many elements."""
@@ -108,24 +110,28 @@ def _distribute(total: int, lengths: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class FemSpaces:
+class FemSpaces(FieldsOnly):
     """Function spaces on one mesh with one quadrature rule.
 
     Parameters
     ----------
-    mesh : skfem.Mesh
-        Mesh over x/L.
+    nodes : ndarray, shape (n + 1,)
+        Positions x/L of the nodes of n elements.
     order : int
         Polynomial degree that the quadrature integrates exactly.
     """
 
-    mesh: Mesh
+    nodes: np.ndarray
     order: int
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """Mesh over x/L."""
+        return MeshLine(self.nodes)
 
     def functions(self, held: int) -> FemSpace:
         """Trial functions whose derivatives of orders below `held` vanish at the root."""
-        # A new element for each basis, because ElementLineHermite caches the matrix of its first mesh.
-        return FemSpace(Basis(self.mesh, _ELEMENTS[held](), intorder=self.order), held)
+        return FemSpace(self, held)
 
     def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
         """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
@@ -135,19 +141,25 @@ class FemSpaces:
 
 
 @dataclass(frozen=True)
-class FemSpace:
+class FemSpace(FieldsOnly):
     """Finite-element functions without those that the conditions at the root exclude.
 
     Parameters
     ----------
-    basis : skfem.Basis
-        Mesh, element and quadrature.
+    spaces : FemSpaces
+        Mesh and quadrature.
     held : int
         Number of degrees of freedom fixed at the root: deflection and slope, or the stretch.
     """
 
-    basis: Basis
+    spaces: FemSpaces
     held: int
+
+    @cached_property
+    def basis(self) -> Basis:
+        """Mesh, element and quadrature."""
+        # A new element for each basis, because ElementLineHermite caches the matrix of its first mesh.
+        return Basis(self.spaces.mesh, _ELEMENTS[self.held](), intorder=self.spaces.order)
 
     @property
     def free(self) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.checks import count
+from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
@@ -110,28 +111,44 @@ class RitzSpaces:
 
 
 @dataclass(frozen=True)
-class RitzSpace:
+class RitzSpace(FieldsOnly):
     """Trial functions sampled at the points of a Gauss rule.
 
     Parameters
     ----------
-    evaluation : callable
-        Evaluates the derivatives of all functions at given points.
-    points, rule : ndarray, shape (k,)
-        Points and weights of the rule on [0, 1].
-    orders : int
-        Highest order of derivative.
+    spaces : RitzSpaces
+        Basis, segments and rule.
+    held : int
+        Number of derivatives that vanish at the root; also the highest order of derivative.
     """
 
-    evaluation: Evaluation
-    points: np.ndarray
-    rule: np.ndarray
-    orders: int
+    spaces: RitzSpaces
+    held: int
+
+    @cached_property
+    def evaluation(self) -> Evaluation:
+        """Evaluates the derivatives of all functions at given points."""
+        basis = _BASES[self.spaces.ritz.basis][self.held]
+        return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
+
+    @cached_property
+    def _gauss_rule(self) -> tuple[np.ndarray, np.ndarray]:
+        return _gauss_rule(np.array(self.spaces.breakpoints), self.spaces.points)
+
+    @property
+    def points(self) -> np.ndarray:
+        """Points of the Gauss rule on [0, 1], shape (k,)."""
+        return self._gauss_rule[0]
+
+    @property
+    def rule(self) -> np.ndarray:
+        """Weights of the Gauss rule, shape (k,)."""
+        return self._gauss_rule[1]
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points."""
-        return [self.evaluation(self.points, order) for order in range(self.orders + 1)]
+        return [self.evaluation(self.points, order) for order in range(self.held + 1)]
 
     @property
     def size(self) -> int:
@@ -153,7 +170,7 @@ class RitzSpace:
 
     @cached_property
     def _tip_values(self) -> list[np.ndarray]:
-        return [self.evaluation(np.ones(1), order)[:, 0] for order in range(self.orders + 1)]
+        return [self.evaluation(np.ones(1), order)[:, 0] for order in range(self.held + 1)]
 
     def end(self, order: int) -> np.ndarray:
         """Evaluate the `order`-th derivatives at the tip."""
@@ -166,8 +183,7 @@ class RitzSpace:
 
 @lru_cache(maxsize=128)  # independent of the beam's properties: saves half the time of a small model
 def _build_space(spaces: RitzSpaces, held: int) -> RitzSpace:
-    basis, ends = _BASES[spaces.ritz.basis][held], np.array(spaces.breakpoints)
-    return RitzSpace(basis(spaces.ritz.functions, ends), *_gauss_rule(ends, spaces.points), orders=held)
+    return RitzSpace(spaces, held)
 
 
 def _gauss_rule(ends: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:

@@ -5,14 +5,15 @@ The only module that uses meshio.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.checks import ascending
-from beamdyn.common.pictures import output_path
+from beamdyn.common.files import output_path, replacing
+from beamdyn.common.pictures import save_animation
 
 if TYPE_CHECKING:
     import meshio
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 SHAPE_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
 SERIES_SUFFIXES = (".xdmf",)  # with the numbers as text, for which it does not
-ANIMATION_SUFFIXES = (".gif",)
 _DRAWN_RATIO = 0.1  # largest drawn deflection, and default width, relative to the length
 
 
@@ -62,8 +62,8 @@ def write_shapes(
         If the suffix is unknown or the arrays do not fit together.
     FileExistsError
         If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
+    OSError
+        If it cannot be written.
     """
     path = output_path(path, SHAPE_SUFFIXES, force)
     kind = path.suffix[1:].lower()
@@ -72,7 +72,8 @@ def write_shapes(
     for label, deflection in zip(labels, fields, strict=True):
         name = label.replace(" ", "_") if kind == "vtk" else label
         strip.point_data[name] = _displacement(deflection, len(strip.points))
-    strip.write(path, file_format=kind)
+    with replacing(path) as aside:
+        strip.write(aside, file_format=kind)
 
 
 def write_series(
@@ -109,15 +110,15 @@ def write_series(
         If the suffix is unknown or the arrays do not fit together.
     FileExistsError
         If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
+    OSError
+        If it cannot be written.
     """
     from meshio.xdmf import TimeSeriesWriter
 
     path = output_path(path, SERIES_SUFFIXES, force)
     x, t, deflection = _check_history(x, t, deflection)
     strip = _strip(x, width)
-    with TimeSeriesWriter(path, data_format="XML") as writer:
+    with replacing(path) as aside, TimeSeriesWriter(aside, data_format="XML") as writer:
         writer.write_points_cells(strip.points, strip.cells)
         for time, row in zip(t.tolist(), deflection, strict=True):
             writer.write_data(time, {"displacement": _displacement(row, len(strip.points))})
@@ -154,24 +155,24 @@ def animate(
         If the suffix is unknown or the arrays do not fit together.
     FileExistsError
         If the file exists and `force` is not set.
-    FileNotFoundError
-        If there is no such directory.
+    OSError
+        If it cannot be written.
     """
-    from matplotlib.animation import PillowWriter
     from matplotlib.figure import Figure
 
-    path = output_path(path, ANIMATION_SUFFIXES, force)
     x, t, deflection = _check_history(x, t, deflection)
     figure = Figure(figsize=(6.4, 3.6), layout="constrained")
     line, title = _draw_axes(figure.subplots(), x, np.abs(deflection).max())
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # laid out once, not for each picture
-    writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
-    with writer.saving(figure, str(path), dpi=100):
-        for time, row in zip(t, deflection, strict=True):
+    figure.set_layout_engine("none")  # laid out once, not for each frame
+
+    def frames() -> Iterator[float]:
+        for time, row in zip(t.tolist(), deflection, strict=True):
             line.set_ydata(1e3 * row)
             title.set_text(f"t = {time:.4f} s")
-            writer.grab_frame()
+            yield time
+
+    save_animation(figure, path, frames(), 100, rate, force)
 
 
 def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> meshio.Mesh:

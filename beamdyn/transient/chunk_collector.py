@@ -12,6 +12,8 @@ import scipy
 from beamdyn._version import __version__
 from beamdyn.common.parallel.store import Store, fingerprint
 from beamdyn.common.parallel.workers import Workers
+from beamdyn.common.records import DamagedRecord
+from beamdyn.scene.validity import list_range
 from beamdyn.transient.chunks import CaseResult, SweepRequest, solve_chunk
 
 VERSIONS = (__version__, np.__version__, scipy.__version__)  # of the programs on which the stored bits depend
@@ -55,6 +57,11 @@ class ChunkCollector:
         Directory of the finished chunks.
     progress : callable, optional
         Called with the number of finished cases and of all.
+
+    Attributes
+    ----------
+    warnings : list of str
+        Records of the store that are damaged, and why.
     """
 
     def __init__(
@@ -67,10 +74,23 @@ class ChunkCollector:
         self.request, self.chunks, self.store, self.progress = request, chunks, store, progress
         self.finished: dict[int, list[CaseResult]] = {}
         self.futures: dict[Future[Any], int] = {}
+        self.warnings: list[str] = []
         if store is not None:
             self.keys = [fingerprint(VERSIONS, request, speeds) for speeds in chunks]
-            stored = ((k, store.read(key)) for k, key in enumerate(self.keys))
-            self.finished = {k: [CaseResult(*c) for c in record["cases"]] for k, record in stored if record}
+            for k in range(len(chunks)):
+                self._look_up(store, k)
+
+    def _look_up(self, store: Store, k: int) -> None:
+        """Take chunk k from the store if it is there, whole; warn of a damaged record."""
+        try:
+            record = store.read(self.keys[k])
+        except DamagedRecord as error:
+            speeds = list_range(np.array(self.chunks[k]))
+            file = store.file(self.keys[k])
+            self.warnings.append(f"{file}: {error}; the cases at {speeds} were computed again")
+            return
+        if record is not None:
+            self.finished[k] = [CaseResult(*case) for case in record["cases"]]
 
     @property
     def missing(self) -> list[int]:

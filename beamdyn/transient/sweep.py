@@ -152,14 +152,16 @@ def sweep(
     _check_speeds(request := replace(request, basis=basis or _smallest_basis(request, cases)), cases)
     if store is not None or executor is not None or workers > 1:
         _check_sendable(request, importable=workers > 1)
+    chunk_store = None if store is None else Store(store, _KIND)
     samples = _run_samples(request, cases, TransientRequest.run) if basis else _choose_basis(request, cases)
     largest = max((run.request.basis for run in samples), key=lambda basis: basis.modes or 0)
-    request, chunk_store = replace(request, basis=largest), None if store is None else Store(store, _KIND)
+    request = replace(request, basis=largest)
     collector = ChunkCollector(request, _split(cases, chunk), chunk_store, progress)
     collector.collect(executor, workers)
     method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model().discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
-    return _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
+    result = _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
+    return replace(result, warnings=(*result.warnings, *collector.warnings))
 
 
 def _split(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:

@@ -35,6 +35,10 @@ class Answer(Result, ABC):
         """Why the model has no answer, such as a brake that locks: one sentence each, none if it has."""
         return ()
 
+    def loadable(self) -> Result | None:
+        """The result of the mechanics, if a single one is all that there is to know; else None."""
+        return None
+
     @abstractmethod
     def tables(self) -> list[RenderableType]:
         """Tables and sentences, for the console, the screen and the HTML report."""

@@ -105,6 +105,10 @@ class DrumAnswer(Answer):
             Handle("height of the force", (0.55 * r, force), lambda x, y: {"shoe.force_arm": y}),
         )
 
+    def loadable(self) -> BrakeResult:
+        """The result of the mechanics."""
+        return self.result
+
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings."""
         return self.result.to_dict()

@@ -105,7 +105,7 @@ def run_command(
     from beamdyn.common.edge.tables import show
 
     written = {option: path for option, (path, _) in (further or {}).items()}
-    outputs.check(**written)
+    outputs.check(file, **written)
     tables, text = brake.open(file)
     question = Question.of(f"brakes {command}", file, text, **options, sweep=sweep, result=result)
     if sweep:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from beamdyn.common.edge.outputs import check_folder
 from beamdyn.common.edge.program import NoAnswer
 from brakes.cli.program import app
 
@@ -20,8 +21,7 @@ def reproduce(*, output: Path = Path("brakes-reproduce")) -> None:
     from beamdyn.common.edge.tables import console
     from brakes.reproduce import compare_all
 
-    if output.exists() and not output.is_dir():
-        raise ValueError(f"--output = {output}: it is a file; give a folder")
+    check_folder("output", output)
     screen = console()
     checked = compare_all(screen, output)
     unexpected = sum(not verdict.as_expected for verdict in checked)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.pictures import COLOURS, output_path
+from beamdyn.common.pictures import COLOURS, save_animation
 from brakes.drawings import mechanism_parts as parts
 from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
 
@@ -317,20 +317,20 @@ def animate(
     rate : float
         Pictures a second.
     """
-    from matplotlib.animation import PillowWriter
     from matplotlib.figure import Figure
 
-    path = output_path(path, (".gif",), force)
     figure = Figure(figsize=(5.6, 5.2), layout="constrained")
     ax = figure.subplots()
     low, high = (_MM * corner for corner in parts.extent(positions))
     margin = 0.12 * float(np.linalg.norm(high - low))
     count = len(positions.batch)
-    writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
-    with writer.saving(figure, str(path), dpi=80):
+
+    def frames() -> Iterator[int]:
         for k in (*range(count), *range(count - 2, 0, -1)):
             ax.clear()
             draw_mechanism(Position(positions.mechanism, positions.batch[k]), ax)
             ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
             ax.set_title(caption(k))
-            writer.grab_frame()
+            yield k
+
+    save_animation(figure, path, frames(), 80, rate, force)

@@ -1,5 +1,6 @@
 """The store: whole files only, its own directory only, keys by content."""
 
+import hashlib
 import json
 import math
 import os
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from beamdyn.common.parallel.store import Store, fingerprint
+from beamdyn.common.records import DamagedRecord
 
 
 @dataclass(frozen=True)
@@ -46,11 +48,65 @@ def test_what_was_not_written_is_missing(tmp_path):
     assert Store(tmp_path, "test").read("key") is None
 
 
-def test_a_damaged_file_is_missing(tmp_path):
+RECORD = {"cases": [[0.1 + 0.2, 1e-5, "done"], [1 / 3, 2.5e-300, "failed: grows"]], "speeds": [50.0, 60.0]}
+
+
+def test_no_flipped_bit_gives_another_record(tmp_path):
     store = Store(tmp_path, "test")
-    store.write("key", {"value": 1.0})
-    (tmp_path / "key.json").write_text('{"value": 1.')
-    assert store.read("key") is None
+    store.write("key", RECORD)
+    whole = store.file("key").read_bytes()
+    refused = 0
+    for bit in range(8 * len(whole)):
+        damaged = bytearray(whole)
+        damaged[bit // 8] ^= 1 << bit % 8
+        store.file("key").write_bytes(damaged)
+        try:
+            assert store.read("key") == RECORD  # 1e-05 as 1E-05
+        except DamagedRecord:
+            refused += 1
+    assert refused > 0.99 * 8 * len(whole)
+
+
+def edit(record):
+    record["cases"][0][1] = 2e-5
+
+
+DAMAGE = {
+    "a value edited": (edit, "does not match its checksum"),
+    "a key removed": (lambda record: record.pop("speeds"), "does not match its checksum"),
+    "no checksum": (lambda record: record.pop("checksum"), "an earlier version wrote it"),
+    "another schema": (
+        lambda record: record.update(reseal(record, schema=0)),
+        "has schema 0.* reads schema 1",
+    ),
+    "another key": (lambda record: record.update(reseal(record, key="other")), "was renamed"),
+}
+
+
+def reseal(record, **changed):
+    content = {name: value for name, value in (record | changed).items() if name != "checksum"}
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return {**content, "checksum": hashlib.sha256(text.encode()).hexdigest()}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_record_that_is_not_as_written_is_refused_with_the_reason(tmp_path, damage):
+    change, reason = DAMAGE[damage]
+    store = Store(tmp_path, "test")
+    store.write("key", RECORD)
+    record = json.loads(store.file("key").read_text())
+    change(record)
+    store.file("key").write_text(json.dumps(record))
+    with pytest.raises(DamagedRecord, match=reason):
+        store.read("key")
+
+
+@pytest.mark.parametrize("text", ['{"value": 1.', "", "[" * 100_000, "7"])
+def test_a_file_that_is_no_record_is_refused(tmp_path, text):
+    store = Store(tmp_path, "test")
+    store.file("key").write_text(text)
+    with pytest.raises(DamagedRecord):
+        store.read("key")
 
 
 def test_a_write_that_fails_leaves_nothing(tmp_path):
@@ -61,7 +117,7 @@ def test_a_write_that_fails_leaves_nothing(tmp_path):
 
 
 def test_an_unfinished_file_of_a_killed_program_does_no_harm(tmp_path):
-    (tmp_path / "left.part").write_text("{")
+    (tmp_path / ".unfinished-left.json").write_text("{")
     assert Store(tmp_path, "test").read("left") is None
 
 
@@ -100,7 +156,7 @@ def test_a_directory_without_permission_is_refused(tmp_path):
 
 def test_files_are_json(tmp_path):
     Store(tmp_path, "test").write("key", {"cases": [(1.0, "done")]})
-    assert json.loads((tmp_path / "key.json").read_text()) == {"cases": [[1.0, "done"]]}
+    assert json.loads((tmp_path / "key.json").read_text())["cases"] == [[1.0, "done"]]
 
 
 @pytest.mark.parametrize(

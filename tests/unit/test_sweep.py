@@ -134,6 +134,23 @@ def test_foreign_and_unwritable_stores_are_refused_before_any_work(content, tmp_
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
+@pytest.mark.parametrize("damage", ["edited", "of an earlier version"])
+def test_a_damaged_record_is_computed_again_and_named(damage, tmp_path):
+    whole = bd.sweep(SCENE, [10.0, 20.0], WINDOW, chunk=1, store=tmp_path)
+    file = min(path for path in tmp_path.iterdir() if path.name != "store.json")
+    record = json.loads(file.read_text())
+    record["cases"][0][0] *= 2
+    if damage == "of an earlier version":
+        record = {key: record[key] for key in ("speeds", "fields", "cases")}
+    file.write_text(json.dumps(record))
+    again = bd.sweep(SCENE, [10.0, 20.0], WINDOW, chunk=1, store=tmp_path)
+    assert again.peaks.tolist() == whole.peaks.tolist()
+    (warning,) = (w for w in again.warnings if w not in whole.warnings)
+    assert str(file) in warning and "checksum" in warning and "computed again" in warning
+    mended = bd.sweep(SCENE, [10.0, 20.0], WINDOW, chunk=1, store=tmp_path)
+    assert mended.warnings == whole.warnings
+
+
 def of_lambdas():
     speed = bd.RotationFunction(lambda t: 20 * t**2, lambda t: 40 * t, lambda t: 40.0, t_end=0.5)
     return replace(SCENE, motion=replace(MOTION, speed=speed))

@@ -77,7 +77,7 @@ def read(path: str | PathLike[str]) -> str:
         If it cannot be read; the message says why.
     """
     try:
-        return Path(path).read_text(encoding="utf-8")
+        return Path(path).read_text(encoding="utf-8-sig")  # with or without the mark that editors prepend
     except FileNotFoundError:
         raise ConfigError(str(path), ["there is no such file; check the name and the folder"]) from None
     except OSError as error:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import csv
+import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
+
+from beamdyn.common.files import output_path, same_file, write_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +28,7 @@ _SUFFIXES = {
     "shapes": (".vtu", ".vtk"),
     "series": (".xdmf",),
     "animation": (".gif",),
+    "free-bodies": (".png", ".svg", ".pdf"),
 }
 
 
@@ -53,15 +57,30 @@ class Outputs:
     report: Path | None = None
     force: Flag = False
 
-    def check(self, **more: Path | None) -> None:
-        """Refuse, before anything is computed, a file that cannot be written."""
+    def check(self, *inputs: str | Path | None, **more: Path | None) -> None:
+        """Refuse, before anything is computed, a file that cannot be written or would destroy another.
+
+        Parameters
+        ----------
+        *inputs : str or Path
+            Files and folders that the command reads; None for those that are not given.
+        **more : Path, optional
+            Files of further options, by the option's name.
+
+        Raises
+        ------
+        ValueError
+            If a file cannot be written, is an input or lies in one, or is named twice.
+        """
         own = {"plot": self.plot, "json": self.json, "csv": self.csv, "report": self.report}
         paths = {**own, **more}
         given = {option: path for option, path in paths.items() if path is not None}
         for option, path in given.items():
+            _check_is_no_input(option, path, [i for i in inputs if i is not None])
             _check_output(option, path, self.force)
-        if len({path.absolute() for path in given.values()}) < len(given):
-            raise ValueError(f"{' and '.join('--' + o for o in given)}: give each its own file")
+        for (one, path), (other, same) in combinations(given.items(), 2):
+            if same_file(path, same):
+                raise ValueError(f"--{one} and --{other} = {same}: give each its own file")
 
 
 NO_FILES = Outputs()
@@ -76,18 +95,28 @@ def write(
 ) -> None:
     """Write the requested files; `rows` are those of the CSV file, `draw` makes the picture."""
     if outputs.json is not None:
-        from beamdyn.common.results import to_json
-
-        outputs.json.write_text(to_json(result.to_dict()), encoding="utf-8")
+        write_text(outputs.json, result.to_json())
     if outputs.csv is not None:
-        with outputs.csv.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(rows)
+        from beamdyn.common.edge.rendering import csv_text
+
+        write_text(outputs.csv, csv_text(rows))
     if outputs.report is not None and draw is not None and report is not None:
-        outputs.report.write_text(report.page(draw), encoding="utf-8")
+        write_text(outputs.report, report.page(draw))
     if outputs.plot is not None and draw is not None:
         from beamdyn.common.pictures import save_figure
 
         save_figure(draw(), outputs.plot, outputs.force)
+
+
+def check_folder(option: str, folder: Path) -> None:
+    """Refuse, before anything is computed, a folder that cannot be made or written in."""
+    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise ValueError(f"--{option} = {folder}: {there} is a file; give a folder")
+    try:
+        output_path(there / "picture.png", force=True)
+    except OSError as error:
+        raise ValueError(f"--{option} = {folder}: {error}") from None
 
 
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
@@ -103,17 +132,15 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
     return made
 
 
+def _check_is_no_input(option: str, path: Path, inputs: Iterable[str | Path]) -> None:
+    for read in inputs:
+        if any(same_file(place, read) for place in (path, *Path(os.path.realpath(path)).parents)):
+            raise ValueError(f"--{option} = {path}: the command itself needs {read}; give another file")
+
+
 def _check_output(option: str, path: Path, force: bool) -> None:
-    suffixes = _SUFFIXES.get(option)
-    if suffixes and path.suffix.lower() not in suffixes:
-        raise ValueError(
-            f"--{option} = {path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}"
-        )
-    if path.is_dir():
-        raise ValueError(f"--{option} = {path}: it is a folder; give the name of a file")
-    if not path.parent.is_dir():
-        raise ValueError(f"--{option} = {path}: there is no folder {path.parent}; create it first")
-    if path.exists() and not force:
-        raise ValueError(
-            f"--{option} = {path}: the file exists; add --force to overwrite it, or give another name"
-        )
+    remedy = "add --force to overwrite it, or give another name"
+    try:
+        output_path(path, _SUFFIXES.get(option, ()), force, remedy)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"--{option} = {error}") from None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from io import TextIOWrapper
 
 from cyclopts import App, CycloptsError
 
@@ -40,8 +42,10 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     """
     name = app.name[0]
     given = sys.argv[1:] if arguments is None else list(arguments)
+    if sys.stdout is None:
+        return _complain(name, "the standard output is closed; direct it to a file or a device", BAD_INPUT)
     try:
-        app(given, exit_on_error=False, print_error=False, result_action="return_value")
+        _call(app, given)
     except (NoAnswer, ArithmeticError) as error:
         return _complain(name, f"no answer: {error}", NO_ANSWER)
     except MemoryError as error:
@@ -50,13 +54,21 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
         )
     except Interrupted as error:
         return _complain(name, f"interrupted: {error}", INTERRUPTED)
-    except KeyboardInterrupt:
-        return _complain(name, "interrupted", INTERRUPTED)
+    except KeyboardInterrupt as error:
+        return _complain(name, f"interrupted: {error}".removesuffix(": "), INTERRUPTED)
     except CycloptsError as error:
         return _complain(name, f"{error} See {name} --help.", BAD_INPUT)
     except (ValueError, OSError) as error:
         return _refused(name, error)
     return DONE
+
+
+def _call(app: App, arguments: Sequence[str]) -> None:
+    from beamdyn.common.edge.tables import Screen
+
+    if isinstance(sys.stdout, TextIOWrapper):  # what is printed may name a file or a brake of any name
+        sys.stdout.reconfigure(errors="replace")
+    app(arguments, console=Screen(), exit_on_error=False, print_error=False, result_action="return_value")
 
 
 def _refused(name: str, error: Exception) -> int:
@@ -69,11 +81,18 @@ def _refused(name: str, error: Exception) -> int:
 
 
 def _complain(name: str, sentence: str, code: int) -> int:
-    print(f"{name}: {sentence}", file=sys.stderr)
+    _say(f"{name}: {sentence}")
     return code
 
 
 def warn(name: str, warnings: Iterable[str]) -> None:
     """Print a program's warnings on standard error."""
     for warning in warnings:
-        print(f"{name}: warning: {warning}", file=sys.stderr)
+        _say(f"{name}: warning: {warning}")
+
+
+def _say(sentence: str) -> None:
+    """Print on standard error, if it can be written."""
+    if sys.stderr is not None:
+        with suppress(OSError):
+            print(sentence, file=sys.stderr, flush=True)

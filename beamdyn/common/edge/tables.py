@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
+from unicodedata import normalize
 
 from rich import box
 from rich.console import Console, Group, RenderableType
@@ -16,10 +19,55 @@ from beamdyn.common.comparison import Comparison
 _PIPE_WIDTH = 120  # of tables that go to a file or another program
 
 
-def console() -> Console:
+# ASCII for characters of our tables that a console without Unicode may lack.
+_SPELLED = {
+    **{"ω": "omega", "ζ": "zeta", "Λ": "Lambda", "Ω": "ohm", "µ": "u", "μ": "u", "ᵀ": "^T", "²": "^2"},
+    **{"³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x"},
+}
+
+
+def spell(text: str, encoding: str) -> str:
+    """Write a text with the characters that an encoding has: "omega^2" where it has no Greek."""
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return "".join(_spell_character(c, encoding) for c in text)
+    return text
+
+
+def _spell_character(character: str, encoding: str) -> str:
+    if character.encode(encoding, "ignore"):
+        return character
+    plain = normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return _SPELLED.get(character) or plain or "?"
+
+
+class Screen(Console):
+    """A console on standard output that prints with the characters it has, whoever reads it."""
+
+    def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Convert a string to rich's text."""
+        return super().render_str(spell(text, self.encoding), **options)
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print; raises an OSError that names the standard output."""
+        try:
+            super().print(*objects, **options)
+        except OSError as error:
+            raise OSError(f"the standard output cannot be written ({error.strerror or error})") from None
+
+    def on_broken_pipe(self) -> None:
+        """Print no more to a reader that has closed the pipe, as `head` does, but let the command finish."""
+        self.quiet = True
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def console() -> Screen:
     """The console on standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
-    return Console(width=width, markup=False, highlight=False, emoji=False)
+    return Screen(width=width, markup=False, highlight=False, emoji=False)
 
 
 def show(parts: Iterable[RenderableType]) -> None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-import os
 import pickle
-import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import CodeType, FunctionType
@@ -15,13 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.files import ASIDE, write_text
+from beamdyn.common.records import DamagedRecord, seal, unseal
+
 _MARKER = "store.json"  # tells a store from a directory with other content
-_UNFINISHED = ".part"  # suffix of a file that is still being written
 _REMEDY = "name a directory that does not exist yet, or an earlier store"
 
 
 class Store:
-    """A directory of records; each is written in one step and never changed.
+    """A directory of records; each is written in one step, sealed by a checksum, and never changed.
 
     Opening it makes the directory, or checks that it is an earlier store and can be written.
 
@@ -50,44 +50,46 @@ class Store:
         if self.path.exists() and not self.path.is_dir():
             raise ValueError(f"store = {str(self.path)!r} is a file; {_REMEDY}")
         self.path.mkdir(exist_ok=True)
-        content = [p.name for p in self.path.iterdir() if not p.name.endswith(_UNFINISHED)]
+        content = [p.name for p in self.path.iterdir() if not p.name.startswith(ASIDE)]
         if content and self._marked() != self.kind:
             raise ValueError(
                 f"store = {str(self.path)!r} holds something else than a {self.kind} "
                 f"({min(content)!r}, for instance); {_REMEDY}"
             )
-        self._write(_MARKER, {"kind": self.kind})  # also shows that it can be written
+        write_text(self.path / _MARKER, json.dumps({"kind": self.kind}))  # also shows that it can be written
 
     def _marked(self) -> object:
-        return (self._read(_MARKER) or {}).get("kind")
+        try:
+            return json.loads((self.path / _MARKER).read_bytes())["kind"]
+        except (OSError, ValueError, LookupError, TypeError):
+            return None
+
+    def file(self, key: str) -> Path:
+        """The file of the record of a key."""
+        return self.path / f"{key}.json"
 
     def read(self, key: str) -> dict[str, Any] | None:
-        """The record of a key, None if there is none that can be read."""
-        return self._read(f"{key}.json")
+        """The record of a key, None if there is none.
+
+        Raises
+        ------
+        DamagedRecord
+            If there is one that is not as it was written.
+        """
+        try:
+            text = self.file(key).read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise DamagedRecord(f"it cannot be read ({error.strerror})") from None
+        record = unseal(text)
+        if record.pop("key", None) != key:
+            raise DamagedRecord("it is the record of another key: its file was renamed")
+        return record
 
     def write(self, key: str, record: Mapping[str, Any]) -> None:
         """Keep a record of JSON's types under a key; floats keep all their digits."""
-        self._write(f"{key}.json", record)
-
-    def _read(self, name: str) -> dict[str, Any] | None:
-        try:
-            record = json.loads((self.path / name).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return None
-        return record if isinstance(record, dict) else None
-
-    def _write(self, name: str, record: Mapping[str, Any]) -> None:
-        """Write aside and rename: a file of this name is whole, whenever the program ends."""
-        handle, aside = tempfile.mkstemp(suffix=_UNFINISHED, dir=self.path)
-        try:
-            with open(handle, "w", encoding="utf-8") as file:
-                json.dump(record, file)
-                file.flush()
-                os.fsync(handle)
-            os.replace(aside, self.path / name)
-        except BaseException:
-            Path(aside).unlink(missing_ok=True)
-            raise
+        write_text(self.file(key), json.dumps(seal({**record, "key": key})))
 
 
 # Keys ---------------------------------------------------------------------------------------------

@@ -1,0 +1,162 @@
+"""Objects made of data as JSON's types, and back, to the bit: how results are kept in files.
+
+Numbers, strings, arrays, containers and dataclasses of this package are data.  What is not (a function, an
+object of another package's class) is left out, and stands in the object that comes back as a `LeftOut`.
+"""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+_PACKAGES = ("beamdyn", "brakes")  # whose classes may be named in a file
+
+
+class LeftOut:
+    """Stands for a part of an object that its file does not hold: using it raises a ValueError.
+
+    Parameters
+    ----------
+    what : str
+        The part.
+    """
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+
+    def __repr__(self) -> str:
+        return f"<left out: {self.what}>"
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name == "what":  # what Python itself looks for
+            raise AttributeError(name)
+        self()
+
+    def __call__(self, *arguments: object, **options: object) -> Any:
+        """Raise the ValueError."""
+        raise ValueError(
+            f"the file does not hold {self.what}, which is no data; compute the result again to use it"
+        )
+
+
+class FieldsOnly:
+    """Base of dataclasses that are pickled by their fields, without what they have computed and kept."""
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
+        return type(self), tuple(getattr(self, f.name) for f in fields)
+
+
+def encode(value: Any) -> Any:
+    """Represent an object by JSON's types.
+
+    Parameters
+    ----------
+    value : object
+        None, number, string, array, slice, container, or dataclass of this package.
+
+    Returns
+    -------
+    object
+        The value itself, or a dictionary with one key that names its type.
+    """
+    if isinstance(value, np.generic):
+        return encode(value.item())
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float):
+        return value if np.isfinite(value) else {"float": str(value)}
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biufcU":
+        return {"array": [value.dtype.str, list(value.shape), base64.b64encode(value.tobytes()).decode()]}
+    if isinstance(value, complex | slice):
+        return {type(value).__name__: [encode(part) for part in _PARTS[type(value)](value)]}
+    if isinstance(value, tuple | list):
+        return {"list" if isinstance(value, list) else "tuple": [encode(item) for item in value]}
+    if isinstance(value, dict) and all(isinstance(key, str) for key in value):
+        return {"dict": {key: encode(item) for key, item in value.items()}}
+    kind: Any = type(value)
+    if _is_known(kind):
+        values = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(kind)}
+        return {"object": [_name(kind), values]}
+    return {"left out": _describe(value)}
+
+
+_PARTS: dict[type, Any] = {
+    complex: lambda z: (z.real, z.imag),
+    slice: lambda s: (s.start, s.stop, s.step),
+}
+
+
+def decode(value: Any) -> Any:
+    """Make the object that `encode` represented.
+
+    Raises
+    ------
+    ValueError
+        If it names a class that this version does not have, or that has other fields.
+    """
+    if not isinstance(value, dict):
+        return value
+    ((kind, content),) = value.items()
+    return _DECODERS[kind](content)
+
+
+def _decode_array(content: list[Any]) -> np.ndarray:
+    kind, shape, data = content
+    return np.frombuffer(base64.b64decode(data), dtype=kind).reshape(shape).copy()
+
+
+def _decode_object(content: list[Any]) -> Any:
+    """An object with the fields as they were, without the checks and conversions of its construction."""
+    name, values = content
+    kind = _find_class(name)
+    if {f.name for f in dataclasses.fields(kind)} != set(values):
+        raise ValueError(f"in this version {kind.__name__} has other fields")
+    made = object.__new__(kind)
+    for key, item in values.items():
+        object.__setattr__(made, key, decode(item))
+    return made
+
+
+_DECODERS: dict[str, Any] = {
+    "float": float,
+    "complex": lambda parts: complex(*map(decode, parts)),
+    "slice": lambda parts: slice(*map(decode, parts)),
+    "array": _decode_array,
+    "tuple": lambda items: tuple(map(decode, items)),
+    "list": lambda items: [*map(decode, items)],
+    "dict": lambda items: {key: decode(item) for key, item in items.items()},
+    "object": _decode_object,
+    "left out": LeftOut,
+}
+
+
+def _is_known(kind: type) -> bool:
+    return dataclasses.is_dataclass(kind) and kind.__module__.partition(".")[0] in _PACKAGES
+
+
+def _name(kind: type) -> str:
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def _find_class(name: str) -> Any:
+    module, _, kind = name.partition(":")
+    try:
+        if module.partition(".")[0] not in _PACKAGES:
+            raise ImportError
+        found = getattr(import_module(module), kind)
+    except (ImportError, AttributeError):
+        found = None
+    if not (isinstance(found, type) and _is_known(found)):
+        raise ValueError(f"this version has no class {kind} in {module}")
+    return found
+
+
+def _describe(value: object) -> str:
+    """What a part is that is left out."""
+    name = getattr(value, "__qualname__", "") or type(value).__qualname__
+    return f"{name} of {getattr(value, '__module__', None) or type(value).__module__}"

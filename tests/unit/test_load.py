@@ -1,0 +1,286 @@
+"""Results that come back: from a pickle, from other processes, from the files of `save` and ``--json``."""
+
+import dataclasses
+import json
+import math
+import multiprocessing
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn import cli as beams
+from beamdyn.common.edge.input_sweep import InputSweep
+from beamdyn.common.records import seal
+from beamdyn.common.snapshots import LeftOut, decode, encode
+from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
+from brakes import cli as brakes
+from brakes.drum import BrakeResult
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MAKERS = {
+    "modes": lambda d: bd.natural_modes(SHORT_SPIN_UP, 50.0, 3, d),
+    "damped modes": lambda d: bd.natural_modes(
+        dataclasses.replace(HARVESTER, damping_ratio=0.02), 170.0, 3, d
+    ),
+    "locus": lambda d: bd.frequency_locus(HARVESTER, [0.0, 50.0, 170.0], 3, d),
+    "critical": lambda d: bd.critical_point(HARVESTER, d),
+    "limits": lambda d: bd.setting_angle_limits(HARVESTER, 400.0, d),
+    "crossings": lambda d: bd.resonance_speeds(SHORT_SPIN_UP, 100.0, discretization=d),
+    "steady": lambda d: bd.steady_response(SHORT_SPIN_UP, [50.0, 170.0], 3, discretization=d),
+    "transient": lambda d: bd.simulate(SHORT_SPIN_UP, 0.3, 3, discretization=d),
+    "all modes": lambda d: bd.simulate(
+        SHORT_SPIN_UP, 0.05, None, discretization={"ritz": bd.Ritz(6), "fem": bd.Fem(6)}[d]
+    ),
+    "sweep": lambda d: bd.sweep(SHORT_SPIN_UP, [50.0, 53.0], AFTER_SHORT_SPIN_UP, modes=3, discretization=d),
+    "bounds": lambda d: bd.frequency_bounds(HARVESTER, 50.0),
+    "terms": lambda d: bd.terms(SHORT_SPIN_UP),
+    "tradeoff": lambda d: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.1),
+}
+CASES = [
+    *((name, "ritz") for name in MAKERS),
+    *((name, "fem") for name in ("modes", "transient", "all modes")),
+]
+
+
+@pytest.fixture(scope="module")
+def made():
+    kept = {}
+
+    def made(name, discretization="ritz"):
+        if (name, discretization) not in kept:
+            kept[name, discretization] = MAKERS[name](discretization)
+        return kept[name, discretization]
+
+    return made
+
+
+def differences(one, other, path=""):
+    """Places at which two objects differ in a bit; numbers of numpy and Python are one."""
+    if isinstance(one, np.ndarray):
+        same = one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+        return [] if same else [path]
+    if dataclasses.is_dataclass(one):
+        pairs = [(getattr(one, f.name), getattr(other, f.name), f.name) for f in dataclasses.fields(one)]
+        same = type(one) is type(other)
+    elif isinstance(one, dict):
+        pairs, same = [(one[key], other[key], key) for key in one], list(one) == list(other)
+    elif isinstance(one, tuple | list):
+        same = len(one) == len(other) and type(one) is type(other)
+        pairs = list(zip(one, other, range(len(one)), strict=True))
+    else:
+        return [] if repr(np.asarray(one)[()]) == repr(np.asarray(other)[()]) else [path]
+    return [path] if not same else [d for a, b, name in pairs for d in differences(a, b, f"{path}.{name}")]
+
+
+def check_use(result):
+    """Numbers that come from what a result keeps besides its fields."""
+    match result:
+        case bd.Modes():
+            return result.shape(np.linspace(0, result.scene.beam.length, 5))
+        case bd.Transient():
+            times = np.linspace(0, result.path.end, 5)
+            return np.array([result.peak(*times[[1, 3]]), *result.root_strain(times), *result.energy(times)])
+        case bd.SteadyResponse():
+            return result.tip(np.linspace(0, 6, 7))
+    return np.zeros(0)
+
+
+@pytest.mark.parametrize(("name", "discretization"), CASES)
+def test_a_result_comes_back_from_a_pickle(made, name, discretization):
+    result = made(name, discretization)
+    check_use(result)  # so that it has computed and kept something
+    again = pickle.loads(pickle.dumps(result))
+    assert not differences(result, again)
+    assert check_use(result).tobytes() == check_use(again).tobytes()
+
+
+@pytest.mark.parametrize(("name", "discretization"), CASES)
+def test_a_result_comes_back_from_its_file(made, name, discretization, tmp_path):
+    result = made(name, discretization)
+    result.save(tmp_path / "result.json")
+    again = bd.load(tmp_path / "result.json")
+    assert type(again) is type(result)
+    assert not differences(result, again)
+    assert check_use(result).tobytes() == check_use(again).tobytes()
+    assert again.to_json() == result.to_json()
+    assert "LeftOut" not in repr(again)
+
+
+def test_results_come_back_from_a_pool_of_new_processes(made):
+    context = multiprocessing.get_context("spawn")
+    calls = [
+        partial(bd.natural_modes, SHORT_SPIN_UP, 50.0, 3, "fem"),
+        partial(bd.simulate, SHORT_SPIN_UP, 0.3, 3),
+        partial(bd.steady_response, SHORT_SPIN_UP, [50.0], 3),
+    ]
+    with ProcessPoolExecutor(1, mp_context=context) as pool:
+        modes, run, steady = (pool.submit(call).result(timeout=120) for call in calls)
+    assert modes.frequency.tobytes() == made("modes", "fem").frequency.tobytes()
+    assert check_use(modes) == pytest.approx(check_use(made("modes", "fem")), rel=1e-12)
+    assert run.peak(0.1, 0.3) == made("transient").peak(0.1, 0.3)
+    assert steady.amplitude[0] == pytest.approx(made("steady").amplitude[0], rel=1e-12)
+
+
+def test_a_computed_error_is_kept_in_the_file(made, tmp_path, monkeypatch):
+    run = made("transient")
+    run.save(tmp_path / "run.json")
+    monkeypatch.setattr("beamdyn.transient.simulate.TransientRequest.run_refined", None)  # not to be called
+    assert bd.load(tmp_path / "run.json").mode_error == run.mode_error > 0
+
+
+def test_a_loaded_transient_is_refined(made, tmp_path):
+    run = made("transient")
+    run.save(tmp_path / "run.json")
+    again = bd.load(tmp_path / "run.json")
+    assert again.distance_from(again.refined) == pytest.approx(run.mode_error / 2, rel=1e-6)
+
+
+def test_numbers_that_are_not_finite_come_back(tmp_path):
+    point = bd.critical_point(bd.Scene(HARVESTER.beam, bd.Mount(1.0, math.pi)))
+    point.save(tmp_path / "p.json")
+    assert math.isinf(point.speed) and bd.load(tmp_path / "p.json") == point
+    assert json.loads((tmp_path / "p.json").read_text())["speed"] is None
+
+
+@pytest.mark.parametrize("command", ["modes", "critical", "terms"])
+def test_what_a_command_wrote_is_loaded(command, tmp_path, capsys):
+    path = tmp_path / "result.json"
+    assert beams.main([command, str(EXAMPLES / "tyre_harvester.toml"), "--json", str(path)]) == beams.DONE
+    result = bd.load(path)
+    assert result.provenance.version == bd.__version__
+    assert json.loads(path.read_text())["provenance"]["method"] == result.provenance.method
+    if command != "critical":
+        assert result.scene == bd.load_scene(EXAMPLES / "tyre_harvester.toml")
+
+
+def test_what_a_command_on_brakes_wrote_is_loaded(tmp_path, capsys):
+    path, drum = tmp_path / "result.json", str(EXAMPLES / "drum.toml")
+    assert brakes.main(["drum", drum, "--json", str(path)]) == beams.DONE
+    result = bd.load(path)
+    assert isinstance(result, BrakeResult)
+    assert float(result.torque) == json.loads(path.read_text())["torque"]
+    sweep = ("drum", drum, "--sweep", "brake.friction=0.2:0.4:3", "--json", str(path), "--force")
+    assert brakes.main([*sweep]) == beams.DONE
+    assert isinstance(bd.load(path), InputSweep)
+    assert brakes.main(["caliper", "dual-pivot", "--json", str(path), "--force"]) == beams.DONE
+    with pytest.raises(ValueError, match=r"result\.json: no result can be loaded: it has numbers only"):
+        bd.load(path)
+
+
+# Files that are not what was written --------------------------------------------------------------
+
+
+@pytest.fixture
+def saved(made, tmp_path):
+    path = tmp_path / "modes.json"
+    made("modes").save(path)
+    return path
+
+
+EDITS = {
+    "a number": (lambda text: text.replace('"speed": 50.0', '"speed": 51.0'), "was changed"),
+    "cut off": (lambda text: text[:-40], "not whole"),
+    "empty": (lambda text: "", "not whole"),
+    "by another program": (lambda text: '{"speed": 50.0}', "another program"),
+    "a list": (lambda text: "[1, 2]", "another program"),
+    "deep": (lambda text: "[" * 100_000, "not whole"),
+    "other fields": (lambda text: reseal(text, '"axial_strain"', '"strain"'), "Modes has other fields"),
+    "another class": (lambda text: reseal(text, "modes:Modes", "modes:Nodes"), "no class Nodes"),
+    "a foreign class": (
+        lambda text: reseal(text, "beamdyn.spectrum.modes:Modes", "os:_wrap_close"),
+        "no class",
+    ),
+    "a function": (lambda text: reseal(text, "modes:Modes", "modes:natural_modes"), "no class natural_modes"),
+}
+
+
+def reseal(text, old, new):
+    content = json.loads(text)
+    record = json.loads(json.dumps(content["record"]).replace(old, new))
+    del content["schema"], content["checksum"]
+    return json.dumps(seal(content | {"record": record}))
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_a_file_that_is_not_as_written_is_refused_in_a_sentence(saved, edit):
+    change, reason = EDITS[edit]
+    saved.write_text(change(saved.read_text()))
+    with pytest.raises(ValueError, match=reason) as caught:
+        bd.load(saved)
+    assert str(saved) in str(caught.value) and "compute the result again" in str(caught.value)
+
+
+def test_the_numbers_stay_readable_for_other_programs(saved, made):
+    written = json.loads(saved.read_text())
+    assert written["frequency"] == made("modes").frequency.tolist()
+    assert list(written)[-3:] == ["record", "schema", "checksum"]
+
+
+def test_save_keeps_a_file_that_exists_unless_forced(saved, made):
+    with pytest.raises(FileExistsError):
+        made("locus").save(saved)
+    made("locus").save(saved, force=True)
+    assert isinstance(bd.load(saved), bd.Locus)
+
+
+# What is no data ----------------------------------------------------------------------------------
+
+
+def angle(t):
+    return 20 * t**2
+
+
+def rate(t):
+    return 40 * t
+
+
+def acceleration(t):
+    return np.full(np.shape(t), 40.0)
+
+
+def test_a_function_is_left_out_and_says_so_where_it_is_used(tmp_path):
+    scene = dataclasses.replace(HARVESTER, motion=bd.RotationFunction(angle, rate, acceleration, t_end=1.0))
+    modes = bd.natural_modes(scene, 50.0)
+    modes.save(tmp_path / "m.json")
+    again = bd.load(tmp_path / "m.json")
+    assert again.frequency.tobytes() == modes.frequency.tobytes()
+    assert check_use(again).tobytes() == check_use(modes).tobytes()
+    with pytest.raises(ValueError, match=r"does not hold angle of tests\.unit\.test_load"):
+        again.scene.motion.at(np.zeros(1))
+    assert pickle.loads(pickle.dumps(modes)).scene.motion.at(np.ones(1)).speed == 40.0
+
+
+def test_the_interpolation_of_solve_ivp_is_left_out(tmp_path):
+    run = bd.simulate(SHORT_SPIN_UP, 0.1, 2, method="RK45")
+    run.save(tmp_path / "r.json")
+    again = bd.load(tmp_path / "r.json")
+    assert again.tip.tobytes() == run.tip.tobytes() and again.mode_error == run.mode_error
+    with pytest.raises(ValueError, match="does not hold OdeSolution"):
+        again.peak(0.0, 0.1)
+    assert pickle.loads(pickle.dumps(run)).peak(0.0, 0.1) == run.peak(0.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        *(None, True, 7, -0.0, 5e-324, math.inf, "ω", 1 - 2j, complex(math.nan, math.inf), slice(0, 3)),
+        *((), (1, (2.0, "a")), [1, [2]], {"a": {"b": (1,)}}, np.zeros((0, 2)), np.array(["stable", ""])),
+        *(np.array(3.0), np.array([[1 + 2j]]), np.array([True]), np.arange(4, dtype="u1")),
+    ],
+    ids=repr,
+)
+def test_data_comes_back_to_the_bit(value):
+    again = decode(json.loads(json.dumps(encode(value))))
+    assert type(again) is type(value) and not differences(value, again)
+
+
+def test_what_is_left_out_can_be_pickled_and_printed():
+    part = pickle.loads(pickle.dumps(LeftOut("f of module")))
+    assert "f of module" in repr(part)
+    with pytest.raises(ValueError, match="f of module"):
+        part.at(0.0)
