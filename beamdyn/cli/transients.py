@@ -16,6 +16,7 @@ from beamdyn.cli.values import (
     Discretization,
     SceneFile,
     Text,
+    naming_option,
     parse_positive,
     parse_speeds,
     parse_window,
@@ -86,7 +87,8 @@ def simulate(
         "beamdyn simulate", scene, t_end=t_end, modes=modes, tolerance=tolerance, method=method,
         discretization=discretization, window=window,
     )  # fmt: skip
-    run = simulate(loaded, end, modes, tolerance, method, discretization)
+    with naming_option("t_end", "--t-end", t_end):
+        run = simulate(loaded, end, modes, tolerance, method, discretization)
     deliver(run, outputs, question, [transient_table(run, span)], transient_csv(run), on_axes(run.plot))
     _write_close_up(run, span or (0.0, end), series, animation, outputs.force)
 
@@ -138,7 +140,8 @@ def sweep(
     question = Question.on_file(
         "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
     )
-    with _executor(scheduler) as executor, _progress(len(given), store) as progress:
+    named = naming_option("t_end", "--window", window)
+    with _executor(scheduler) as executor, _progress(len(given), store) as progress, named:
         means: dict[str, Any] = {"workers": workers, "executor": executor, "store": store}
         result = sweep(loaded, given, span, modes=modes, tolerance=tolerance, **means, progress=progress)
     tables, rows, draw = [sweep_table(result)], sweep_csv(result), on_axes(result.plot)

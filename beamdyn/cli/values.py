@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
@@ -10,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
+
+from beamdyn.common.checks import InvalidValue
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,6 +46,19 @@ def parse_positive(option: str, text: str, unit: str) -> float:
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
     return value
+
+
+@contextmanager
+def naming_option(field: str, option: str, text: str) -> Iterator[None]:
+    """Within it, a refusal of an argument of the core names the option and shows its value as given."""
+    from beamdyn.common.edge.units import InvalidInput
+
+    try:
+        yield
+    except InvalidValue as error:
+        if error.field != field:
+            raise
+        raise InvalidInput(option, text, error.bound, error.remedy, error.unit, error.limit) from None
 
 
 def parse_speed(option: str, text: str) -> float:

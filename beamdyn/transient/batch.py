@@ -95,9 +95,10 @@ def _integrate_all(
     C, n = len(systems), systems[0].size
     state = np.zeros((C, n)), np.zeros((C, n))
     runs: list[_SegmentRun] = []
-    for a, b in pairwise(split_at_breakpoints(systems[0].motion, t_end)):
-        steps = max(step_size.count_steps(s, a, b) for s in systems)
-        check_number_of_steps(steps, t_end)
+    ends = list(pairwise(split_at_breakpoints(systems[0].motion, t_end)))
+    counts = [max(step_size.count_steps(s, a, b) for s in systems) for a, b in ends]
+    check_number_of_steps(sum(counts), C, t_end)
+    for (a, b), steps in zip(ends, counts, strict=True):
         runs.append(_SegmentRun(systems, a, (b - a) / steps, steps))
         state = runs[-1].advance(*state)
     if not all(run.converged for run in runs):

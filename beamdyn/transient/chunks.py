@@ -16,6 +16,7 @@ from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.batch import integrate_batch
 from beamdyn.transient.simulate import TransientRequest
+from beamdyn.transient.step_size import TooManySteps
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Trajectory, largest_deflection
 
@@ -75,6 +76,10 @@ def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseR
     systems = [ModalSystem(equations, motion) for motion in motions]
     try:
         batch = integrate_batch(systems, request.t_end, request.tolerance)
+    except TooManySteps:
+        if (half := len(motions) // 2) == 0:
+            raise
+        return [*_solve_batch(request, motions[:half]), *_solve_batch(request, motions[half:])]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return [_failed(str(error))] * len(motions)
     return [_case_result(request, *pair) for pair in zip(batch.tips, batch.time_error, strict=True)]
@@ -92,8 +97,9 @@ def _solve_single(request: SweepRequest, motion: Motion) -> CaseResult:
 
 def _case_result(request: SweepRequest, path: Trajectory, error: float) -> CaseResult:
     """Result of a case from a trajectory whose only coordinate is the tip deflection."""
-    peak = largest_deflection(np.ones(1), path, *request.window)
-    return CaseResult(peak, max(peak, float(np.abs(path.samples[1]).max())), float(error), DONE)
+    windows = request.window, (path.start, path.end)
+    peak, largest = (largest_deflection(np.ones(1), path, *window) for window in windows)
+    return CaseResult(peak, max(peak, largest), float(error), DONE)
 
 
 def _failed(reason: str) -> CaseResult:

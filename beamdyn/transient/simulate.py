@@ -22,11 +22,12 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_road
+from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
-from beamdyn.transient.step_size import TOLERANCES, integrate
+from beamdyn.transient.step_size import TOLERANCES, TooManySteps, integrate
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import Path, largest_deflection
+from beamdyn.transient.trajectory import SAMPLES, Path, largest_deflection
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +36,9 @@ _LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as un
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
 _STRAIN_MARGIN = 3.0  # error of the root strain over its distance from the refined run
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
+_MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
+_SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
+_FAST = 4.0
 
 
 @dataclass(frozen=True)
@@ -91,13 +95,25 @@ class Transient(Result):
         """Estimated modal truncation error of the tip deflection [m]: twice its distance from `refined`.
 
         The factor of two covers the error of `refined` itself: on random runs it was less than half of the
-        distance (benchmark of the coverage of transients).  Infinite if there is no larger model, or if
-        the distance is so large that the error of `refined` is unknown.
+        distance (benchmark of the coverage of transients).  Infinite if there is no larger model that fits
+        into memory, or if the distance is so large that the error of `refined` is unknown.
         """
         if self.refined is None:
             return np.inf
         difference = self.distance_from(self.refined)
         return np.inf if difference > _LIMIT_DIFFERENCE * self.largest else 2 * difference
+
+    @property
+    def relative_mode_error(self) -> float:
+        """`mode_error` over the largest deflection; 0 for a beam that does not move."""
+        return self.mode_error / self.largest if self.largest else 0.0
+
+    def with_warnings(self, more: tuple[str, ...]) -> Transient:
+        """Copy with further warnings, which keeps the refined run if it has been computed."""
+        copy = replace(self, warnings=(*self.warnings, *more))
+        computed = {name: self.__dict__[name] for name in ("refined", "mode_error") if name in self.__dict__}
+        copy.__dict__.update(computed)
+        return copy
 
     def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
@@ -227,11 +243,13 @@ def simulate(
         End of the run [s].
     modes : int, "auto" or None
         Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
-        speed: the smallest modal basis whose truncation error meets the tolerance.  None keeps all
-        functions of the discretization.
+        speed: the smallest modal basis whose truncation error meets the tolerance.  It stops short of
+        it with a warning where the next basis would take minutes: past 5e7 steps times squared number of
+        coordinates, or past 5e6 if the last modes added reduced the error to no less than a quarter.  None
+        keeps all functions of the discretization.
     tolerance : float
         Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
-        relative to the largest tip deflection.
+        relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
         "auto": Gauss collocation with a step size from the tolerance; or any method of `solve_ivp`.
     discretization : {"ritz", "fem"} or Discretization
@@ -252,7 +270,8 @@ def simulate(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or the motion passes the critical speed.
+        If an argument is out of its range, the motion passes the critical speed, or the run takes more
+        steps than fit into memory (three million, fewer with more than five coordinates).
     ArithmeticError
         If the motion grows without bound.
     """
@@ -305,7 +324,10 @@ class TransientRequest:
             velocities=v,
             time_error=error,
             largest=largest,
-            warnings=tuple(_warnings(self.scene, t_end, largest)),
+            warnings=(
+                *_warnings(self.scene, t_end, largest),
+                *warn_of_missed_steps(error / largest if largest else 0.0, self.tolerance),
+            ),
             provenance=Provenance(
                 __version__, f"{name}, {self.basis} of {model.discretization}", "", perf_counter() - start
             ),
@@ -320,7 +342,7 @@ class TransientRequest:
         request = base._with_finer_discretization() if self.basis.modes is None else base._with_more_modes()
         try:
             return request and request.run()
-        except ArithmeticError:  # with more modes the motion grows without bound
+        except (ArithmeticError, TooManySteps):  # it grows without bound, or is too long, with more modes
             return None
 
     def run_smallest_basis(self) -> Transient:
@@ -330,10 +352,11 @@ class TransientRequest:
             # A sudden motion excites many modes: as many modes at rest may then be the better basis.
             at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
             run = at_rest if at_rest.distance_from(run.refined) < run.distance_from(run.refined) else run
-        while run.mode_error > self.tolerance * run.largest and run.refined is not None:
-            run = run.refined
+        run = _add_modes(run, self.tolerance)
+        missed = tuple(warn_of_missed_modes(run.relative_mode_error, self.tolerance, str(run.request.basis)))
         as_requested = self.method == "auto" and self.t_eval is None
-        return run if as_requested else replace(self, basis=run.request.basis).run()
+        run = run if as_requested else replace(self, basis=run.request.basis).run()
+        return run.with_warnings(missed) if missed else run
 
     def _with_more_modes(self) -> TransientRequest | None:
         """Request with more modes, by "ritz" if the discretization has too few functions; or None."""
@@ -422,6 +445,22 @@ def _initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray
             f"initial: give {2 * n} finite numbers, coordinates then velocities; shape {y0.shape}"
         )
     return y0
+
+
+def _add_modes(run: Transient, tolerance: float) -> Transient:
+    """Refine a run until its truncation error meets the tolerance, while that is known and takes seconds."""
+    before = np.inf
+    while run.mode_error > tolerance * run.largest and (finer := run.refined) is not None:
+        most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
+        if _work(finer) > most or finer.refined is None:
+            break
+        run, before = finer, run.mode_error
+    return run
+
+
+def _work(run: Transient) -> float:
+    """Steps times squared number of coordinates, to which the time of a run is roughly proportional."""
+    return len(run.path.samples[0]) / SAMPLES * run.system.size**2
 
 
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.system import ModalSystem
@@ -19,7 +20,8 @@ TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the ro
 _REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
 _LOOSEST_TOLERANCE = 0.01  # of the free vibration of a mode whose phase is resolved
 _PARTS = 4  # of a segment in which the speed changes, each with its own step size
-_MOST_STEPS = 3_000_000  # of a run that fits into memory
+_MOST_STEPS = 3_000_000  # of a run
+_MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
 _TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 _ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
@@ -99,8 +101,8 @@ def integrate(
 
     Raises
     ------
-    ValueError
-        If the run takes too many steps.
+    TooManySteps
+        If the steps of the run do not fit into memory.
     """
     edges, step_size = split_at_breakpoints(system.motion, t_end), StepSize.from_tolerance(tolerance)
     if stays_in_equilibrium(system, y0, t_end):
@@ -109,7 +111,7 @@ def integrate(
     last = np.inf
     while True:
         steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
-        check_number_of_steps(sum(steps), t_end)
+        check_number_of_steps(sum(steps), system.size, t_end)
         path = _propagate(system, edges, steps, y0, tolerance)
         error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in path.segments])
         largest = max(
@@ -132,13 +134,17 @@ def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> b
     return balanced and bool((K[0] == K).all() and (f == f[0]).all())
 
 
-def check_number_of_steps(steps: int, t_end: float) -> None:
-    """Raise a ValueError for a run that would not fit into memory."""
-    if steps > _MOST_STEPS:
-        raise ValueError(
-            f"t_end = {t_end:g} s takes {steps} steps in time; {_MOST_STEPS} fit into memory: "
-            "give an earlier end or a larger tolerance, or ask for the steady response"
-        )
+class TooManySteps(InvalidValue):
+    """A run that is refused because its steps would not fit into memory."""
+
+
+def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
+    """Raise a `TooManySteps` if the steps of a run, of `size` coordinates each, do not fit into memory."""
+    most = min(_MOST_STEPS, _MOST_VALUES // size)
+    if steps > most:
+        bound = f"it takes about {steps:.1g} steps in time; {most:.1g} of {size} coordinates fit into memory"
+        remedy = "give an earlier end, a larger tolerance or fewer modes, or ask for the steady response"
+        raise TooManySteps("t_end", t_end, bound, remedy, "s")
 
 
 def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:

@@ -24,6 +24,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
+from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import Transient, TransientRequest
 from beamdyn.transient.step_size import TOLERANCES
 
@@ -42,14 +43,14 @@ class Sweep(Result):
     speeds : ndarray, shape (S,)
         Final speeds of the motion [rad/s].
     peaks : ndarray, shape (S,)
-        Largest |tip deflection| in the window [m]; nan where the case failed.
+        Largest |tip deflection| in the window [m], also between steps; nan where the case failed.
     largest : ndarray, shape (S,)
-        Largest |tip deflection| of the run [m], of at least eight samples per step.
+        Largest |tip deflection| of the run [m], also between steps; nan where the case failed.
     time_error : ndarray, shape (S,)
-        Estimated time-integration error of the tip deflection [m].
+        Estimated time-integration error of the tip deflection [m], and so of `peaks` and `largest`.
     mode_error : float
         Estimated modal truncation error, relative to the largest deflection: the largest of three sampled
-        speeds.
+        speeds.  It is an error of `peaks` and `largest` too.
     status : tuple of str, length S
         "done", or "failed: " and the reason.
     window : tuple of float
@@ -101,6 +102,10 @@ def sweep(
     chunks depend on the request only, so that the result is the same to the bit for any workers, executor,
     order and resumption.
 
+    The cases of a chunk share their steps, and with ``modes="auto"`` all cases share a modal basis, which
+    is chosen at the slowest and the fastest speed.  So the result of a case depends within `time_error` and
+    `mode_error` on which other speeds are asked for, and within `time_error` on `chunk`.
+
     Parameters
     ----------
     scene : Scene
@@ -128,7 +133,7 @@ def sweep(
     discretization : {"ritz", "fem"} or Discretization
         Discretization from which the modes are computed.
     chunk : int
-        Number of cases in a chunk.  The last digits of the result depend on it.
+        Number of cases in a chunk.  It changes the result within `time_error`.
 
     Returns
     -------
@@ -161,7 +166,8 @@ def sweep(
     method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model().discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
     result = _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
-    return replace(result, warnings=(*result.warnings, *collector.warnings))
+    missed = () if basis else warn_of_missed_modes(result.mode_error, request.tolerance, str(request.basis))
+    return replace(result, warnings=(*result.warnings, *missed, *collector.warnings))
 
 
 def _split(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
@@ -236,7 +242,7 @@ def _choose_basis(request: SweepRequest, speeds: tuple[float, ...]) -> list[Tran
 
 def _mode_error(runs: Sequence[Transient]) -> float:
     """Largest modal truncation error of the runs, relative to the largest deflection of each."""
-    return max((run.mode_error / run.largest for run in runs if run.largest), default=0.0)
+    return max((run.relative_mode_error for run in runs), default=0.0)
 
 
 def _check_sendable(request: SweepRequest, importable: bool) -> None:

@@ -217,6 +217,14 @@ BAD = {
     "negative end": (("simulate", SCENE, "--t-end", "-1 s"), ("--t-end", '"-1 s"', "greater than 0")),
     "bare end": (("simulate", SCENE, "--t-end", "30"), ("--t-end", '"30"', "30 s")),
     "no end": (("simulate", SCENE), ("--t-end",)),
+    "too many steps": (
+        ("simulate", SCENE, "--t-end", "1e9 s"),
+        ('--t-end = "1e9 s"', "1e+11 steps", "memory"),
+    ),
+    "too many steps of a sweep": (
+        ("sweep", SCENE, "--speeds", "50 rad/s", "--window", "1:1e9 s"),
+        ('--window = "1:1e9 s"', "1e+11 steps", "memory"),
+    ),
     "late window": (
         ("simulate", SCENE, *QUICK, "--window", "0.4:0.6 s"),
         ("--window", "0.5 s", "longer --t-end"),

@@ -8,6 +8,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.scene.motion import MotionSample
+from beamdyn.transient.step_size import TooManySteps
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 
 SCENE, WINDOW = SHORT_SPIN_UP, AFTER_SHORT_SPIN_UP
@@ -25,7 +26,7 @@ def test_peaks_are_those_of_single_transients(found):
         run = bd.simulate(replace(SCENE, motion=MOTION.with_speed(speed)), WINDOW[1], 5, 1e-8)
         assert abs(peak - run.peak(*WINDOW)) <= error + 1e-6 * peak
         assert error <= 1e-5 * largest
-        assert largest == pytest.approx(run.largest, rel=0.01)
+        assert abs(largest - run.largest) <= error + 1e-6 * largest
     assert found.peaks[0] == 0
     assert found.status == ("done",) * 4
 
@@ -55,6 +56,38 @@ def test_a_later_end_adds_to_the_run_only(found):
     longer = bd.sweep(SCENE, SPEEDS, WINDOW, modes=5, t_end=0.6)
     assert longer.peaks == pytest.approx(found.peaks, rel=3e-5)
     assert (longer.largest >= 0.99 * found.largest).all()
+
+
+@pytest.mark.parametrize("given", [{"chunk": 2}, {"speeds": [30.0, 53.0]}, {"speeds": [30.0, 53.0, 155.0]}])
+@pytest.mark.parametrize("options", [{"modes": 5}, {"tolerance": 1e-3}])
+def test_other_speeds_and_chunks_change_a_case_within_its_errors_only(given, options):
+    one = bd.sweep(SCENE, SPEEDS, WINDOW, **options)
+    other = bd.sweep(**{"scene": SCENE, "speeds": SPEEDS, "window": WINDOW} | options | given)
+    _, i, j = np.intersect1d(one.speeds, other.speeds, return_indices=True)
+    truncation = 0.0 if "modes" in options else (one.mode_error + other.mode_error) * one.largest[i]
+    bound = one.time_error[i] + other.time_error[j] + truncation
+    assert (np.abs(one.peaks[i] - other.peaks[j]) <= bound).all()
+    assert (np.abs(one.largest[i] - other.largest[j]) <= bound).all()
+
+
+def test_a_batch_too_large_for_memory_is_halved(found, monkeypatch):
+    def check(steps, size, t_end):
+        if size > 1:
+            raise TooManySteps("t_end", t_end, "too many")
+
+    monkeypatch.setattr("beamdyn.transient.batch.check_number_of_steps", check)
+    halved = bd.sweep(SCENE, SPEEDS, WINDOW, modes=5)
+    assert (np.abs(halved.peaks - found.peaks) <= halved.time_error + found.time_error).all()
+    monkeypatch.setattr("beamdyn.transient.batch.check_number_of_steps", lambda s, n, t: check(s, 2, t))
+    with pytest.raises(ValueError, match="too many"):
+        bd.sweep(SCENE, SPEEDS, WINDOW, modes=5)
+
+
+def test_modes_that_miss_the_tolerance_are_named():
+    sudden = replace(SCENE, motion=bd.SpinUp(55.0, 1e-9), mount=bd.Mount(0.215, 0.3))
+    found = bd.sweep(sudden, [30.0], (0.005, 0.01))
+    assert found.mode_error > 1e-5
+    assert any("1e-05 is not reached" in w and "modal truncation error" in w for w in found.warnings)
 
 
 def test_progress_begins_and_ends(found):

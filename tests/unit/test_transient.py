@@ -222,6 +222,27 @@ def test_modes_left_out_of_the_largest_model_are_not_known() -> None:
     assert run.mode_error == np.inf
 
 
+def test_modes_that_cannot_meet_the_tolerance_are_named_after_seconds() -> None:
+    """A blow excites all modes: the truncation error falls with the square of their number only."""
+    blow = replace(HARVESTER, mount=bd.Mount(0.215, 0.3), motion=bd.SpinUp(50.0, 1e-9))
+    run = bd.simulate(blow, 0.1)
+    assert 1e-5 < run.mode_error / run.largest < 1e-2
+    missed = [w for w in run.warnings if "tolerance = 1e-05 is not reached" in w]
+    assert len(missed) == 1
+    assert all(words in missed[0] for words in (f"{run.mode_error / run.largest:.1g}", "smoother motion"))
+    largest = run.refined  # of all that were integrated; 42 modes would have taken a hundred times the time
+    assert largest is not None
+    assert len(largest.t) / 8 * largest.system.size**2 <= 5 * 5e6
+
+
+def test_a_run_that_does_not_fit_into_memory_is_refused(monkeypatch) -> None:
+    monkeypatch.setattr("beamdyn.transient.step_size._propagate", None)  # not to be called
+    with pytest.raises(
+        ValueError, match=r"t_end = 100000 s: it takes about \de\+0[67] steps.*50 coordinates"
+    ):
+        bd.simulate(STEADY, 1e5, modes=50, tolerance=0.1)
+
+
 def test_a_beam_that_its_weight_buckles_is_refused() -> None:
     rope = bd.Beam.rectangular(10.0, 0.02, 0.01, 5e9, 1200.0)  # hangs over: its weight is far past buckling
     scene = bd.Scene(rope, bd.Mount(0.3, np.pi), bd.SteadyRotation(0.01), gravity=9.81)
@@ -249,5 +270,6 @@ def test_tolerance_below_rounding_ends() -> None:
     t = np.linspace(0, 10, 501)
     finer = bd.simulate(ROLLING, 10.0, 5, tolerance=1e-10)
     assert 1e-12 < run.time_error / run.largest < 1e-9
+    assert any("1e-12 is not reached" in w and "time-integration error" in w for w in run.warnings)
     assert len(run.path.samples[0]) < 3e6
     assert np.abs(run.deflection(t) - finer.deflection(t)).max() <= run.time_error + finer.time_error

@@ -1,0 +1,42 @@
+"""Warnings of a tolerance that a motion in time does not meet: what was reached, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+
+def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[str]:
+    """Warn of a modal truncation error that exceeds the tolerance.
+
+    Parameters
+    ----------
+    error : float
+        Estimated modal truncation error, over the largest deflection; inf if it is not known.
+    tolerance : float
+        The tolerance that was asked for.
+    basis : str
+        The modal basis, in words.
+
+    Yields
+    ------
+    str
+    """
+    if error > tolerance:
+        size = f"{error:.1g} of the largest deflection" if np.isfinite(error) else "not known"
+        yield (
+            f"tolerance = {tolerance:g} is not reached: the estimated modal truncation error is {size} with "
+            f"{basis}, and more would take too long or too much memory; a sudden motion excites very many: "
+            "give a larger tolerance, a smoother motion, or the number of modes yourself"
+        )
+
+
+def warn_of_missed_steps(error: float, tolerance: float) -> Iterator[str]:
+    """Warn of a time-integration error, over the largest deflection, that exceeds the tolerance."""
+    if error > tolerance:
+        yield (
+            f"tolerance = {tolerance:g} is not reached: the estimated time-integration error is {error:.1g} "
+            "of the largest deflection, and smaller steps would only add rounding errors; give a larger "
+            "tolerance"
+        )
