@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
@@ -16,6 +18,7 @@ from beamdyn.scene.scene import Scene
 DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+_MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
@@ -88,6 +91,7 @@ def choose_model(
     ValueError
         If the discretization is unknown or has too few functions for the modes.
     """
+    _check_kind(discretization)
     if not isinstance(discretization, str):
         return Model(scene, _check_size(discretization, modes))
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
@@ -105,11 +109,6 @@ def _list_candidates(
     name: str, scene: Scene, modes: int, target: float, cheapest: bool
 ) -> Iterator[Discretization]:
     """Yield discretizations of one kind, from the smallest sensible one to the finest."""
-    if name not in _FIRST_CANDIDATE:
-        raise ValueError(
-            f"discretization = {name!r}: give {', '.join(map(repr, _FIRST_CANDIDATE))}, "
-            "a beamdyn.Ritz or a beamdyn.Fem"
-        )
     first = _FIRST_CANDIDATE[name](len(scene.beam.breakpoints) - 1, modes, target, cheapest)
     while not first.fits(modes) and (finer := first.finer()) is not None:
         first = finer
@@ -127,9 +126,9 @@ def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Dis
 
 
 def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
-    from beamdyn.equations.fem import Fem  # here, because scikit-fem is slow to import
+    from beamdyn.equations.fem import MOST_ELEMENTS, Fem  # here, because scikit-fem is slow to import
 
-    return Fem(max(4 if cheapest else 80, 2 * segments, 4 * modes))
+    return Fem(min(max(4 if cheapest else 80, 2 * segments, 4 * modes), MOST_ELEMENTS))
 
 
 # First candidate of each kind, by segments, modes, target and whether to begin with the smallest.
@@ -148,8 +147,17 @@ def ensure_size(discretization: DiscretizationChoice, modes: int) -> Discretizat
 def _check_size(discretization: Discretization, modes: int) -> Discretization:
     """Raise a ValueError if the discretization has too few functions for the modes."""
     if not discretization.fits(modes):
-        raise ValueError(
-            f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "
-            "has too few functions; ask for fewer modes"
+        most = bisect_left(
+            range(1, min(modes, _MANY)), True, key=lambda fewer: not discretization.fits(fewer)
         )
+        bound = f"{discretization} gives at most {most} modes with an estimate of their error"
+        raise InvalidValue("modes", modes, bound, "ask for fewer")
     return discretization
+
+
+def _check_kind(discretization: object) -> None:
+    """Refuse what is neither the name of a discretization nor one."""
+    named = isinstance(discretization, str) and discretization in _FIRST_CANDIDATE
+    if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):
+        bound = f"give {', '.join(map(repr, _FIRST_CANDIDATE))}, a beamdyn.Ritz or a beamdyn.Fem"
+        raise InvalidValue("discretization", discretization, bound)
