@@ -8,7 +8,7 @@ from typing import Any, Literal, get_origin
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, in_unit, refuse
+from beamdyn.common.checks import InvalidValue, as_floats, in_unit, refuse
 from beamdyn.common.described import Described, described_hints, description, kinds_of
 
 Numbers = Any  # a float, or an array of floats: one value a case
@@ -16,13 +16,9 @@ Numbers = Any  # a float, or an array of floats: one value a case
 
 def numbers(name: str, value: Any, unit: str = "") -> Numbers:
     """Finite floats: a float, or an array of any shape."""
-    try:
-        if isinstance(value, str | bytes | bool):
-            raise TypeError
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        bound = "give a finite number, or an array" + in_unit(unit)
-        raise InvalidValue(name, value, bound, unit=unit) from None
+    array = as_floats(value)
+    if array is None:
+        raise InvalidValue(name, value, "give a finite number, or an array" + in_unit(unit), unit=unit)
     refuse(~np.isfinite(array), name, array, unit, "it must be a finite number")
     return array if array.ndim else float(array)
 

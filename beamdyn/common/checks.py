@@ -58,7 +58,7 @@ class InvalidValue(ValueError):
         """The value in the message: a number with its unit, anything else as Python writes it."""
         if isinstance(self.value, float):
             return self._with_unit(self.value)
-        text = repr(self.value)
+        text = " ".join(repr(self.value).split())  # one line, also of a matrix
         return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
     def _with_unit(self, number: float) -> str:
@@ -113,14 +113,36 @@ def _first(values: Any, bad: np.ndarray) -> float:
 
 
 def real(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A finite real number as a float."""
-    try:
-        number = float(value)  # pyright: ignore[reportArgumentType]  (anything else is refused below)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if isinstance(value, str | bool) or not math.isfinite(number):
+    """A finite real number as a float: of Python, numpy, Decimal, or whatever else converts itself."""
+    number = _as_float(value)
+    if not math.isfinite(number):
         raise InvalidValue(name, value, "give a finite number" + in_unit(unit), remedy, unit)
     return number
+
+
+def _as_float(value: Any) -> float:
+    """The number as a float; nan for text, bytes, a truth value, a complex or masked number, an array."""
+    of_numpy = hasattr(value, "dtype")
+    if not hasattr(value, "__float__") or isinstance(value, bool) or (of_numpy and not _is_one(value)):
+        return math.nan
+    try:
+        return float(value)
+    except (TypeError, ValueError, ArithmeticError):
+        return math.nan
+
+
+def _is_one(value: Any) -> bool:
+    """Whether a scalar or an array of numpy is one real number."""
+    return holds_reals(array := np.asanyarray(value)) and not array.ndim
+
+
+def holds_reals(array: np.ndarray) -> bool:
+    """Whether an array holds real numbers alone; a mask, truth values, text and complex numbers are none."""
+    if array.dtype.kind == "O":  # such as Decimal, or an integer beyond 64 bits
+        return all(
+            hasattr(each, "__float__") and not isinstance(each, bool | np.bool_) for each in array.flat
+        )
+    return array.dtype.kind in "iuf" and not hasattr(array, "mask")
 
 
 def positive(name: str, value: object, unit: str = "", remedy: str = "") -> float:
@@ -139,9 +161,9 @@ def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> 
 
 def within(name: str, value: object, least: float, most: float) -> float:
     """A number from `least` to `most`."""
-    number = real(name, value)
-    bound = f"give a number from {least:g} to {most:g}"
-    refuse(not least <= number <= most, name, number, "", bound)
+    number = _as_float(value)
+    if not least <= number <= most:
+        raise InvalidValue(name, value, f"give a number from {least:g} to {most:g}")
     return number
 
 
@@ -153,12 +175,20 @@ def angle(name: str, value: object) -> float:
     return number
 
 
-def count(name: str, value: object, least: int = 1) -> int:
-    """A whole number of at least `least`."""
-    number = real(name, value)
-    if number != int(number) or number < least:
-        raise InvalidValue(name, value, f"give a whole number of {least} or more")
+def count(name: str, value: object, least: int = 1, most: float = math.inf, remedy: str = "") -> int:
+    """A whole number of at least `least` and at most `most`."""
+    number = _as_float(value)
+    if not (least <= number <= most and number.is_integer()):
+        bounds = f"of {least} or more" if math.isinf(most) else f"from {least} to {most:.0f}"
+        raise InvalidValue(name, value, f"give a whole number {bounds}", remedy)
     return int(number)
+
+
+def flag(name: str, value: object) -> bool:
+    """A truth value, of Python or numpy."""
+    if not isinstance(value, bool | np.bool_):
+        raise InvalidValue(name, value, "give True or False")
+    return bool(value)
 
 
 def kind(name: str, value: object, wanted: type, remedy: str = "") -> None:
@@ -167,9 +197,15 @@ def kind(name: str, value: object, wanted: type, remedy: str = "") -> None:
         raise InvalidValue(name, value, f"give a {wanted.__name__}", remedy)
 
 
+def function(name: str, value: object, remedy: str = "") -> None:
+    """Refuse what cannot be called."""
+    if not callable(value):
+        raise InvalidValue(name, value, "give a function", remedy)
+
+
 def one_of(name: str, value: object, choices: Sequence[str]) -> None:
     """Refuse what is not one of a few words."""
-    if value not in choices:
+    if not isinstance(value, str) or value not in choices:
         *others, last = map(repr, choices)
         raise InvalidValue(name, value, f"give {', '.join(others)} or {last}")
 
@@ -177,26 +213,49 @@ def one_of(name: str, value: object, choices: Sequence[str]) -> None:
 # Sequences ----------------------------------------------------------------------------------------
 
 
-def real_array(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
+def real_array(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
     """A one-dimensional array of finite floats."""
-    try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise InvalidValue(name, values, "give a sequence of numbers") from None
+    array = as_floats(values)
+    if array is None:
+        raise InvalidValue(name, values, "give a sequence of numbers")
     if array.ndim != 1:
         raise InvalidValue(name, values, f"give a one-dimensional sequence; its shape is {array.shape}")
     refuse(~np.isfinite(array), name, array, "", "every value must be finite")
     return array
 
 
-def ascending(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
-    """A one-dimensional array of finite floats, each greater than the one before, at least one."""
-    array = real_array(name, values)
+def as_floats(values: Any) -> np.ndarray | None:
+    """An array of floats, of any shape; None if it does not hold real numbers alone."""
+    try:
+        array = np.asanyarray(values)
+        if (array.size and not holds_reals(array)) or _holds_truth(values):
+            return None
+        with np.errstate(over="ignore"):  # a number beyond float's becomes inf
+            return array.astype(float)
+    except (TypeError, ValueError, ArithmeticError):  # of ragged lists, and of numbers beyond float's
+        return None
+
+
+def _holds_truth(values: Any) -> bool:
+    """Whether a list holds a truth value, which numpy takes for a number where others stand beside it."""
+    return isinstance(values, list | tuple) and any(isinstance(each, bool | np.bool_) for each in values)
+
+
+def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
+    """A one-dimensional array of finite floats, each greater than the one before; of one for a number."""
+    array = as_floats(values)
+    array = real_array(name, array.reshape(1) if array is not None and not array.ndim else values)
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
     bound, remedy = "it follows {limit}; values must ascend without repeats", "pass numpy.unique({other})"
     refuse(np.diff(array) <= 0, name, array[1:], "", bound, remedy, limit=array[:-1], other=name)
     return array
+
+
+def set_fields(instance: object, **values: object) -> None:
+    """Set fields of a frozen dataclass during its construction, to their checked values."""
+    for name, value in values.items():
+        object.__setattr__(instance, name, value)
 
 
 def in_unit(unit: str) -> str:

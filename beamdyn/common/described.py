@@ -53,13 +53,17 @@ class Described:
     @property
     def bounds(self) -> str:
         """Bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
+        return self.bounds_as(lambda bound: bound)
+
+    def bounds_as(self, convert: Callable[[float], float]) -> str:
+        """Bounds in words, with each number converted to another unit."""
         words = {
             "greater than": self.above,
             "at least": self.least,
             "below": self.below,
             "at most": self.most,
         }
-        return ", ".join(f"{word} {bound:g}" for word, bound in words.items() if bound is not None)
+        return ", ".join(f"{word} {convert(bound):g}" for word, bound in words.items() if bound is not None)
 
     def check(self, name: str, value: Any) -> None:
         """Refuse a value that is no finite number, is negative, or is 0 where the bounds exclude that.

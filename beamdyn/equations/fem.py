@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
-from beamdyn.common.checks import count
+from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
@@ -38,12 +38,9 @@ class Fem:
     mesh: Literal["graded", "uniform"] = "graded"
 
     def __post_init__(self) -> None:
-        if count("elements", self.elements, least=2) > MOST_ELEMENTS:
-            raise ValueError(
-                f"elements = {self.elements}: at most {MOST_ELEMENTS}; discretization='ritz' needs far fewer"
-            )
-        if self.mesh not in ("graded", "uniform"):
-            raise ValueError(f"mesh = {self.mesh!r}: give 'graded' or 'uniform'")
+        remedy = "discretization='ritz' needs far fewer"
+        set_fields(self, elements=count("elements", self.elements, 2, MOST_ELEMENTS, remedy))
+        one_of("mesh", self.mesh, ("graded", "uniform"))
 
     @property
     def order(self) -> int:

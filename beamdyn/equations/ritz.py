@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.checks import count
+from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
@@ -39,12 +39,9 @@ class Ritz:
     basis: Literal["legendre", "eigenfunctions"] = "legendre"
 
     def __post_init__(self) -> None:
-        if count("functions", self.functions, least=1) > MOST_FUNCTIONS:
-            raise ValueError(
-                f"functions = {self.functions}: at most {MOST_FUNCTIONS}; use fewer, or discretization='fem'"
-            )
-        if self.basis not in _BASES:
-            raise ValueError(f"basis = {self.basis!r}: give one of {', '.join(map(repr, _BASES))}")
+        most, remedy = MOST_FUNCTIONS, "use fewer, or discretization='fem'"
+        set_fields(self, functions=count("functions", self.functions, most=most, remedy=remedy))
+        one_of("basis", self.basis, tuple(_BASES))
 
     @property
     def order(self) -> None:

@@ -17,7 +17,7 @@ from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Load, Term
 from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
 
 _BASIS = Ritz(3)  # the list of terms does not depend on the basis
 
@@ -117,6 +117,7 @@ def terms(scene: Scene) -> Terms:
     Terms
     """
     start = perf_counter()
+    check_scene(scene)
     sampled, assembled = SampledScene(scene), {term.name: term for term in _list_terms(scene)}
     complete = reduce(lambda scene, field: field.complete(scene), FIELDS, scene)
     entries = tuple(_describe(t, assembled.get(t.name), sampled) for t in _list_terms(complete))

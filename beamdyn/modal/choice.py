@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
@@ -20,6 +22,7 @@ _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
 _USUAL_IN_ALL = 200  # of the first candidate: many short segments need few functions each
 _FEWEST_ON_SEGMENT = 5  # of several segments
+_MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
@@ -93,6 +96,7 @@ def choose_model(
         If the discretization is unknown or has too few functions for the modes, or the beam has too many
         segments.
     """
+    _check_kind(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
     model = None
@@ -151,17 +155,12 @@ def _refine(model: Model) -> Model | None:
 
 def _find_first(name: str, segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Find the smallest sensible discretization of one kind."""
-    if name not in _FIRST_CANDIDATE:
-        raise ValueError(
-            f"discretization = {name!r}: give {', '.join(map(repr, _FIRST_CANDIDATE))}, "
-            "a beamdyn.Ritz or a beamdyn.Fem"
-        )
     first = _FIRST_CANDIDATE[name](segments, modes, target, cheapest)
     on_segment = -(-modes // segments) if isinstance(first, Ritz) else modes
     while not first.fits(on_segment) and (finer := first.finer()) is not None:
         first = finer
     if not first.fits(on_segment):
-        raise _too_few_functions(first, modes)
+        raise _too_few_functions(first, modes, segments if isinstance(first, Ritz) else 1)
     return first
 
 
@@ -175,9 +174,9 @@ def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Dis
 
 
 def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
-    from beamdyn.equations.fem import Fem  # here, because scikit-fem is slow to import
+    from beamdyn.equations.fem import MOST_ELEMENTS, Fem  # here, because scikit-fem is slow to import
 
-    return Fem(max(4 if cheapest else 80, 2 * segments, 4 * modes))
+    return Fem(min(max(4 if cheapest else 80, 2 * segments, 4 * modes), MOST_ELEMENTS))
 
 
 # First candidate of each kind, by segments, modes, target and whether to begin with the smallest.
@@ -200,8 +199,17 @@ def _check_size(discretization: Discretization, modes: int) -> Discretization:
     return discretization
 
 
-def _too_few_functions(discretization: Discretization, modes: int) -> ValueError:
-    return ValueError(
-        f"modes = {modes} with {discretization}: its coarser companion, which estimates the error, "
-        "has too few functions; ask for fewer modes"
-    )
+def _too_few_functions(discretization: Discretization, modes: int, segments: int = 1) -> InvalidValue:
+    """Say how many modes a discretization gives, with its functions on a number of segments."""
+    fewer = range(1, min(modes, _MANY))
+    most = bisect_left(fewer, True, key=lambda n: not discretization.fits(-(-n // segments)))
+    bound = f"{discretization} gives at most {most} modes with an estimate of their error"
+    return InvalidValue("modes", modes, bound, "ask for fewer")
+
+
+def _check_kind(discretization: object) -> None:
+    """Refuse what is neither the name of a discretization nor one."""
+    named = isinstance(discretization, str) and discretization in _FIRST_CANDIDATE
+    if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):
+        bound = f"give {', '.join(map(repr, _FIRST_CANDIDATE))}, a beamdyn.Ritz or a beamdyn.Fem"
+        raise InvalidValue("discretization", discretization, bound)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamdyn.common.checks import count
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.motion import Motion
@@ -48,6 +49,12 @@ class ModalBasis:
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
+
+
+def given_basis(modes: int | str) -> ModalBasis | None:
+    """Basis of a number of modes at rest; None for "auto", which leaves the number to the tolerance."""
+    auto = isinstance(modes, str) and modes == "auto"
+    return None if auto else ModalBasis(count("modes", modes, remedy='or "auto"'))
 
 
 def find_speed_range(motion: Motion, t_end: float) -> tuple[float, ...]:

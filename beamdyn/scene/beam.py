@@ -8,8 +8,9 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse
+from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse, set_fields
 from beamdyn.common.described import Described
+from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints
 
 
@@ -54,17 +55,26 @@ class TipMass:
     ] = 0.0
 
     def __post_init__(self) -> None:
-        not_negative("tip.mass", self.mass, "kg")
-        real("tip.offset", self.offset, "m")
+        mass, offset = not_negative("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
+        set_fields(self, mass=mass, offset=offset)
         for name in ("inertia", "transverse_inertia", "axial_inertia"):
-            if getattr(self, name) is not None:
-                not_negative(f"tip.{name}", getattr(self, name), "kg m2")
-        moments = sorted((self.inertia, self.inertia_about_bending_direction, self.axial_inertia))
-        if moments[2] > (moments[0] + moments[1]) * (1 + 1e-12):
-            raise ValueError(
-                f"tip inertias {moments[0]:g}, {moments[1]:g}, {moments[2]:g} kg m2: in a rigid body none "
-                "exceeds the sum of the other two; check inertia, transverse_inertia and axial_inertia"
-            )
+            if name != "transverse_inertia" or self.transverse_inertia is not None:
+                set_fields(self, **{name: not_negative(f"tip.{name}", getattr(self, name), "kg m2")})
+        self._check_inertias()
+
+    def _check_inertias(self) -> None:
+        """Refuse a moment of inertia beyond the sum of the other two, which no rigid body has."""
+        moments = {
+            "inertia": self.inertia,
+            "transverse_inertia": self.inertia_about_bending_direction,
+            "axial_inertia": self.axial_inertia,
+        }
+        largest = max(moments, key=lambda name: moments[name])
+        value = moments.pop(largest)
+        bound = f"in a rigid body it is at most the sum of the other two, {' + '.join(moments)} = {{limit}}"
+        total = sum(moments.values())
+        bad = value > total * (1 + 1e-12)
+        refuse(bad, f"tip.{largest}", value, "kg m2", bound, "check all three", limit=total)
 
     @property
     def inertia_about_bending_direction(self) -> float:
@@ -100,16 +110,15 @@ class Beam:
     tip: TipMass | None = None
 
     def __post_init__(self) -> None:
-        positive("length", self.length, "m")
+        set_fields(self, length=positive("length", self.length, "m"))
         for name in ("mass_per_length", "bending_stiffness", "axial_stiffness", "outer_fibre"):
-            if getattr(self, name) is not None:
+            if getattr(self, name) is not None or name in ("mass_per_length", "bending_stiffness"):
                 kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
                 check_positive(name, getattr(self, name))
         if self.tip is not None:
-            kind("tip", self.tip, TipMass)
+            kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
         if self.tip is not None and self.length + self.tip.offset < 0:
-            bound = f"it puts the body behind the root of a beam of length {self.length:g} m"
-            remedy = "give an offset above {limit}"
+            bound, remedy = "it puts the body behind the root", "give an offset above {limit}"
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
 
     @classmethod
@@ -149,17 +158,23 @@ class Beam:
         ------
         ValueError
             If a dimension is not positive and finite, or the thickness exceeds the width or the length.
+
+        Warns
+        -----
+        UserWarning
+            If waves along the beam would run at less than 100 or more than 20 000 m/s: a mistake of units.
         """
-        positive("length", length, "m")
+        length = positive("length", length, "m")
         e = positive("youngs_modulus", youngs_modulus, "Pa")
         rho = positive("density", density, "kg/m3")
         b = as_profile("width", width, breakpoints)
         h = as_profile("thickness", thickness, breakpoints)
         _check_section(length, b, h)
+        warn_of_material(e, rho)
         with np.errstate(over="ignore", invalid="ignore"):  # refused below
             area = b * h
         return cls(
-            length=float(length),
+            length=length,
             mass_per_length=area.scaled(rho),
             bending_stiffness=(area * h * h).scaled(e / 12),
             axial_stiffness=area.scaled(e),
@@ -206,12 +221,18 @@ class Beam:
         ------
         ValueError
             If a property is not positive, finite and smooth between breakpoints.
+
+        Warns
+        -----
+        UserWarning
+            If the properties do not fit together: waves along the beam would run at more than 20 000 m/s, or
+            the section's radius of gyration would exceed the outer fibre or the length.
         """
 
         def profile(name: str, value: Property | None) -> Profile | None:
             return None if value is None else as_profile(name, value, breakpoints)
 
-        return cls(
+        beam = cls(
             length=positive("length", length, "m"),
             mass_per_length=as_profile("mass_per_length", mass_per_length, breakpoints),
             bending_stiffness=as_profile("bending_stiffness", bending_stiffness, breakpoints),
@@ -219,6 +240,14 @@ class Beam:
             outer_fibre=profile("outer_fibre", outer_fibre),
             tip=tip,
         )
+        warn_of_stiffness(
+            beam.length,
+            beam.mass_per_length,
+            beam.bending_stiffness,
+            beam.axial_stiffness,
+            beam.outer_fibre,
+        )
+        return beam
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

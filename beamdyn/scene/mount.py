@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from beamdyn.common.checks import angle, not_negative
+from beamdyn.common.checks import angle, not_negative, set_fields
 from beamdyn.common.described import Described
+from beamdyn.scene.doubts import warn_of_degrees
 
 _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
@@ -31,6 +32,11 @@ class Mount:
     ------
     ValueError
         If the radius is negative or an angle exceeds one turn.
+
+    Warns
+    -----
+    UserWarning
+        If an angle seems to be in degrees: beyond half a turn, with at most two decimals, such as 5.
     """
 
     radius: Annotated[
@@ -58,8 +64,8 @@ class Mount:
     ] = 0.0
 
     def __post_init__(self) -> None:
-        not_negative(
-            "radius", self.radius, "m", "for a beam that points outward give setting_angle = pi instead"
-        )
-        angle("setting_angle", self.setting_angle)
-        angle("bending_angle", self.bending_angle)
+        remedy = "for a beam that points outward give setting_angle = pi instead"
+        angles = {name: angle(name, getattr(self, name)) for name in ("setting_angle", "bending_angle")}
+        set_fields(self, radius=not_negative("radius", self.radius, "m", remedy), **angles)
+        for name, value in angles.items():
+            warn_of_degrees(name, value)

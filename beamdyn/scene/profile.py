@@ -187,20 +187,30 @@ def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
 
 def _from_table(name: str, table: Table) -> Profile:
     x, y = real_array(f"{name}.stations", table.stations), real_array(f"{name}.values", table.values)
-    if len(x) != len(y) or len(x) < 2:
-        raise ValueError(f"{name}: {len(x)} stations and {len(y)} values: give as many of each, at least two")
-    if x[0] != 0 or x[-1] != 1 or np.any(np.diff(x) < 0):
-        raise ValueError(
-            f"{name}: stations run from {x[0]:g} to {x[-1]:g}; they must ascend from 0 to 1 (fractions x/L)"
-        )
-    if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
-        raise ValueError(
-            f"{name}: a station given twice is a jump and stands between others; "
-            "none may be given three times, nor twice at an end"
-        )
+    _check_stations(f"{name}.stations", x, len(y))
     segments = [(x[i + 1], y[i], y[i + 1]) for i in range(len(x) - 1) if x[i + 1] > x[i]]
     rows = tuple(((p + q) / 2, (q - p) / 2) for _, p, q in segments)
     return Profile((0.0, *(float(b) for b, _, _ in segments)), rows)
+
+
+def _check_stations(name: str, x: np.ndarray, values: int) -> None:
+    """Refuse stations that do not ascend from 0 to 1, one for each value; two at one place are a jump."""
+
+    def refuse(k: int, bound: str) -> None:
+        raise InvalidValue(f"{name}[{k}]", float(x[k]), bound, "give fractions x/L")
+
+    if len(x) != values or len(x) < 2:
+        bound = f"{len(x)} stations and {values} values: give as many of each, at least two"
+        raise InvalidValue(name, x.tolist(), bound)
+    if x[0] != 0:
+        refuse(0, "the first station must be 0, the root")
+    if (falls := np.flatnonzero(np.diff(x) < 0) + 1).size:
+        refuse(falls[0], f"it follows {x[falls[0] - 1]:g}; stations must ascend")
+    if x[-1] != 1:
+        refuse(len(x) - 1, "the last station must be 1, the tip")
+    if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
+        bound = "a station given twice is a jump and stands between others"
+        raise InvalidValue(name, x.tolist(), bound, "give none three times, nor twice at an end")
 
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:

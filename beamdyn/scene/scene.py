@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse
+from beamdyn.common.checks import InvalidValue, flag, kind, not_negative, real, refuse, set_fields
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount
@@ -43,14 +43,20 @@ class Scene:
     stretch: bool = False
 
     def __post_init__(self) -> None:
-        kind("beam", self.beam, Beam)
+        kind("beam", self.beam, Beam, "Beam.rectangular and Beam.from_stiffness make one")
         kind("mount", self.mount, Mount, "mount = Mount(radius=0.2) sets a radius of 0.2 m")
-        kind("stretch", self.stretch, bool)
-        if self.motion is not None and not hasattr(self.motion, "at"):
-            raise InvalidValue("motion", self.motion, "give a motion, such as SteadyRotation(speed)")
-        real("gravity", self.gravity, "m/s2")
+        if self.motion is not None:
+            kind("motion", self.motion, Motion, "such as SteadyRotation(speed)")
         ratio = not_negative("damping_ratio", self.damping_ratio)
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
+        gravity, stretch = real("gravity", self.gravity, "m/s2"), flag("stretch", self.stretch)
+        set_fields(self, damping_ratio=ratio, gravity=gravity, stretch=stretch)
         if self.stretch and self.beam.axial_stiffness is None:
             raise InvalidValue("stretch", True, "it needs axial_stiffness", "give it to Beam.from_stiffness")
+
+
+def check_scene(scene: object) -> None:
+    """Refuse what is no scene, such as a beam, as an argument of an analysis."""
+    remedy = "Scene(beam, mount) makes one of a beam, load_scene(path) reads one from a file"
+    kind("scene", scene, Scene, remedy)

@@ -6,17 +6,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from beamdyn.common.checks import refuse
+
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses contact with it
 FASTEST = 1e50  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
 
-def check_speeds(speeds: np.ndarray) -> None:
-    """Raise a ValueError for speeds [rad/s] whose powers would overflow."""
-    fastest = speeds[np.abs(speeds).argmax()]
-    if abs(fastest) > FASTEST:
-        raise ValueError(f"speed = {fastest:g} rad/s: give at most {FASTEST:g} rad/s either way")
+def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
+    """Raise an `InvalidValue` for speeds [rad/s], the argument of that name, whose powers would overflow."""
+    bound = "give at most {limit} either way"
+    refuse(np.abs(speeds) > FASTEST, name, speeds, "rad/s", bound, limit=FASTEST)
 
 
 def warn_of_strain(strain: float) -> Iterator[str]:

@@ -59,7 +59,7 @@ from beamdyn.modal.eigen import Solver
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.profile import Profile
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
 _EPS = float(np.finfo(float).eps)
@@ -134,13 +134,15 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         If an argument is out of its range, or the scene has stretch or damping.
     """
     start = perf_counter()
-    _check_input(scene, real("speed", speed, "rad/s"), count("modes", modes))
+    check_scene(scene)
+    speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
+    _check_input(scene, speed, modes)
     scaled, time = _nondimensional(scene)
     lower, upper, functions = _enclose(scaled, speed * time, modes)
     lower, upper = _widen(lower, -8) / time**2, _widen(upper, 8) / time**2
     low, high = _frequency(lower, -8), _frequency(upper, 8)
     return FrequencyBounds(
-        speed=float(speed),
+        speed=speed,
         lower=low,
         upper=high,
         lower_squared=lower,
@@ -159,7 +161,7 @@ def _check_input(scene: Scene, speed: float, modes: int) -> None:
             f"stretch = {scene.stretch}, damping_ratio = {scene.damping_ratio:g}: bounds are known for "
             "undamped bending only; give dataclasses.replace(scene, stretch=False, damping_ratio=0.0)"
         )
-    check_speeds(np.array([speed]))
+    check_speeds(speed, "speed")
     most = _most_functions(scene.beam) * (len(scene.beam.breakpoints) - 1)
     if modes > most:
         raise ValueError(

@@ -27,8 +27,8 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.error_estimate import UNRESOLVED
 from beamdyn.modal.model import Model
-from beamdyn.scene.scene import Scene
-from beamdyn.scene.validity import LARGE_DEFLECTION
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.modes import static_load
@@ -117,6 +117,7 @@ def critical_point(
     CriticalPoint
     """
     start = perf_counter()
+    check_scene(scene)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     goal = max(target, least_target(discretization))
     modes = _SIZED_FOR if isinstance(discretization, str) else 1
@@ -270,11 +271,8 @@ def setting_angle_limits(
         If the top speed is not positive, or infinite without a basis of given size.
     """
     start = perf_counter()
-    if not (np.isinf(top_speed) and not isinstance(discretization, str)):
-        remedy = (
-            "a converged limit needs a finite top speed; discretization=Ritz(5, 'eigenfunctions') allows inf"
-        )
-        positive("top_speed", top_speed, "rad/s", remedy)
+    check_scene(scene)
+    top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     scene = replace(scene, damping_ratio=0.0, stretch=False)
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
@@ -287,13 +285,23 @@ def setting_angle_limits(
         first=first,
         second=second,
         error=_limits_error(first, second, coarse_limits, top_speed),
-        top_speed=float(top_speed),
+        top_speed=top_speed,
         static_deflection=deflection,
         warnings=tuple(_limit_warnings(first, second, deflection)),
         provenance=Provenance(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),
     )
+
+
+def _check_top_speed(top_speed: float, bounded: bool) -> float:
+    """The top speed [rad/s], which may be infinite unless it is bounded."""
+    if not bounded and isinstance(top_speed, float) and top_speed == np.inf:
+        return top_speed
+    remedy = "a converged limit needs a finite top speed; discretization=Ritz(5, 'eigenfunctions') allows inf"
+    top_speed = positive("top_speed", top_speed, "rad/s", remedy)
+    check_speeds(top_speed, "top_speed")
+    return top_speed
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:

@@ -24,7 +24,7 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.tracking import track
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
 
 if TYPE_CHECKING:
@@ -152,8 +152,9 @@ def natural_modes(
         If an argument is out of its range.
     """
     start = perf_counter()
+    check_scene(scene)
     speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
-    check_speeds(speeds)
+    check_speeds(speeds, "speed")
     tolerance = _check_tolerance(tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations, solution.eigen.eigenvalue[0]
@@ -161,7 +162,7 @@ def natural_modes(
     deflection, strain = static_load(solution.model, speeds)
     warnings = _warnings(scene, speeds, deflection, strain, solution.error, status[None], tolerance)
     return Modes(
-        speed=float(speed),
+        speed=float(speeds[0]),
         frequency=_frequency(s, status),
         error=solution.error[0],
         growth_rate=np.real(s) + 0.0,
@@ -316,7 +317,7 @@ class Locus(Result):
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def frequency_locus(
     scene: Scene,
-    speeds: np.ndarray | Sequence[float],
+    speeds: np.ndarray | Sequence[float] | float,
     modes: int = 3,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
@@ -346,6 +347,7 @@ def frequency_locus(
         If an argument is out of its range.
     """
     start = perf_counter()
+    check_scene(scene)
     speeds, modes = ascending("speeds", speeds), count("modes", modes)
     check_speeds(speeds)
     tolerance = _check_tolerance(tolerance)

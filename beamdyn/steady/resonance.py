@@ -21,13 +21,15 @@ from beamdyn.modal.error_estimate import solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.modal.tracking import track
 from beamdyn.scene.motion import Line, Motion
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
 from beamdyn.steady.harmonic_balance import generate_harmonics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_HIGHEST_ORDER = 20  # that may be asked for: ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
 _ROUNDING = 4 * np.finfo(float).eps
 
@@ -148,8 +150,10 @@ def resonance_speeds(
         If an argument is out of its range, or the motion's steady state is not known.
     """
     start = perf_counter()
+    check_scene(scene)
     top = positive("top_speed", top_speed, "rad/s")
-    modes, order = count("modes", modes), count("order", order)
+    check_speeds(top, "top_speed")
+    modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = replace(scene, damping_ratio=0.0)
     model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed

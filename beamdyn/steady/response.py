@@ -14,11 +14,11 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.results import Provenance, Result, plain
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
-from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
+from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line, Motion
-from beamdyn.scene.scene import Scene
-from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds, list_range, warn_of_deflection, warn_of_road
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
 from beamdyn.steady.harmonic_balance import (
     Pair,
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 _INTERACTIONS = 2  # with the periodic coefficients, for the stability
 _MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
+_MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
 _MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
@@ -179,9 +180,11 @@ def steady_response(
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
     """
+    check_scene(scene)
     speeds = ascending("speeds", speeds)
-    basis = None if modes == "auto" else ModalBasis(count("modes", modes))
-    steps = None if harmonics is None else count("harmonics", harmonics, least=0)
+    check_speeds(speeds)
+    basis = given_basis(modes)
+    steps = None if harmonics is None else count("harmonics", harmonics, least=0, most=_MOST_HARMONICS)
     tolerance = positive("tolerance", tolerance)
     smallest = basis or ModalBasis(FEWEST_MODES)
     request = ResponseRequest(scene, speeds, smallest, steps, tolerance, discretization)

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import count, positive, real
+from beamdyn.common.checks import count, function, positive, real
 from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.ritz import MOST_FUNCTIONS
 from beamdyn.modal.choice import choose_model
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.excitation_phases import check_steady_state
 from beamdyn.tradeoffs.frequencies import frequency_diagram
 from beamdyn.tradeoffs.measurements import Diagram
@@ -103,12 +105,16 @@ def tradeoff(
         If an argument is out of its range, or `t_end` is given for a scene without motion.
     """
     start = perf_counter()
-    modes, budget = count("modes", modes), _check_budget(budget)
+    check_scene(scene)
+    modes, budget = count("modes", modes, most=MOST_FUNCTIONS - 3), _check_budget(budget)
+    if progress is not None:
+        function("progress", progress, "it takes the numbers of finished diagrams and of all")
     if t_end is not None and scene.motion is None:
         raise ValueError(
             f"t_end = {t_end!r}: the scene has no motion, so there is no transient; add one, or leave it out"
         )
     speed = _default_speed(scene) if speed is None else real("speed", speed, "rad/s")
+    check_speeds(speed, "speed")
     end = np.nan if scene.motion is None else _end(scene) if t_end is None else positive("t_end", t_end, "s")
     tasks = list(_list_diagrams(scene, speed, modes, end, budget))
     diagrams = []

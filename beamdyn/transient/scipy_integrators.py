@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import OdeSolver, solve_ivp
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.transient.gauss import GaussCollocation
 from beamdyn.transient.step_size import integrate
 from beamdyn.transient.system import ModalSystem
@@ -55,6 +56,14 @@ class SolveIvpPath:
         return q.T, v.T
 
 
+def check_method(method: object) -> None:
+    """Refuse what is no method of `solve_ivp`."""
+    named = isinstance(method, str) and method in _KNOWN_METHODS
+    if not named and not (isinstance(method, type) and issubclass(method, OdeSolver)):
+        known = ", ".join(map(repr, _KNOWN_METHODS))
+        raise InvalidValue("method", method, f"give 'auto', {known} or a class derived from OdeSolver")
+
+
 def integrate_by_solve_ivp(
     system: ModalSystem,
     y0: np.ndarray,
@@ -86,20 +95,16 @@ def integrate_by_solve_ivp(
 
     Raises
     ------
-    ValueError
-        If the method is unknown.
     ArithmeticError
         If `solve_ivp` fails.
     """
-    if isinstance(method, str) and method not in _KNOWN_METHODS:
-        known = ", ".join(map(repr, _KNOWN_METHODS))
-        raise ValueError(f"method = {method!r}: give 'auto', {known} or an OdeSolver")
     options = {"rtol": tolerance, "atol": _absolute_tolerance(system, y0, t_end, tolerance), **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
         options = {"system": system, **options}
     elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}
-    result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=method, dense_output=True, **options)
+    chosen: Any = method  # one of those that `check_method` accepts
+    result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=chosen, dense_output=True, **options)
     if not result.success:
         raise ArithmeticError(f"solve_ivp stopped at t = {result.t[-1]:g} s: {result.message}")
     steps = [np.linspace(a, b, SAMPLES + 1)[:-1] for a, b in pairwise(result.t)]

@@ -13,18 +13,24 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import ascending, count, positive, real, within
+from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
-from beamdyn.modal.modal_basis import FEWEST_MODES, SPEED_SAMPLES, ModalBasis, find_speed_range
+from beamdyn.modal.modal_basis import (
+    FEWEST_MODES,
+    SPEED_SAMPLES,
+    ModalBasis,
+    find_speed_range,
+    given_basis,
+)
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_road
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.root_strain import RootStrain
-from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
+from beamdyn.transient.scipy_integrators import check_method, integrate_by_solve_ivp
 from beamdyn.transient.step_size import TOLERANCES, TooManySteps, integrate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import SAMPLES, Path, largest_deflection
@@ -275,11 +281,14 @@ def simulate(
     ArithmeticError
         If the motion grows without bound.
     """
+    check_scene(scene)
+    if not (isinstance(method, str) and method == "auto"):
+        check_method(method)
     t_end, tolerance = positive("t_end", t_end, "s"), within("tolerance", tolerance, *TOLERANCES)
     if scene.motion is None:
-        raise ValueError("scene.motion is None: a transient needs a motion, such as SteadyRotation(50.0)")
+        raise InvalidValue("scene.motion", None, "a transient needs a motion", "such as SteadyRotation(50.0)")
     times = None if t_eval is None else _times(t_eval, t_end)
-    basis = None if modes == "auto" else ModalBasis(None if modes is None else count("modes", modes))
+    basis = ModalBasis(None) if modes is None else given_basis(modes)
     if basis is None and not isinstance(initial, str):
         raise ValueError('initial is an array: give the number of its modes, not modes = "auto"')
     smallest = basis or ModalBasis(FEWEST_MODES, find_speed_range(scene.motion, t_end))
@@ -439,11 +448,10 @@ def _initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray
             _, K, f = system.coefficients(np.zeros(()))
             return np.concatenate([np.linalg.solve(K, f), np.zeros(n)])
         raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
-    y0 = np.asarray(initial, dtype=float)
-    if y0.shape != (2 * n,) or not np.isfinite(y0).all():
-        raise ValueError(
-            f"initial: give {2 * n} finite numbers, coordinates then velocities; shape {y0.shape}"
-        )
+    y0 = as_floats(initial)
+    if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():
+        bound = f"give {2 * n} finite numbers, coordinates then velocities, or 'rest' or 'equilibrium'"
+        raise InvalidValue("initial", initial, bound)
     return y0
 
 

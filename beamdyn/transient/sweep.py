@@ -6,6 +6,7 @@ import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
+from os import PathLike
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -13,14 +14,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import ascending, count, positive, real, within
+from beamdyn.common.checks import InvalidValue, ascending, count, function, positive, real, within
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import DiscretizationChoice
-from beamdyn.modal.modal_basis import FEWEST_MODES, SPEED_SAMPLES, ModalBasis, find_speed_range
+from beamdyn.modal.modal_basis import (
+    FEWEST_MODES,
+    SPEED_SAMPLES,
+    ModalBasis,
+    find_speed_range,
+    given_basis,
+)
 from beamdyn.scene.motion import check_picklable
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
@@ -148,12 +155,12 @@ def sweep(
         If the executor breaks; finished chunks are in the store.
     """
     start = perf_counter()
+    check_scene(scene)
     cases = tuple(ascending("speeds", speeds).tolist())
     request = _check_request(scene, window, t_end, tolerance, discretization)
     workers, chunk = count("workers", workers), count("chunk", chunk)
-    if executor is not None and workers > 1:
-        raise ValueError(f"workers = {workers} and an executor are given: give one of them")
-    basis = None if modes == "auto" else ModalBasis(count("modes", modes))
+    _check_means(workers, executor, store, progress)
+    basis = given_basis(modes)
     _check_speeds(request := replace(request, basis=basis or _smallest_basis(request, cases)), cases)
     if store is not None or executor is not None or workers > 1:
         _check_sendable(request, importable=workers > 1)
@@ -186,9 +193,11 @@ def _check_request(
 ) -> SweepRequest:
     """Check the arguments that all cases share."""
     if scene.motion is None:
-        raise ValueError("scene.motion is None: a sweep needs a motion, such as SpinUp(50.0, duration=10.0)")
-    if not isinstance(window, tuple | list) or len(window) != 2:
-        raise ValueError(f"window = {window!r}: give its beginning and its end [s], such as (20.0, 30.0)")
+        raise InvalidValue(
+            "scene.motion", None, "a sweep needs a motion", "such as SpinUp(50.0, duration=10.0)"
+        )
+    if not isinstance(window, tuple | list | np.ndarray) or len(window) != 2:
+        raise InvalidValue("window", window, "give its beginning and its end [s], such as (20.0, 30.0)")
     start, end = real("window[0]", window[0], "s"), real("window[1]", window[1], "s")
     last = end if t_end is None else positive("t_end", t_end, "s")
     if not 0 <= start < end <= last:
@@ -199,6 +208,20 @@ def _check_request(
     return SweepRequest(
         scene, (start, end), last, within("tolerance", tolerance, *TOLERANCES), discretization
     )
+
+
+def _check_means(
+    workers: int, executor: Executor | None, store: str | Path | None, progress: Progress | None
+) -> None:
+    """Check how the cases are to be computed and kept."""
+    if executor is not None and not hasattr(executor, "submit"):
+        raise InvalidValue("executor", executor, "give an Executor, as in concurrent.futures")
+    if executor is not None and workers > 1:
+        raise InvalidValue("workers", workers, "an executor is given too", "give one of them")
+    if store is not None and not isinstance(store, str | PathLike):
+        raise InvalidValue("store", store, "give the name of a folder")
+    if progress is not None:
+        function("progress", progress, "it takes the numbers of finished speeds and of all")
 
 
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:

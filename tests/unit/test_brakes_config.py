@@ -121,9 +121,9 @@ def test_the_textbooks_line_of_no_pressure() -> None:
 @pytest.mark.parametrize(
     "keys, parts",
     [
-        ({"shoe__lining_end": "20 deg"}, ["shoe", "lining_end = 20 deg", "empty", "lining_start"]),
-        ({"shoe__lining_start": "5 deg"}, ["lining_start = 5 deg", "overlaps the pin, at 10.3048 deg"]),
-        ({"shoe__lining_end": "200 deg"}, ["lining_end = 200 deg", "leaves the drum"]),
+        ({"shoe__lining_end": "20 deg"}, ["shoe", 'lining_end = "20 deg"', "empty", "lining_start"]),
+        ({"shoe__lining_start": "5 deg"}, ['lining_start = "5 deg"', "overlaps the pin, at 10.3048 deg"]),
+        ({"shoe__lining_end": "200 deg"}, ['lining_end = "200 deg"', "leaves the drum"]),
         ({"shoe__lining_start": "30"}, ["shoe.lining_start", "give a unit"]),
         ({"shoe__lining_start": "30 mm"}, ["shoe.lining_start", "length", "angle"]),
         ({"shoe__pivot_depth": "-110 mm"}, ["shoe.pivot_depth", "greater than 0"]),

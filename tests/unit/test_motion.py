@@ -428,7 +428,7 @@ def test_bad_table(times, speeds, parts):
         (lambda: RollingWheel(0.3, "5"), ("speed = '5'", "or a rotation")),
         (lambda: RollingWheel(0.3, PUBLISHED), ("speed = RollingWheel", "or a rotation")),
         (lambda: RollingWheel(0.3, 5.0, 0.01), ("road = 0.01", "RoadWave")),
-        (lambda: UserMotion(5.0), ("function = 5.0", "MotionSample")),
+        (lambda: UserMotion(5.0), ("function = 5: give a function", "MotionSample")),
         (lambda: UserMotion(shaken, t_end=-1.0), ("t_end = -1 s",)),
         (lambda: UserMotion(shaken, breakpoints=[[1]]), ("breakpoints", "one-dimensional")),
         (lambda: UserMotion(np.sin, t_end=1.0), ("function(t)", "MotionSample")),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import math
+import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -17,7 +19,7 @@ from pydantic_core import ErrorDetails
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.inputs import Section, describe
-from beamdyn.common.edge.units import InvalidInput, show
+from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_written
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -73,9 +75,13 @@ def read(path: str | PathLike[str]) -> str:
 
     Raises
     ------
+    InvalidValue
+        If it is not the name of a file, as text or path.
     ConfigError
         If it cannot be read; the message says why.
     """
+    if not isinstance(path, str | PathLike):
+        raise InvalidValue("path", path, "give the name of a TOML file")
     try:
         return Path(path).read_text(encoding="utf-8-sig")  # with or without the mark that editors prepend
     except FileNotFoundError:
@@ -144,7 +150,7 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
         case "extra_forbidden":
             return _unknown(model, error["loc"]), path
         case "value_error":
-            return _refusal(model, place, path, context.get("error"))
+            return _refusal(model, place, path, context.get("error"), error["input"])
         case "kind":
             return str(InvalidInput(f"{place}.kind", error["input"]["kind"], error["msg"])), f"{path}.kind"
         case "literal_error":
@@ -152,16 +158,55 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
     return str(InvalidInput(place, error["input"], _WORDS.get(error["type"], error["msg"]))), path
 
 
-def _refusal(model: type[BaseModel], place: str, path: str, reason: Any) -> tuple[str, str]:
-    """The refusal of a number or a core object, in terms of the file's keys."""
+def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
+    """The refusal of a number or a core object, in terms of the file's keys and as the file writes it."""
     if isinstance(reason, InvalidInput) and not reason.field:
         return str(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
-        field = f"{place}.{key.removeprefix(path).lstrip('.')}".lstrip(".")
+        inner = key.removeprefix(path).lstrip(".") + _part(reason.field, key)
         kind = InvalidInput if type(reason) is InvalidValue else type(reason)
-        said: dict[str, Any] = vars(reason) | {"field": field}
-        return str(kind(**said)), key
+        said: dict[str, Any] = vars(reason) | {"field": f"{place}.{inner}".lstrip(".")}
+        return str(_as_written(kind(**said), _found(given, inner))), key
     return f"{place or 'model'}: {reason}", path
+
+
+def _part(field: str, key: str) -> str:
+    """What a field of the core adds to the path of the input that it is a part of, such as ".values[1]"."""
+    return next(field.removeprefix(name) for name in _wholes(field) if f".{key}".endswith(f".{name}"))
+
+
+def _wholes(field: str) -> Iterator[str]:
+    """The field and what it is a part of: "width.values[1]", "width.values" and "width"."""
+    yield field
+    if (cut := max(field.rfind("."), field.rfind("["))) > 0:
+        yield from _wholes(field[:cut])
+
+
+def _found(given: Any, place: str) -> Any:
+    """What stands at a place of a table, such as "width.values[1]"; None if there is nothing."""
+    for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", place):
+        try:
+            given = given[int(index) if index else key]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return given
+
+
+def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
+    """The refusal with the value as the file writes it, and the limit in the same unit."""
+    value, unit = refusal.value, refusal.unit
+    if isinstance(given, list) and isinstance(value, tuple | list):
+        return replace(refusal, value=given)
+    if not isinstance(given, str) or not isinstance(value, float):
+        return refusal
+    try:
+        if not math.isclose(abs(quantity(given, unit)), abs(value), rel_tol=1e-9):
+            return refusal  # about another number, which was made from this one
+    except InvalidInput:  # such as a length that stands for a fraction
+        return replace(refusal, value=given)
+    written, convert = unit_as_written(given, unit)
+    limit = None if refusal.limit is None else convert(refusal.limit)
+    return replace(refusal, value=given, unit=written, limit=limit)
 
 
 def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
@@ -177,6 +222,12 @@ def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
         Path of the table in which it is looked for.
     """
     field = error.field if isinstance(error, InvalidValue) else ""
+    paths = list(paths)
+    return next(filter(None, (_path_ending(name, paths, table) for name in _wholes(field))), "")
+
+
+def _path_ending(field: str, paths: list[str], table: str) -> str:
+    """The one path within a table that ends with a field; empty if there are none or several."""
     exact = f"{table}.{field}".lstrip(".")
     ends = {path for path in paths if field and f".{path}".endswith(f".{field}")}
     inside = {path for path in ends if path.startswith(table and f"{table}.")}

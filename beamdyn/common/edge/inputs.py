@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.common.checks import real
 from beamdyn.common.described import Described
-from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.edge.units import InvalidInput, quantity, unit_as_written
 
 
 class Section(BaseModel):
@@ -51,7 +51,10 @@ class Quantity(Described):
             or (self.least is not None and value < self.least)
             or (self.most is not None and value > self.most)
         ):
-            raise InvalidInput("", given, f"it must be {self.bounds} {self.unit}".rstrip(), self.remedy)
+            unit, convert = unit_as_written(given, self.unit)
+            raise InvalidInput(
+                "", given, f"it must be {self.bounds_as(convert)} {unit}".rstrip(), self.remedy
+            )
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Callable
 from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?[1-9])?"
 _SEPARATOR = r"(?:\s*[*/]\s*|\s+)"
 _TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*)?)\s*", re.ASCII)
+_NO_NUMBER = re.compile(r"\s*[+-]?(nan|inf)", re.IGNORECASE)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
 _PLAIN = str.maketrans({"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*"})
 
@@ -81,14 +83,28 @@ def quantity(text: object, unit: str) -> float:
     number, given = _split(text, unit)
     kind, wanted = _parse(given), _parse(unit)
     if kind is None or wanted is None:
-        advice = f"give {_kind(unit)}, e.g. in {_usual(unit)}"
-        raise InvalidInput("", text, f"unknown unit {given}", advice)
+        raise InvalidInput(
+            "", text, f"unknown unit {given}", f"give {_kind(unit)}, e.g. {_example(unit, number)}"
+        )
     if _root(kind) != _root(wanted):
         raise InvalidInput("", text, _mismatch(number, kind, unit))
     value = _convert(number, kind, wanted)
     if not math.isfinite(value):
         raise InvalidInput("", text, "out of range", f"give a finite number in {unit}")
     return value
+
+
+def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], float]]:
+    """The unit of a quantity as it was written, and what converts numbers in `unit` to it.
+
+    Where the text has no unit of that kind, it is `unit` itself.
+    """
+    match = _TEXT.fullmatch(text.translate(_PLAIN)) if isinstance(text, str) and unit else None
+    written = match[2] if match else ""
+    kind, wanted = _parse(written), _parse(unit)
+    if not written or kind is None or wanted is None or _root(kind) != _root(wanted):
+        return unit, float
+    return written, lambda number: _convert(repr(float(number)), wanted, kind)
 
 
 def show(value: object, depth: int = 2) -> str:
@@ -127,7 +143,7 @@ def _split(given: object, unit: str) -> tuple[str, str]:
     text = str(given) if bare or isinstance(given, str) else ""
     match = _TEXT.fullmatch(text.translate(_PLAIN))
     if match is None:
-        raise InvalidInput("", given, "not a number with a unit", f'give e.g. "1 {_usual(unit)}"')
+        raise InvalidInput("", given, *_no_quantity(given, unit))
     number, name = match.groups()
     if unit and not name:
         choices = dict.fromkeys((f'"{number} {unit}"', f'"{number} {_usual(unit)}"'))
@@ -164,7 +180,30 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
         turns = f'"{60 * float(number):g} rpm"' if f"{kind:~}" == "Hz" else "rpm"
         return f"ambiguous for an angular speed; give {turns} if turns are meant, rad/s if radians"
     kind_of = names.get(_root(kind), f"{kind:~C}")
-    return f"a unit of {kind_of} where {_kind(unit)} is wanted; give e.g. {_usual(unit)}"
+    return f"a unit of {kind_of} where {_kind(unit)} is wanted; give e.g. {_example(unit, number)}"
+
+
+def _no_quantity(given: object, unit: str) -> tuple[str, str]:
+    """What is wrong with a value that is no number with a unit, and what to give."""
+    match given:
+        case bool():
+            return "a truth value", f"give a quantity, e.g. {_example(unit)}"
+        case [str() as one] if _TEXT.fullmatch(one.translate(_PLAIN)):
+            return "a list where one quantity is wanted", f"give it without brackets, {show(one)}"
+        case list() | tuple():
+            return "a list where one quantity is wanted", f"give e.g. {_example(unit)}"
+        case dict():
+            return "a table where one quantity is wanted", f"give e.g. {_example(unit)}"
+        case float() | str() if _NO_NUMBER.match(str(given)):
+            return "not a finite number", f"give e.g. {_example(unit)}"
+        case str() if _TEXT.fullmatch(point := given.translate(_PLAIN).replace(",", ".", 1)):
+            return "a decimal comma", f"give a point, {show(point)}"
+    return "not a number with a unit", f"give e.g. {_example(unit)}"
+
+
+def _example(unit: str, number: str = "1") -> str:
+    """A quantity as a file writes it, with a number as it was given."""
+    return f'"{number} {_usual(unit)}"' if unit else number
 
 
 def _kind(unit: str) -> str:

@@ -168,9 +168,3 @@ def check_times(t: np.ndarray, end: float) -> np.ndarray:
 def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
     """Convert breakpoints [s] to ascending order without repeats."""
     return tuple(np.unique(real_array("breakpoints", times)).tolist())
-
-
-def set_fields(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass during its construction."""
-    for name, value in values.items():
-        object.__setattr__(instance, name, value)

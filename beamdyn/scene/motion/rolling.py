@@ -9,9 +9,9 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import kind, positive, real
+from beamdyn.common.checks import function, kind, positive, real, set_fields
 from beamdyn.common.described import Described
-from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times, set_fields
+from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times
 from beamdyn.scene.motion.checks import check_consistent
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
 
@@ -212,10 +212,10 @@ class UserMotion(Motion):
     t_end: float = math.inf
 
     def __post_init__(self) -> None:
-        if not callable(self.function):
-            raise ValueError(f"function = {self.function!r}: give a function that returns a MotionSample")
+        function("function", self.function, "it takes an array of times [s] and returns a MotionSample")
         set_fields(self, breakpoints=as_breakpoints(self.breakpoints))
-        if self.t_end != math.inf:
+        for_ever = isinstance(self.t_end, float) and self.t_end == math.inf
+        if not for_ever:
             set_fields(self, t_end=positive("t_end", self.t_end, "s"))
             check_consistent(self, self.t_end)
 
@@ -232,7 +232,10 @@ class UserMotion(Motion):
     def at(self, t: np.ndarray) -> MotionSample:
         """Sample the motion at times t [s], of any shape."""
         t = check_times(t, self.t_end)
-        sample = self.function(t)
+        try:
+            sample = self.function(t)
+        except Exception as error:  # whatever a user's function may raise
+            raise ValueError(f"function: it failed on an array of times ({error}); use numpy") from error
         if not isinstance(sample, MotionSample):
             raise ValueError(f"function(t) returned a {type(sample).__name__}: let it return a MotionSample")
         shapes = {"angle": t.shape, "speed": t.shape, "acceleration": t.shape}

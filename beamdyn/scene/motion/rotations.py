@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, one_of, positive, real, real_array, refuse
+from beamdyn.common.checks import function, one_of, positive, real, real_array, refuse, set_fields
 from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import (
     Kinematics,
@@ -19,7 +19,6 @@ from beamdyn.scene.motion.base import (
     MotionSample,
     as_breakpoints,
     check_times,
-    set_fields,
 )
 from beamdyn.scene.motion.checks import check_consistent
 
@@ -301,8 +300,7 @@ class RotationFunction(Rotation):
 
     def __post_init__(self) -> None:
         for name in ("angle", "speed", "acceleration"):
-            if not callable(getattr(self, name)):
-                raise InvalidValue(name, getattr(self, name), "give a function of the time")
+            function(name, getattr(self, name), "it takes an array of times [s]")
         t_end, scale = positive("t_end", self.t_end, "s"), real("scale", self.scale)
         set_fields(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
         check_consistent(self, t_end)
