@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, get_args
 
 from pydantic import BaseModel, Field
 
+from beamdyn import natural_modes
 from beamdyn.common.app.screens import Drag
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import validated
-from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
-from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, describe
 from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
 from beamdyn.scene.scene import Scene
 
@@ -21,17 +23,7 @@ DRAGS = (
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
 )
-
-
-class ModeCount(Quantity):
-    """A number of modes: a whole number."""
-
-    def convert(self, given: object) -> float:
-        """The number."""
-        value = super().convert(given)
-        if value != int(value):
-            raise InvalidInput("", given, "give a whole number")
-        return value
+_FASTEST = 10  # times the first natural frequency at rest
 
 
 class OptionsInput(Section):
@@ -40,7 +32,7 @@ class OptionsInput(Section):
     top_speed: Annotated[
         float, Quantity("rad/s", symbol="omega", meaning="top speed", above=0, remedy='e.g. "150 rad/s"')
     ]
-    modes: Annotated[float, ModeCount(symbol="n", meaning="how many modes", least=1, most=8)]
+    modes: Annotated[float, WholeNumber(symbol="n", meaning="how many modes", least=1, most=8)]
 
 
 class _NoKind(Section):
@@ -85,7 +77,17 @@ def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
     rest = {name: table for name, table in tables.items() if name != "options"}
     options = validated(_OptionsTable, {"options": tables.get("options", {})}, "options").options
-    return scene_from_dict(rest), options.top_speed, int(options.modes)
+    scene = scene_from_dict(rest)
+    _check_effort(scene, options.top_speed)
+    return scene, options.top_speed, int(options.modes)
+
+
+def _check_effort(scene: Scene, top_speed: float) -> None:
+    """Refuse a top speed that takes minutes: the faster a beam turns, the more functions a mode needs."""
+    first = 2 * math.pi * float(natural_modes(scene, 0.0, 1, tolerance=0.01).frequency[0])
+    if top_speed > _FASTEST * first:
+        bound = f"it must be at most {{limit}}, {_FASTEST} times the first natural frequency at rest"
+        raise InvalidValue("options.top_speed", top_speed, bound, unit="rad/s", limit=_FASTEST * first)
 
 
 class _OptionsTable(Section):

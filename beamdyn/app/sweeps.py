@@ -15,7 +15,16 @@ from beamdyn.common.app.form_entries import entries_of
 from beamdyn.common.app.screens import Sweeps
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, numbers, one_by_one, parse_axis
+from beamdyn.common.edge.input_sweep import (
+    MOST_ONE_BY_ONE,
+    InputSweep,
+    Output,
+    check_cases,
+    chosen,
+    numbers,
+    one_by_one,
+    parse_axis,
+)
 from beamdyn.scene.scene import Scene
 
 _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the largest, how often these close in
@@ -125,6 +134,7 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
 
     def run(tables: Mapping[str, Any], text: str, names: str) -> InputSweep:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
+        check_cases([axis], MOST_ONE_BY_ONE, "sweep")
         wanted = chosen(outputs(_modes(tables)), names, "results")
         return one_by_one(tables, [axis], wanted, lambda design: SweepCase(*read(design)))
 

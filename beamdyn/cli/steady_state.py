@@ -8,6 +8,8 @@ from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
     Discretization,
+    ModeCount,
+    Order,
     SceneFile,
     Text,
     parse_positive,
@@ -22,8 +24,8 @@ def resonances(
     /,
     *,
     top_speed: Text,
-    modes: int = 3,
-    order: int = 1,
+    modes: ModeCount = 3,
+    order: Order = 1,
     discretization: Discretization = "ritz",
     outputs: Outputs = NO_FILES,
 ) -> None:

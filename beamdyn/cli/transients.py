@@ -16,6 +16,7 @@ from beamdyn.cli.values import (
     Discretization,
     SceneFile,
     Text,
+    Workers,
     naming_option,
     parse_positive,
     parse_speeds,
@@ -102,7 +103,7 @@ def sweep(
     window: Text,
     modes: BasisSize = "auto",
     tolerance: float = 1e-5,
-    workers: int = 1,
+    workers: Workers = 1,
     scheduler: Annotated[
         str | None, Parameter(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
     ] = None,

@@ -23,11 +23,26 @@ if TYPE_CHECKING:
 SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Discretization = Literal["ritz", "fem"]
-BasisSize = int | Literal["auto"]
 
-_MOST_SPEEDS = 100_000
+_MOST_SPEEDS = 10_000
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
 _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
+
+
+def _at_most(most: int) -> Parameter:
+    """Upper limit of a whole number, beyond which a command takes hours or fills the memory."""
+
+    def check(_: object, value: object) -> None:
+        if isinstance(value, int) and value > most:
+            raise ValueError(f"Give at most {most}.")
+
+    return Parameter(validator=check)
+
+
+ModeCount = Annotated[int, _at_most(100)]
+BasisSize = Annotated[int | Literal["auto"], _at_most(100)]
+Order = Annotated[int, _at_most(5)]
+Workers = Annotated[int, _at_most(128)]
 
 
 def parse_quantity(option: str, text: str, unit: str) -> float:

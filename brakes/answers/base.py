@@ -13,7 +13,17 @@ from rich.console import RenderableType
 from beamdyn.common.app.screens import Handle, Slider
 from beamdyn.common.edge import input_sweep
 from beamdyn.common.edge.config import parse, read, validated
-from beamdyn.common.edge.input_sweep import Axis, InputSweep, Output, chosen, one_by_one, parse_axis
+from beamdyn.common.edge.input_sweep import (
+    MOST_AT_ONCE,
+    MOST_ONE_BY_ONE,
+    Axis,
+    InputSweep,
+    Output,
+    check_cases,
+    chosen,
+    one_by_one,
+    parse_axis,
+)
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.results import Result
@@ -105,6 +115,8 @@ class BrakeType(ABC, Generic[FileModel]):
         What its figure follows.
     more : tuple of (title, callable)
         Further drawings: answer in, figure out.
+    most_cases : int
+        Cases of a sweep that are solved.
     """
 
     name: ClassVar[str]
@@ -116,6 +128,7 @@ class BrakeType(ABC, Generic[FileModel]):
     sweep_results: str
     slider: Slider | None = None
     more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
+    most_cases: int = MOST_ONE_BY_ONE
 
     @abstractmethod
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
@@ -199,6 +212,7 @@ class BrakeType(ABC, Generic[FileModel]):
             raise ValueError(
                 f"{options[0]} is given {len(axes)} times: give it once, or twice for two inputs"
             )
+        check_cases(axes, self.most_cases, options[0])
         return self.sweep_cases(design, tables, axes, wanted)
 
 
@@ -212,6 +226,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
     """
 
     model: type[FileModel]
+    most_cases = MOST_AT_ONCE
 
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
         """Design that tables describe."""

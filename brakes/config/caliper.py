@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model
 
 from beamdyn.common.edge.config import validated
-from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
 from beamdyn.common.edge.sections import MadeSection, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.calipers import NAMED, Caliper, StoppingDistance, stop
@@ -69,15 +69,18 @@ QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuanti
 # A caliper's run ----------------------------------------------------------------------------------
 
 
+_Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]
+
+
 class RunInput(Section):
     """[run]: the stroke, the finger's force, and what else is to be computed."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[str | None, Field(description="load that drives a stroke of a plain mechanism")] = None
     travel: Annotated[float | None, TravelQuantity("m", "", "travel of the cable or of the driver")] = None
-    points: Annotated[int, Field(description="positions of the stroke", ge=2)] = 100
+    points: Annotated[int, WholeNumber(meaning="positions of the stroke", least=2, most=2000)] = 100
     friction: Annotated[float, Quantity("", "mu", "coefficient of friction", least=0)] = 0.0
-    wear: list[Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]] = []  # noqa: RUF012
+    wear: Annotated[list[_Loss], Field(max_length=100)] = []  # noqa: RUF012
 
 
 class CaliperStopInput(Section):

@@ -69,6 +69,17 @@ def test_deck_has_load_and_root():
     assert "NLGEOM" not in calculix.deck(5, 50.0, False)
 
 
+@pytest.mark.skipif(
+    calculix.version() is None, reason="there is no ccx; on Debian: apt-get install calculix-ccx"
+)
+@pytest.mark.parametrize("speed", [0.0, 100.0])
+def test_solid_elements_give_the_frequency_of_the_beam(speed):
+    """The beam theory leaves out shear and rotary inertia, a part of about (thickness/length)^2."""
+    left_out = (measure.given()["thickness"] / measure.given()["length"]) ** 2
+    _, frequency = calculix.solve(calculix.deck(20, speed, False))
+    assert frequency == pytest.approx(measure.harvester_frequencies()[speed], rel=2 * left_out)
+
+
 # pyBModes -----------------------------------------------------------------------------------------
 
 

@@ -44,7 +44,8 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
         port
             Port to serve on.
         host
-            Address to serve on; only this computer can reach the usual one.
+            Address or name to serve on; only this computer can reach the usual one. Requests to other
+            names are refused.
         browser
             Open the browser.
         """
@@ -83,11 +84,14 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     if not 1 <= port <= 65535:
         raise ValueError(f"--port = {port}: give a port from 1 to 65535")
     try:
-        from nicegui import ui
+        from nicegui import app, ui
     except ImportError:
         raise ValueError(MISSING) from None
+    from beamdyn.common.app.own_names import OwnNames
+
     _free(host, port)
     made = program()
+    app.add_middleware(OwnNames, host=host)
     ui.run(
         root_of(made),
         host=host,

@@ -155,6 +155,10 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
             return str(InvalidInput(f"{place}.kind", error["input"]["kind"], error["msg"])), f"{path}.kind"
         case "literal_error":
             return str(InvalidInput(place, error["input"], f"give {context.get('expected')}")), path
+        case "too_long":
+            return str(
+                InvalidInput(place, error["input"], f"give at most {context['max_length']} values")
+            ), path
     return str(InvalidInput(place, error["input"], _WORDS.get(error["type"], error["msg"]))), path
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +18,8 @@ from beamdyn.common.results import Result
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(.*?)\s*")
-_MOST = 100_000
+MOST_AT_ONCE = 100_000  # cases at once, of arrays
+MOST_ONE_BY_ONE = 2000  # cases, each solved by itself: minutes
 
 
 @dataclass(frozen=True)
@@ -167,10 +169,20 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> A
         form = f"{entry.path}=1:2:11 {entry.quantity.unit}".strip()
         raise ValueError(f'{words}: give KEY=start:stop:count unit, e.g. "{form}"')
     start, stop, count = float(match[1]), float(match[2]), int(match[3])
-    if not 2 <= count <= _MOST or start == stop:
-        raise ValueError(f"{words}: give two different ends, and a count from 2 to {_MOST}")
+    if not 2 <= count <= MOST_AT_ONCE or start == stop:
+        raise ValueError(f"{words}: give two different ends, and a count from 2 to {MOST_AT_ONCE}")
     low, high = (_in_si(entry, number, match[4], words) for number in (match[1], match[2]))
     return Axis(entry, match[4], np.linspace(start, stop, count), np.linspace(low, high, count))
+
+
+def check_cases(axes: Sequence[Axis], most: int = MOST_AT_ONCE, option: str = "--sweep") -> None:
+    """Refuse a sweep of more cases than `most`; `option` is its name in the message."""
+    counts = [len(axis.values) for axis in axes]
+    if math.prod(counts) > most:
+        raise ValueError(
+            f"{option}: {' x '.join(map(str, counts))} values; at most {most} cases are solved: "
+            "give a smaller count"
+        )
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:

@@ -61,6 +61,17 @@ class Quantity(Described):
         return core_schema.no_info_plain_validator_function(self.parse)
 
 
+class WholeNumber(Quantity):
+    """A whole number, such as how many of something."""
+
+    def convert(self, given: object) -> int:
+        """The number."""
+        value = super().convert(given)
+        if value != int(value):
+            raise InvalidInput("", given, "give a whole number")
+        return int(value)
+
+
 @dataclass(frozen=True)
 class Input:
     """Description of one input of a model, for forms and documentation.

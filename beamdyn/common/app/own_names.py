@@ -1,0 +1,105 @@
+"""Who an interactive program answers: requests to its own names, from its own page, in no other page's frame.
+
+A web page from elsewhere reaches a server on this computer through the visitor's browser: under a name of
+its own that is made to point to 127.0.0.1 ("DNS rebinding"), which shows in the request's Host; or as itself
+by a websocket or a form, which shows in its Origin.  Both are checked here; starlette's
+`TrustedHostMiddleware` checks no Origins, and in its earlier versions takes no address in brackets.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+from collections.abc import Awaitable, Callable, MutableMapping
+from ipaddress import ip_address
+from typing import Any
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+_THIS_COMPUTER = ("127.0.0.1", "[::1]", "localhost")
+_HOST = re.compile(r"(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(:[0-9]+)?")
+_UNFRAMED = ((b"x-frame-options", b"DENY"), (b"content-security-policy", b"frame-ancestors 'none'"))
+
+
+class OwnNames:
+    """ASGI middleware that refuses requests to other names than the program's, and from other pages.
+
+    Parameters
+    ----------
+    app : callable
+        The ASGI application.
+    host : str
+        Address or name that the program listens on.  The program answers to it and to 127.0.0.1, [::1] and
+        localhost; where it listens on all addresses, to any address and to the computer's name: a foreign
+        page has a name, too, but another one.
+    """
+
+    def __init__(self, app: App, host: str) -> None:
+        self.app = app
+        self.any_address = host == "" or (_is_address(host) and ip_address(host).is_unspecified)
+        own = socket.gethostname() if self.any_address else f"[{host}]" if ":" in host else host
+        self.names = tuple(dict.fromkeys((*_THIS_COMPUTER, own.lower())))
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or refuse it with a sentence and status 403."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+        elif not (refusal := self.refusal(_headers(scope, b"host"), _headers(scope, b"origin"))):
+            await self.app(scope, receive, _unframed(send))
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
+        else:
+            await _refuse(_unframed(send), refusal)
+
+    def refusal(self, hosts: list[str], origins: list[str]) -> str:
+        """Why a request with these headers is refused; empty if it is answered."""
+        host = hosts[0].lower() if len(hosts) == 1 else ""
+        if not self._is_own(host):
+            *others, last = self.names
+            asked = host or "a request that names none"
+            return (
+                f"This program answers to {', '.join(others)} and {last}, not to {asked}. "
+                "To serve it under another name, start it with --host NAME."
+            )
+        if any(origin.lower().partition("://")[2] != host for origin in origins):
+            return f"This program answers to its own page alone, not to {origins[0]}."
+        return ""
+
+    def _is_own(self, host: str) -> bool:
+        match = _HOST.fullmatch(host)
+        return match is not None and (
+            match[1] in self.names or (self.any_address and _is_address(match[1].strip("[]")))
+        )
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _headers(scope: Scope, name: bytes) -> list[str]:
+    """Values of a header, as often as it stands there."""
+    return [value.decode("latin-1") for key, value in scope["headers"] if key == name]
+
+
+def _unframed(send: Send) -> Send:
+    """The same way to answer, with headers that forbid to show the answer in a frame."""
+
+    async def send_unframed(message: MutableMapping[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            message["headers"] = [*message.get("headers", ()), *_UNFRAMED]
+        await send(message)
+
+    return send_unframed
+
+
+async def _refuse(send: Send, sentence: str) -> None:
+    headers = [(b"content-type", b"text/plain; charset=utf-8")]
+    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.body", "body": f"{sentence}\n".encode()})
