@@ -133,6 +133,13 @@ class PivotFriction(Result):
     status: str
     message: str
 
+    @property
+    def has_answer(self) -> bool:
+        """Whether a tension moves the brake either way, and no contact opens."""
+        return self.status != "contact opens" and bool(
+            np.isfinite((self.squeezing_tension, self.releasing_tension)).all()
+        )
+
 
 @dataclass(frozen=True)
 class PadWear(Result):

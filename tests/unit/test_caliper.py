@@ -306,7 +306,7 @@ def test_arrows_have_one_scale():
 
 def test_free_bodies_show_all_that_acts():
     answer = calipers.DualPivot().build().equilibrium()
-    figure = drawings.free_body_diagrams(answer)
+    figure = drawings.free_body_diagrams({"": answer})
     assert [ax.get_title() for ax in figure.axes] == ["right arm", "left arm"]
     for ax, body in zip(figure.axes, ("right arm", "left arm"), strict=True):
         written = " ".join(text.get_text() for text in ax.texts)
