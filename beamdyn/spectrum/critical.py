@@ -137,7 +137,10 @@ def critical_point(
         reason=buckling.why,
         warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
         provenance=Provenance(
-            __version__, str(found.model.discretization), str(found.coarse.discretization), perf_counter() - start
+            __version__,
+            str(found.model.discretization),
+            str(found.coarse.discretization),
+            perf_counter() - start,
         ),
     )
 
@@ -198,7 +201,9 @@ def _critical_warnings(
     if discretization == "fem" and found.model.discretization.order is None:
         yield f"finite elements find no critical speed: it was sought with {found.model.discretization}"
     if np.isinf(found.speed):
-        exists = "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
+        exists = (
+            "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
+        )
         yield (
             f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
             f"there is certainly none below {searched:.4g} rad/s"

@@ -237,7 +237,7 @@ def worst_virtual_work(count, seed=0):
         mechanism = random_mechanism(rng)
         answer = solve(mechanism)
         worst = np.fmax(worst, virtual_work(mechanism, answer))
-        worst[0] = np.inf if answer.status != "determined" else worst[0]
+        worst[0] = np.inf if not answer.is_determined else worst[0]
         if answer.mobility == 1:
             place = trace(mechanism, _driver(mechanism), 0.2, 2).position[1]
             moved += 1

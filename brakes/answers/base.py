@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from time import perf_counter
 from typing import Any, ClassVar, Generic, TypeVar
 
+import numpy as np
 from matplotlib.figure import Figure
 from pydantic import BaseModel
 from rich.console import RenderableType
 
+from beamdyn._version import __version__
 from beamdyn.common.app.screens import Handle, Slider
 from beamdyn.common.edge import input_sweep
 from beamdyn.common.edge.config import parse, read, validated
@@ -26,14 +30,31 @@ from beamdyn.common.edge.input_sweep import (
 )
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.results import Result
+from beamdyn.common.results import Provenance, Result, plain
 from brakes.config.sweeps import numeric_inputs, with_arrays
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
 
+@dataclass(frozen=True)
 class Answer(Result, ABC):
-    """The answer to one design of a brake: a frozen dataclass of results; see `BrakeType`."""
+    """The answer to one design of a brake: a frozen dataclass of results; see `BrakeType`.
+
+    Attributes
+    ----------
+    design : BaseModel
+        What the file describes, in SI.
+    provenance : Provenance, optional
+        Version, method, how the error was found, and the time taken; `BrakeType.answer` adds it.
+    """
+
+    design: BaseModel
+    provenance: Provenance | None = field(default=None, kw_only=True)
+
+    @property
+    @abstractmethod
+    def error(self) -> Any:
+        """Relative error of the numbers as `BrakeType.error_from` says; nan where there is none to state."""
 
     @property
     def warnings(self) -> Sequence[str]:
@@ -58,6 +79,15 @@ class Answer(Result, ABC):
         """Rows of the CSV file, headings first."""
 
     @abstractmethod
+    def values(self) -> dict[str, Any]:
+        """The results as plain numbers, lists and strings."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Results, inputs, error and provenance as plain numbers, lists and strings."""
+        made = {"inputs": self.design.model_dump(), "error": self.error, "provenance": self.provenance}
+        return self.values() | {key: plain(value) for key, value in made.items()}
+
+    @abstractmethod
     def figure(self, place: float | None = None) -> Figure:
         """Draw it.
 
@@ -70,6 +100,25 @@ class Answer(Result, ABC):
     def handles(self, place: float) -> Sequence[Handle]:
         """Points of the figure's first axes that can be moved there, with the slider at a place."""
         return ()
+
+
+@dataclass(frozen=True)
+class BrakeSweep(InputSweep):
+    """A sweep of a brake's inputs.
+
+    Attributes
+    ----------
+    design : dict
+        The design that is varied, as plain numbers, lists and strings in SI.
+    error : ndarray, shape (n,) or (m, n)
+        As `Answer.error`, of each case.
+    provenance : Provenance, optional
+        As in `Answer`.
+    """
+
+    design: dict[str, Any] = field(default_factory=dict)
+    error: np.ndarray = field(default_factory=lambda: np.array([]))
+    provenance: Provenance | None = None
 
 
 class BrakeType(ABC, Generic[FileModel]):
@@ -85,9 +134,10 @@ class BrakeType(ABC, Generic[FileModel]):
        can be swept and the messages about mistakes follow from it; `keep_checked` checks the core's fields.
     3. ``brakes/drawings/name.py`` draws the result.
     4. ``brakes/answers/name.py`` derives from `Answer` and from `BrakeType`, sets the attributes below and
-       writes `solve` and `outputs`. Where the mechanics takes arrays derive from `ArrayBrakeType`, which
-       sweeps all cases at once, else from `TableBrakeType`, which sweeps them one by one. An instance
-       named ``BRAKE`` stands at the end of the module.
+       writes `solve` and `outputs`; the answer's `values` go into JSON, with inputs, `error` and provenance.
+       Where the mechanics takes arrays derive from `ArrayBrakeType`, which sweeps all cases at once, else
+       from `TableBrakeType`, which sweeps them one by one. An instance named ``BRAKE`` stands at the end of
+       the module.
     5. `solve` raises ValueError for bad input. A design without an answer is no exception: `solve` returns
        an `Answer` whose `refusals` say why, so that its tables are still shown; a command then ends with
        exit code 1. Only where nothing can be shown, `NoAnswer` is raised.
@@ -103,6 +153,10 @@ class BrakeType(ABC, Generic[FileModel]):
         Of its screen.
     purpose : str
         What its screen is for, in a sentence.
+    method : str
+        How it is computed, in a phrase.
+    error_from : str
+        What the error of an answer is, in a phrase.
     sections : tuple of str
         Tables on its form; "" for inputs outside any table.
     needs : tuple of str
@@ -122,6 +176,8 @@ class BrakeType(ABC, Generic[FileModel]):
     name: ClassVar[str]
     title: str
     purpose: str
+    method: str
+    error_from: str
     sections: tuple[str, ...]
     needs: tuple[str, ...]
     example_sweep: str
@@ -156,6 +212,15 @@ class BrakeType(ABC, Generic[FileModel]):
     ) -> tuple[InputSweep, Sequence[str]]:
         """Results over one or two inputs, and warnings."""
 
+    def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
+        """Answer to the design of tables, with its provenance; raises what `read` and `solve` raise."""
+        start = perf_counter()
+        answer = self.solve(self.read(tables, source))
+        return replace(answer, provenance=self._provenance(start))
+
+    def _provenance(self, start: float) -> Provenance:
+        return Provenance(__version__, self.method, self.error_from, perf_counter() - start)
+
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
         """Tables and text of a file; raises `ConfigError` if it cannot be read or is not TOML."""
         text = read(name)
@@ -172,7 +237,7 @@ class BrakeType(ABC, Generic[FileModel]):
         texts: Sequence[str],
         results: str | None = None,
         options: tuple[str, str] = ("--sweep", "--result"),
-    ) -> tuple[InputSweep, Sequence[str]]:
+    ) -> tuple[BrakeSweep, Sequence[str]]:
         """Sweep one or two inputs.
 
         Parameters
@@ -190,7 +255,7 @@ class BrakeType(ABC, Generic[FileModel]):
 
         Returns
         -------
-        sweep : InputSweep
+        sweep : BrakeSweep
             The results.
         warnings : sequence of str
             Where there is no answer and why, and what else to look at.
@@ -202,7 +267,7 @@ class BrakeType(ABC, Generic[FileModel]):
         NoAnswer
             If there is an answer nowhere.
         """
-        design = self.read(tables, source)
+        start, design = perf_counter(), self.read(tables, source)
         wanted = chosen(
             self.outputs(design), self.default_results(design) if results is None else results, options[1]
         )
@@ -213,7 +278,18 @@ class BrakeType(ABC, Generic[FileModel]):
                 f"{options[0]} is given {len(axes)} times: give it once, or twice for two inputs"
             )
         check_cases(axes, self.most_cases, options[0])
-        return self.sweep_cases(design, tables, axes, wanted)
+        made, warnings = self.sweep_cases(design, tables, axes, [*wanted, _ERROR])
+        return self._without_error(made, plain(design.model_dump()), start), warnings
+
+    def _without_error(self, made: InputSweep, design: dict[str, Any], start: float) -> BrakeSweep:
+        """The sweep, whose last result is the error, with its provenance."""
+        given = {entry.name: getattr(made, entry.name) for entry in fields(made)}
+        shown = {key: given[key][:-1] for key in ("results", "result_units", "found")}
+        more = {"design": design, "error": made.found[-1], "provenance": self._provenance(start)}
+        return BrakeSweep(**given | shown | more)
+
+
+_ERROR = Output("error", "relative error", lambda answer: answer.error)
 
 
 class ArrayBrakeType(BrakeType[FileModel]):

@@ -23,10 +23,11 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range
 from brakes.answers.base import TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
-from brakes.answers.planar import (
-    PlanarAnswer,
+from brakes.answers.planar import PlanarAnswer
+from brakes.answers.planar_tables import (
     describe_statics,
     joint_outputs,
+    largest_error,
     reactions_table,
     select_rows,
 )
@@ -36,6 +37,7 @@ from brakes.config.mechanism import MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
 from brakes.drawings.caliper import caliper_figure
 from brakes.planar import AssemblyError, Mechanism, OutOfReachError, solve
+from brakes.planar.diagnosis import join_names
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _STROKE_HEADS = (
@@ -62,6 +64,18 @@ _OUTPUTS = (
         "release",
         "share of the cable tension that friction holds, releasing",
         lambda a: a.friction.release if a.friction else np.nan,
+    ),
+    Output(
+        "squeezing_tension",
+        "tension of the cable for the same forces of the pads, squeezing",
+        lambda a: a.friction.squeezing_tension if a.friction else np.nan,
+        "N",
+    ),
+    Output(
+        "releasing_tension",
+        "tension of the cable for the same forces of the pads, releasing",
+        lambda a: a.friction.releasing_tension if a.friction else np.nan,
+        "N",
     ),
     Output("stopping_distance", "stopping distance", lambda a: a.stop.distance if a.stop else np.nan, "m"),
 )
@@ -94,38 +108,50 @@ class CaliperAnswer(PlanarAnswer):
         given = design.run
         run = caliper.stroke(given.travel, given.points, given.finger)
         end = float(run.cable[-1])
-        determined = run.status == "determined" and bool((run.pad_force > 0).all())
+        determined = run.status == "determined"
+        rubs = given.friction or caliper.free.friction
         return cls(
             design,
             caliper.equilibrium(end, given.finger),
             run.motion,
             caliper,
             run,
-            caliper.friction(given.friction, end) if given.friction and determined else None,
+            caliper.friction(given.friction, end, given.finger) if rubs and determined else None,
             caliper.wear(given.wear) if given.wear and determined else None,
         )
 
     @property
     def status(self) -> str:
         """Whether statics determines the forces, and the pads press."""
-        return "open" if (self.run.pad_force <= 0).any() else self.run.status
+        return self.run.status
 
     @property
     def message(self) -> str:
         """The status as a sentence."""
-        if self.status != "open":
+        pulls = (self.run.pad_force <= 0).any(axis=1)
+        if not pulls.any():
             return self.run.message
-        cable = self.run.cable[(self.run.pad_force <= 0).any(axis=1).argmax()]
-        return (
-            f"at {1e3 * cable:.6g} mm of cable the pads would have to pull on the rim: the caliper is past "
-            "its toggle position, or a pad's direction is reversed; give a shorter travel"
-        )
+        return f"from {1e3 * self.run.cable[pulls.argmax()]:.6g} mm of cable on: {self.run.message}"
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """What statics does not determine, what opens, and that friction jams the brake."""
+        stuck = self.friction and not self.friction.has_answer and self.friction.message
+        return (*super().refusals, *([stuck] if stuck else []))
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Warnings of the stroke and of friction."""
-        locked = self.friction and self.friction.status != "determined" and self.friction.message
-        return (*self.run.warnings, *([locked] if locked else []))
+        """Warnings of the stroke, and that friction holds the brake."""
+        f = self.friction
+        held = [f.message] if f and f.has_answer and f.status != "determined" else []
+        return (*self.run.warnings, *held)
+
+    @property
+    def error(self) -> float:
+        """Largest residual and virtual work, over the largest force."""
+        return max(
+            float(np.max(np.fmax(self.run.residual, self.run.virtual_work))), largest_error(self.equilibrium)
+        )
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
@@ -158,9 +184,10 @@ class CaliperAnswer(PlanarAnswer):
         yield f"Over the whole stroke the finger travels {mean:.4f} times as far as both pads together."
         if (f := self.friction) is not None:
             yield (
-                f"Pivots with friction {f.coefficient:g}: {100 * f.squeeze:.2f} % of the force arrives when "
-                f"squeezed; when let go the cable still has {100 * f.release:.2f} % of its tension."
+                f"{self._rubbing(f)}: {100 * f.squeeze:.2f} % of the force arrives when squeezed; when let "
+                f"go the cable still has {100 * f.release:.2f} % of its tension."
             )
+            yield f"For the same forces of the pads: {self._tensions(f)}."
         if (w := self.wear) is not None:
             for lost, finger, (right, left) in zip(w.lost, w.finger, w.advantage, strict=True):
                 yield (
@@ -169,6 +196,24 @@ class CaliperAnswer(PlanarAnswer):
                 )
         if self.stop is not None:
             yield f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
+
+    def _rubbing(self, friction: PivotFriction) -> str:
+        """What rubs."""
+        own = (
+            ""
+            if not self.caliper.free.friction
+            else f", {join_names(self.caliper.free.friction)} with their own"
+        )
+        return f"Pivots with friction {friction.coefficient:g}{own}"
+
+    @staticmethod
+    def _tensions(friction: PivotFriction) -> str:
+        """The tension of the cable in three numbers."""
+        both = (friction.squeezing_tension, friction.releasing_tension)
+        squeezing, releasing = ("none" if np.isnan(size) else f"{size:.5g} N" for size in both)
+        return (
+            f"cable {friction.tension:.5g} N without friction, {squeezing} squeezing, {releasing} releasing"
+        )
 
     def rows(self) -> Iterator[Sequence[object]]:
         """The stroke: travels, pads, reactions."""
@@ -182,7 +227,7 @@ class CaliperAnswer(PlanarAnswer):
         columns = (run.cable[:, None], run.finger[:, None], run.pad_travel, run.pad_force, run.advantage)
         yield from np.concatenate((*columns, *reactions), axis=1).tolist()
 
-    def to_dict(self) -> dict[str, Any]:
+    def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
         more = {"friction": self.friction, "wear": self.wear, "stop": self.stop}
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
@@ -191,7 +236,8 @@ class CaliperAnswer(PlanarAnswer):
         """Open, and at a part of the stroke from 0 to 1 with forces; curves over the stroke."""
         run = self.run
         if place is None or place >= 1:
-            return caliper_figure(self.caliper, run, self.equilibrium)
+            caption = self._tensions(self.friction) if self.friction else ""
+            return caliper_figure(self.caliper, run, self.equilibrium, caption=caption)
         cable = float(np.interp(place, (0.0, 1.0), run.cable[[0, -1]]))
         closed = self.caliper.equilibrium(cable, run.finger_force)
         return caliper_figure(self.caliper, run, closed, cable)
@@ -205,6 +251,8 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
 
     name = "mechanism"
     title = "Mechanism"
+    method = "equilibrium of rigid bodies in a plane, solved by singular values; friction by Newton's method"
+    error_from = "largest residual on a body, and virtual work of all loads, over the largest force"
     purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
     sections = ("", "points", "run", "caliper", "stop")
     needs = ("title", "bodies", *PARTS, *sections[1:])

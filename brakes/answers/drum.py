@@ -57,9 +57,23 @@ def _outputs(shoes: int) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class DrumAnswer(Answer):
-    """Forces in a drum brake."""
+    """Forces in a drum brake.
 
+    Attributes
+    ----------
+    design : DrumInput
+        The file.
+    result : BrakeResult
+        The forces.
+    """
+
+    design: DrumInput
     result: BrakeResult
+
+    @property
+    def error(self) -> Any:
+        """Largest residual moment of a shoe about the drum's centre; nan where the brake locks."""
+        return np.max(np.broadcast_arrays(*(shoe.closure for shoe in self.result.shoes)), axis=0)
 
     @property
     def refusals(self) -> Sequence[str]:
@@ -109,7 +123,7 @@ class DrumAnswer(Answer):
         """The result of the mechanics."""
         return self.result
 
-    def to_dict(self) -> dict[str, Any]:
+    def values(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings."""
         return self.result.to_dict()
 
@@ -133,6 +147,8 @@ class DrumType(ArrayBrakeType[DrumInput]):
     name = "drum"
     title = "Drum brake"
     purpose = "A brake with shoes on fixed pins: torque, pressure, pin reactions, and when it locks itself."
+    method = "pressure and friction of each shoe integrated in closed form"
+    error_from = "residual moment of a shoe about the drum's centre, over force times arm"
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load")
     example_sweep = "brake.friction=0.1:0.6:26"
@@ -140,7 +156,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
 
     def solve(self, design: DrumInput) -> DrumAnswer:
         """Forces in the brake."""
-        return DrumAnswer(design.solve())
+        return DrumAnswer(design, design.solve())
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
         """Numbers of the brake and of its shoes."""

@@ -146,6 +146,26 @@ class ForkliftAnswer(Answer):
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
         return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
+    @property
+    def error(self) -> Any:
+        """Largest of the stages' errors; without one case the kinematics, a closed form, has none."""
+        stop = np.nan if self.stop is None else self.stop.residual
+        forces = np.nan if self.forces is None else self.forces.residual
+        motion = np.nan if self.motion is None or np.ndim(self.motion.drum_turn) else self._turn_error()
+        return np.fmax(np.fmax(stop, forces), motion)
+
+    def _turn_error(self) -> float:
+        """Difference of the turns in closed form and of the mechanism followed position by position."""
+        assert self.kinematics is not None and self.motion is not None
+        turns = (
+            (self.kinematics.right.turn[-1], self.motion.seating_turn),
+            (
+                self.kinematics.drum.turn[-1],
+                self.motion.drum_turn,
+            ),
+        )
+        return max(abs(float(followed / closed) - 1) for followed, closed in turns)
+
     def tables(self) -> list[RenderableType]:
         """A table of the vehicle, two of the kinematics, one of the forces, as far as they are there."""
         tables = [] if self.stop is None else [_stop_table(self.stop)]
@@ -170,7 +190,7 @@ class ForkliftAnswer(Answer):
             return _draw_forces(self.forces, self.kinematics)
         return answer_figure(self.stop, self.kinematics, self.forces)
 
-    def to_dict(self) -> dict[str, Any]:
+    def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
         parts = {name: plain(getattr(self, name)) for name in ("stop", "motion", "forces", "torque_from")}
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
@@ -316,6 +336,11 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     name = "forklift"
     title = "Forklift"
     purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
+    method = "closed forms of the stop and of the shoes' motion; forces by a root of one equation a shoe"
+    error_from = (
+        "largest of: residual of the truck's moments, turns against the mechanism followed position by "
+        "position, residual of the brake's equations; each relative"
+    )
     model = ForkliftInput
     sections = needs = ("truck", "stop", "brake", "levers", "forces")
     example_sweep = "stop.speed=10:30:21 km/h"

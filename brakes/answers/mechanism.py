@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import Any
@@ -11,14 +11,17 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
+from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results import plain
-from brakes.answers.planar import (
-    PlanarAnswer,
+from brakes.answers.planar import PlanarAnswer
+from brakes.answers.planar_friction import MechanismFriction, unknown_loads
+from brakes.answers.planar_tables import (
     describe_statics,
     format_force,
     joint_outputs,
+    largest_error,
     name_output,
     reactions_table,
     select_rows,
@@ -26,17 +29,22 @@ from brakes.answers.planar import (
 )
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
-from brakes.drawings.mechanism import draw_open_and_closed
-from brakes.drawings.mechanism_stroke import plot_curves
+from brakes.drawings.mechanism_stroke import StrokeChart, mechanism_figure
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
+from brakes.planar.diagnosis import join_names
 
 _SCALES = {"mm": 1e-3, "deg": pi / 180}
 
 
 def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
-    """Each load and its travel at the end of the stroke, and the largest force of each joint."""
+    """Each load and its travel at the end of the stroke, the largest force of each joint.
+
+    With friction also the unknown load, squeezing and releasing.
+    """
     loads = (output for load in mechanism.loads for output in _load_outputs(load))
-    return (*loads, *joint_outputs(mechanism, lambda answer: answer.last.magnitudes))
+    rubbing = (output for load in unknown_loads(mechanism) for output in _friction_outputs(load))
+    joints = joint_outputs(mechanism, lambda answer: answer.last.magnitudes)
+    return (*loads, *joints, *rubbing)
 
 
 def _load_outputs(load: Load) -> tuple[Output, Output]:
@@ -59,6 +67,24 @@ def _load_outputs(load: Load) -> tuple[Output, Output]:
     )
 
 
+def _friction_outputs(load: Load) -> tuple[Output, Output]:
+    key = name_output(load.name)
+    squeezing, releasing = (
+        Output(
+            f"{key}_{name}",
+            f"{load.name} at the end of the stroke, {name}",
+            lambda answer, way=way: (
+                np.ravel(getattr(answer.friction.last, way).amplitudes[load.name])[-1]
+                if answer.friction
+                else np.nan
+            ),
+            load.unit,
+        )
+        for name, way in (("squeezing", "squeeze"), ("releasing", "release"))
+    )
+    return squeezing, releasing
+
+
 @dataclass(frozen=True)
 class MechanismAnswer(PlanarAnswer):
     """Equilibrium of a mechanism as drawn, and over the stroke of a driver where one is named.
@@ -67,18 +93,31 @@ class MechanismAnswer(PlanarAnswer):
     ----------
     over : Equilibrium, optional
         Equilibrium at each position of the stroke.
+    friction : MechanismFriction, optional
+        With friction, if any joint rubs and statics determines the forces of a single motion.
     """
 
     over: Equilibrium | None
+    friction: MechanismFriction | None
 
     @classmethod
     def of(cls, mechanism: Mechanism, design: CaliperInput | MechanismInput) -> MechanismAnswer:
-        """Assemble the mechanism and solve for its forces; see `brakes.planar.assemble` and `stroke`."""
+        """Assemble the mechanism and solve for its forces; see `brakes.planar.assemble` and `stroke`.
+
+        Raises
+        ------
+        MissingValue
+            If joints rub and no driver is named.
+        """
         drawn, run = solve(mechanism, assemble(mechanism)), design.run
-        if run.driver is None or run.travel is None:
-            return cls(design, drawn, None, None)
-        motion = stroke(mechanism, run.driver, np.linspace(0.0, run.travel, run.points))
-        return cls(design, drawn, motion, solve(mechanism, motion.position))
+        motion, over, friction = None, None, None
+        if run.driver is not None and run.travel is not None:
+            motion = stroke(mechanism, run.driver, np.linspace(0.0, run.travel, run.points))
+            over = solve(mechanism, motion.position)
+        last = drawn if over is None else over
+        if mechanism.friction and last.is_determined and drawn.mobility == 1:
+            friction = MechanismFriction.of(drawn, _driver(design, mechanism), motion)
+        return cls(design, drawn, motion, over, friction)
 
     @property
     def last(self) -> Equilibrium:
@@ -96,16 +135,45 @@ class MechanismAnswer(PlanarAnswer):
         return self.last.message
 
     @property
+    def refusals(self) -> Sequence[str]:
+        """What statics does not determine, what opens, and which way friction lets nothing move."""
+        found = super().refusals
+        if self.friction is not None:
+            return (*found, *self.friction.refusals)
+        if self._mechanism.friction and self.last.is_determined:
+            return (*found, f"friction acts against one motion; the mobility is {self.equilibrium.mobility}")
+        return found
+
+    @property
     def warnings(self) -> Sequence[str]:
-        """Warnings of statics, and toggle positions."""
+        """Warnings of statics, toggle positions, and which way friction holds the mechanism."""
         toggles = [toggle.message for toggle in self.motion.toggles] if self.motion else []
-        return (*self.last.warnings, *toggles)
+        return (*self.last.warnings, *toggles, *(self.friction.warnings if self.friction else ()))
+
+    @property
+    def error(self) -> float:
+        """Largest residual and virtual work, over the largest force."""
+        return max(largest_error(self.last), self.friction.error if self.friction else 0.0)
+
+    @property
+    def equilibria(self) -> Mapping[str, Equilibrium]:
+        """As drawn, or with friction the three equilibria as drawn."""
+        if self.friction is None:
+            return super().equilibria
+        found = self.friction.drawn
+        return {"without friction": found.without, "squeezing": found.squeeze, "releasing": found.release}
+
+    @property
+    def _mechanism(self) -> Mechanism:
+        return self.equilibrium.position.mechanism
 
     def tables(self) -> list[RenderableType]:
-        """Forces as drawn, the stroke, and the diagnosis."""
+        """Forces as drawn, with friction, the stroke, and the diagnosis."""
+        words = f"{self.design.title}: forces as drawn{', without friction' if self.friction else ''}"
         strokes = [self._stroke_table(self.motion)] if self.motion else []
         return [
-            reactions_table(self.equilibrium, f"{self.design.title}: forces as drawn"),
+            reactions_table(self.equilibrium, words),
+            *([self.friction.table()] if self.friction else []),
             *strokes,
             describe_statics(self.equilibrium, self.message, float(np.max(self.last.virtual_work))),
         ]
@@ -119,55 +187,80 @@ class MechanismAnswer(PlanarAnswer):
         """Travels and sizes of the loads over the stroke, by name and unit."""
         if self.motion is None or self.over is None:
             return {}
-        units = {load.name: units_of(load) for load in self.equilibrium.position.mechanism.loads}
+        units = {load.name: units_of(load) for load in self._mechanism.loads}
         travels = {
             f"{name} [{units[name][1]}]": units[name][0] * values
             for name, values in self.motion.travel.items()
         }
-        return travels | {f"{name} [{units[name][2]}]": size for name, size in self.over.amplitudes.items()}
+        loads = {f"{name} [{units[name][2]}]": size for name, size in self.over.amplitudes.items()}
+        return travels | loads | (self.friction.columns() if self.friction else {})
 
     def rows(self) -> Iterator[Sequence[object]]:
-        """The stroke, or the reactions as drawn."""
+        """The stroke, or the forces as drawn: loads, then joints on the bodies named first."""
         if self.motion is not None:
             columns = self._columns()
             yield [*columns]
             yield from np.stack([*columns.values()], axis=1).tolist()
             return
-        yield "joint", "x_N", "y_N", "magnitude"
-        for name, size in self.equilibrium.magnitudes.items():
-            yield name, *np.ravel(self.equilibrium.reactions.get(name, (np.nan, np.nan))), float(size)
+        ways = list(self.equilibria.values())
+        more = ("squeezing", "releasing") if self.friction else ()
+        yield "force_of", "x_N", "y_N", "size", *more, "unit"
+        for part in self._mechanism.parts:
+            force = np.ravel(self.equilibrium.reactions.get(part.name, (np.nan, np.nan)))
+            sizes = (float((way.magnitudes | way.amplitudes)[part.name]) for way in ways)
+            yield part.name, *force, *sizes, part.unit
 
-    def to_dict(self) -> dict[str, Any]:
+    def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
-        e = self.equilibrium
-        keys = ("status", "message", "mobility", "indeterminacy", "loose", "undetermined", "warnings")
+        keys = ("mobility", "indeterminacy", "loose", "undetermined", "open_or_slack")
         forces = ("reactions", "magnitudes", "amplitudes")
-        values = {key: plain(getattr(e, key)) for key in (*keys, *forces)}
-        return {"title": self.design.title} | values | {"stroke": plain(self._columns())}
+        drawn = {key: plain(getattr(self.equilibrium, key)) for key in (*keys, *forces)}
+        told = {"title": self.design.title, "status": self.status, "message": self.message}
+        more = {"warnings": plain(self.warnings), "stroke": plain(self._columns())}
+        return told | drawn | more | {"friction": self.friction and self.friction.to_dict()}
 
     def figure(self, place: float | None = None) -> Figure:
         """The mechanism as drawn and at a part of its stroke, from 0 to 1, and what the loads do over it."""
-        part = 1.0 if place is None else place
-        width = 12.0 if self.motion else 7.5
-        figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long
-        axes = figure.subplots(1, 2 if self.motion else 1, squeeze=False)[0]
-        figure.subplots_adjust(0.8 / width, 0.1, 1 - 0.2 / width, 0.93, wspace=0.2)
-        draw_open_and_closed(self.equilibrium.position, self._equilibrium_at(part), axes[0])
-        axes[0].set_title(self.design.title)
-        if self.motion is not None and self.over is not None:
-            forces = dict(self.over.amplitudes)
-            factor, unit, size = units_of(self.equilibrium.position.mechanism.load(self.motion.driver))
-            label = f"travel of {self.motion.driver} [{unit}]"
-            plot_curves(factor * self.motion.values, forces, axes[1], label, f"load [{size}]")
-            travel = self.motion.values[_index(self.motion, part)]
-            axes[1].axvline(factor * travel, color="0.4", linewidth=1, linestyle=":")
-        return figure
+        index = 0 if self.motion is None else _index(self.motion, 1.0 if place is None else place)
+        caption = self.friction.caption(index) if self.friction else ""
+        heading = "\n".join((self.design.title, *caption.split("; "))) if caption else self.design.title
+        return mechanism_figure(
+            self.equilibrium.position, self._equilibrium_at(index), heading, self._chart(index)
+        )
 
-    def _equilibrium_at(self, part: float) -> Equilibrium:
+    def _chart(self, index: int) -> StrokeChart | None:
+        """Forces and moments over the stroke, if there is one."""
+        if self.motion is None or self.over is None:
+            return None
+        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
+        sizes = {
+            couples: {
+                load.name: self.over.amplitudes[load.name]
+                for load in self._mechanism.loads
+                if load.is_couple == couples
+            }
+            | (self.friction.curves(couples) if self.friction else {})
+            for couples in (False, True)
+        }
+        travel = factor * self.motion.values
+        label = f"travel of {self.motion.driver} [{unit}]"
+        return StrokeChart(travel, label, sizes[False], sizes[True], float(travel[index]))
+
+    def _equilibrium_at(self, index: int) -> Equilibrium:
         if self.motion is None:
             return self.equilibrium
-        position = self.motion.position[_index(self.motion, part)]
+        position = self.motion.position[index]
         return solve(position.mechanism, position)
+
+
+def _driver(design: CaliperInput | MechanismInput, mechanism: Mechanism) -> str:
+    """The load that drives the motion against which friction acts."""
+    if design.run.driver is None:
+        names = join_names(mechanism.friction)
+        raise MissingValue(
+            "run.driver", None, f"friction of {names} resists a motion: name the load that drives it"
+        )
+    return design.run.driver
 
 
 def _index(motion: Stroke, part: float) -> int:

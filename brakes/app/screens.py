@@ -63,7 +63,7 @@ def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]
         brake.purpose,
         brake.sections,
         brake.needs,
-        lambda tables: brake.solve(brake.read(tables, brake.name)),
+        lambda tables: brake.answer(tables, brake.name),
         lambda answer: answer.tables(),
         lambda answer, place: answer.figure(place),
         lambda answer: (*answer.refusals, *answer.warnings),

@@ -22,11 +22,18 @@ from brakes.planar import (
     stroke,
 )
 from brakes.planar.inputs import check_inputs
+from brakes.planar.part import OneWay
+from brakes.planar.statics import find_wrong_way, one_way_parts, tolerance
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # N, a firm squeeze
-_NOISE = 1e-9  # rounding, over the largest force
 _CLOSED = 1e-12  # Newton's last step, over the travel
+_PAD = OneWay(
+    "pad",
+    "pull",
+    "contact opens",
+    "the caliper is past its toggle position, or the pad's direction is reversed; give a shorter travel",
+)
 
 Split = Annotated[Literal["equal force", "equal work"], Described(meaning="how the rim loads the two pads")]
 LeverRatio = Annotated[float, Described(meaning="travel of the finger over that of the cable", above=0)]
@@ -35,9 +42,10 @@ PivotRadius = Annotated[float, Described("m", meaning="radius of the pivots", le
 
 
 class _Forces(NamedTuple):
-    """Forces at S positions: arrays by name, and the equilibrium that has the worst status."""
+    """Forces at S positions: status, arrays by name."""
 
-    worst: Equilibrium
+    status: str
+    message: str
     warnings: tuple[str, ...]
     pads: np.ndarray
     reactions: dict[str, np.ndarray]
@@ -164,8 +172,8 @@ class Caliper:
         toggles = [toggle.message for toggle in motion.toggles]
         return CaliperStroke(
             caliper=self.name,
-            status=forces.worst.status,
-            message=forces.worst.message,
+            status=forces.status,
+            message=forces.message,
             warnings=(*forces.warnings, *toggles),
             finger_force=finger,
             tension=tension,
@@ -216,32 +224,34 @@ class Caliper:
 
     # What changes it --------------------------------------------------------------------------------
 
-    def friction(self, coefficient: float, travel: float | None = None) -> PivotFriction:
-        """Efficiency with friction in all pivots at a travel of the cable [m], that of contact if not given.
+    def friction(
+        self, coefficient: float, travel: float | None = None, finger: float = _FINGER
+    ) -> PivotFriction:
+        """Efficiency with friction at a travel of the cable [m], that of contact if not given.
 
+        The coefficient is that of all pivots that have none of their own; slots and contacts have their own.
         The pads keep the forces that they have without friction; the tension is what friction changes.
         """
         travel = self.contact if travel is None else travel
         motion = stroke(self.free, self.cable, [travel])
-        tension = self.lever_ratio * _FINGER
+        tension = self.lever_ratio * positive("finger", finger, "N")
         right, left = self._forces(motion.position, tension).pads[0]
         joints = tuple(joint.with_pivot(self.pivot_radius, coefficient) for joint in self.free.joints)
         magnitudes = {self.cable: None, self.pads[0]: right, self.pads[1]: left}
         mechanism = _with_magnitudes(replace(self.free, joints=joints), magnitudes)
         band = solve_with_friction(mechanism, self.cable, motion.position.of(mechanism))
         squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (band.squeeze, band.release))
-        locked = [
-            f"{way}: {e.message}"
-            for way, e in (("squeeze", band.squeeze), ("release", band.release))
-            if e.status == "self-locking"
-        ]
+        status, message = _friction_verdict({"squeeze": band.squeeze, "release": band.release})
         return PivotFriction(
             coefficient=coefficient,
             cable=float(travel),
+            tension=tension,
+            squeezing_tension=squeeze,
+            releasing_tension=release,
             squeeze=0.0 if np.isnan(squeeze) else tension / squeeze,
-            release=0.0 if np.isnan(release) else release / tension,
-            status="self-locking" if locked else "determined",
-            message="; ".join(locked) or "the brake closes and opens",
+            release=0.0 if np.isnan(release) else max(release / tension, 0.0),
+            status=status,
+            message=message,
         )
 
     def worn(self, lost: float) -> Caliper:
@@ -258,6 +268,15 @@ class Caliper:
         cable = np.array([run.cable[0] for run in runs])
         advantage = np.array([run.advantage[0] for run in runs]).reshape(-1, 2)
         return PadWear(lost, cable, cable * self.lever_ratio, advantage)
+
+
+def _friction_verdict(ways: dict[str, Equilibrium]) -> tuple[str, str]:
+    """Status and message of the ways to move with friction; one that opens outweighs one that locks."""
+    wrong = {way: found for way, found in ways.items() if found.status != "determined"}
+    if not wrong:
+        return "determined", "the brake closes and opens"
+    status = max((found.status for found in wrong.values()), key=lambda status: status != "self-locking")
+    return status, "; ".join(f"{way}: {found.message}" for way, found in wrong.items())
 
 
 def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) -> Mechanism:
@@ -284,10 +303,12 @@ def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: n
         joint.name: joint.size(multiplier[:, mechanism.system.joints[joint.name]])
         for joint in mechanism.joints
     }
-    one_way = [*pads, *(joint.name for joint in mechanism.joints if joint.one_way)]
+    pressed = dict(zip(pads, forces.T, strict=True))
+    status, message = _verdict((a, b), sizes, pressed, multiplier)
     return _Forces(
-        worst=a if a.status != "determined" else b,
-        warnings=_one_way({**sizes, **dict(zip(pads, forces.T, strict=True))}, one_way),
+        status=status,
+        message=message,
+        warnings=tuple(dict.fromkeys((*a.warnings, *b.warnings))),
         pads=forces,
         reactions={name: mean(force, b.reactions[name]) for name, force in a.reactions.items()},
         magnitudes=sizes,
@@ -296,13 +317,20 @@ def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: n
     )
 
 
-def _one_way(sizes: dict[str, np.ndarray], names: Sequence[str]) -> tuple[str, ...]:
-    """Warnings of pads and contacts that would have to pull, and of cables that would have to push."""
-    largest = max(np.nanmax(np.abs(size), initial=0.0) for size in sizes.values())
-    least = {name: np.nanmin(sizes[name], initial=0.0) for name in names}
-    return tuple(
-        f"{name!r} would have to act the other way, with {-size:.6g} N: it is open or slack there; "
-        "check its direction"
-        for name, size in least.items()
-        if size < -_NOISE * largest
-    )
+def _verdict(
+    parts: Sequence[Equilibrium],
+    sizes: dict[str, np.ndarray],
+    pads: dict[str, np.ndarray],
+    multiplier: np.ndarray,
+) -> tuple[str, str]:
+    """Status and message of a mean of equilibria: its sizes of joints and pads, multipliers (S, R)."""
+    for part in parts:
+        if not part.is_determined:
+            return part.status, part.message
+    mechanism = parts[0].position.mechanism
+    least = tolerance(mechanism.system) * np.abs(multiplier / mechanism.system.unit).max(axis=1)
+    ways = dict.fromkeys(pads, _PAD) | one_way_parts(mechanism.joints)
+    wrong_way = [*find_wrong_way(ways, sizes | pads, least).values()]
+    if not wrong_way:
+        return "determined", "every reaction and amplitude is determined"
+    return wrong_way[0].status, "; ".join(each.sentence for each in wrong_way)

@@ -22,9 +22,10 @@ class CaliperStroke(Result):
     caliper : str
         Its name.
     status, message : str
-        Worst of the positions, as in `planar.Equilibrium`.
+        Worst of the positions, as in `planar.Equilibrium`; "contact opens" also where a pad would have to
+        pull.
     warnings : tuple of str
-        Pads that would have to pull, and toggle positions.
+        Toggle positions.
     finger_force, tension : float
         Force of the finger on the hand lever and tension of the cable [N].
     lever_ratio : float
@@ -42,7 +43,7 @@ class CaliperStroke(Result):
     reactions : dict of ndarray, shape (S, 2)
         Force (x, y) of each joint on the body named first [N].
     magnitudes : dict of ndarray, shape (S,)
-        Its size, as in `planar.Equilibrium` [N].
+        Its size, as in `planar.Equilibrium` [N, or N m of a rotation lock].
     virtual_work : ndarray, shape (S,)
         Largest work of the loads on a free motion over the largest force: 0 but for rounding.
     residual : ndarray, shape (S,)
@@ -107,23 +108,37 @@ class PivotFriction(Result):
     Parameters
     ----------
     coefficient : float
-        Coefficient of friction of every pivot.
+        Coefficient of friction of every pivot that has none of its own.
     cable : float
         Travel of the cable [m].
+    tension, squeezing_tension, releasing_tension : float
+        Tension of the cable that gives the same forces of the pads without friction, while it is squeezed and
+        while it is let go [N].  Negative where the cable would have to push the brake open, nan where the
+        brake jams.
     squeeze : float
         Efficiency while it is squeezed: tension without friction over that with it, for the same pad forces.
     release : float
         While it is let go: tension with friction over that without; 0 where friction holds the brake closed.
     status, message : str
-        "determined", or "self-locking" and in which direction.
+        "determined"; "self-locking" or "contact opens", and in which direction.
     """
 
     coefficient: float
     cable: float
+    tension: float
+    squeezing_tension: float
+    releasing_tension: float
     squeeze: float
     release: float
     status: str
     message: str
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether a tension moves the brake either way, and no contact opens."""
+        return self.status != "contact opens" and bool(
+            np.isfinite((self.squeezing_tension, self.releasing_tension)).all()
+        )
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def run_command(
         return
     if result is not None:
         raise ValueError("--result goes with --sweep: without one, all results are shown")
-    answer = brake.solve(brake.read(tables, file))
+    answer = brake.answer(tables, file)
     show(shown := answer.tables())
     more = [(title, partial(draw, answer)) for title, draw in brake.more]
     report = Report(question, shown, [*answer.refusals, *answer.warnings], more)

@@ -76,10 +76,15 @@ class RunInput(Section):
     """[run]: the stroke, the finger's force, and what else is to be computed."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
-    driver: Annotated[str | None, Field(description="load that drives a stroke of a plain mechanism")] = None
+    driver: Annotated[
+        str | None,
+        Field(description="load that drives a plain mechanism; with friction, its motion is squeezing"),
+    ] = None
     travel: Annotated[float | None, TravelQuantity("m", "", "travel of the cable or of the driver")] = None
     points: Annotated[int, WholeNumber(meaning="positions of the stroke", least=2, most=2000)] = 100
-    friction: Annotated[float, Quantity("", "mu", "coefficient of friction", least=0)] = 0.0
+    friction: Annotated[
+        float, Quantity("", "mu", "friction of the pins that have none of their own", least=0, most=10)
+    ] = 0.0
     wear: Annotated[list[_Loss], Field(max_length=100)] = []  # noqa: RUF012
 
 

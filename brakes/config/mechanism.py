@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from os import PathLike
 from typing import Annotated, Any
@@ -16,7 +16,7 @@ from beamdyn.common.edge.sections import fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
 from brakes.calipers import NAMED, Caliper
 from brakes.config.caliper import QUANTITIES, Angle, CaliperInput, CaliperStopInput, Point, RunInput, model_of
-from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
+from brakes.planar import JOINTS, LOADS, Joint, Load, Mechanism, Part
 from brakes.planar.inputs import DescribedPoint, is_list
 
 
@@ -87,7 +87,9 @@ class MechanismInput(CoreSection):
         )
         self._check_run({load.name: load for load in loads})
         if self.caliper is None:
-            return Mechanism(tuple(self.bodies), tuple(joints), tuple(loads))
+            made = Mechanism(tuple(self.bodies), self._with_friction(joints), tuple(loads))
+            self._check_driver(made)
+            return made
         roles = self.caliper
         missing = [name for name in roles.centring if name not in {joint.name for joint in joints}]
         if missing:
@@ -109,12 +111,32 @@ class MechanismInput(CoreSection):
         if run.driver not in loads:
             raise InvalidInput("run.driver", run.driver, "no such load", f"name one of {', '.join(loads)}")
         if run.travel is None:
-            raise MissingValue("run.travel", None, "give the travel of the driver")
+            return
         turns = loads[run.driver].is_couple
         if turns != isinstance(run.travel, Angle):
             wanted = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
             bound, unit = f"the driver {show(run.driver)} moves by {wanted}", "m" if turns else "rad"
             raise InvalidInput("run.travel", float(run.travel), bound, unit=unit)
+
+    def _check_driver(self, made: Mechanism) -> None:
+        """Refuse friction that acts nowhere, and a driver that drives nothing."""
+        run = self.run
+        if run.friction and not made.friction:
+            bound = "it is that of pins, and there is none; give friction at the slot or contact"
+            raise InvalidInput("run.friction", run.friction, bound)
+        rubs = made.friction or "friction" in run.model_fields_set  # which may be 0 in a sweep
+        if run.driver is not None and run.travel is None and not rubs:
+            raise MissingValue("run.travel", None, "give the travel of the driver")
+
+    def _with_friction(self, joints: Sequence[Joint]) -> tuple[Joint, ...]:
+        """The joints with the friction of [run] in the pins that have none of their own."""
+        friction = self.run.friction
+        if not friction:
+            return tuple(joints)
+        try:
+            return tuple(joint.with_pivot(0.0, friction) for joint in joints)
+        except ValueError as error:
+            raise InvalidInput("run.friction", friction, f"it is that of every pin; {error}") from None
 
 
 _ROLES = fields_of(Caliper, leave_out=("mechanism", "centring", "name"))

@@ -41,7 +41,11 @@ def draw_caliper(caliper: Caliper, closed: Equilibrium, ax: Axes, key: bool = Tr
 
 
 def caliper_figure(
-    caliper: Caliper, run: CaliperStroke, closed: Equilibrium, cable: float | None = None
+    caliper: Caliper,
+    run: CaliperStroke,
+    closed: Equilibrium,
+    cable: float | None = None,
+    caption: str = "",
 ) -> Figure:
     """Draw a caliper open and closed, and its advantage, pad ratio and reactions over the stroke.
 
@@ -56,6 +60,8 @@ def caliper_figure(
     cable : float, optional
         Travel of the cable at which it is closed [m], marked in the curves; the end of the stroke if not
         given.
+    caption : str
+        A line under the title.
     """
     from matplotlib.figure import Figure
 
@@ -67,7 +73,8 @@ def caliper_figure(
     )  # fmt: skip
     ax = draw_caliper(caliper, closed, figure.add_subplot(cells[:, 0]))
     force = f"{run.finger_force:g} N on the lever"
-    ax.set_title(f"{caliper.name}: {place:.3g} mm of cable, {force}; grey: open", fontsize=11)
+    title = f"{caliper.name}: {place:.3g} mm of cable, {force}; grey: open"
+    ax.set_title("\n".join(filter(None, (title, caption))), fontsize=9 if caption else 11)
     curves = [figure.add_subplot(cells[row, 1]) for row in range(3)]
     plot_advantage(run.cable, run.advantage, curves[0])
     plot_pad_ratio(run.cable, run.pad_ratio, curves[1])

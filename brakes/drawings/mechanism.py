@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -225,29 +225,37 @@ def draw_open_and_closed(open_: Position, closed: Equilibrium, ax: Axes, key: bo
 # Free bodies --------------------------------------------------------------------------------------
 
 
-def free_body_diagrams(equilibrium: Equilibrium) -> Figure:
-    """Draw the free-body diagram of every body in one figure, all forces at one scale.
+def free_body_diagrams(equilibria: Mapping[str, Equilibrium]) -> Figure:
+    """Draw the free-body diagram of every body in one figure, all forces of an equilibrium at one scale.
 
     Parameters
     ----------
-    equilibrium : Equilibrium
-        At one position.
+    equilibria : mapping
+        Equilibria at one position by their headings, such as without and with friction; one may be "".
     """
     from matplotlib.figure import Figure
 
-    bodies = equilibrium.position.mechanism.bodies
-    columns = min(3, len(bodies))
-    rows = -(-len(bodies) // columns)
-    figure = Figure(figsize=(4.6 * columns, 4.4 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    scale = _scale_of_actions(equilibrium)
+    first, *_ = equilibria.values()
+    count = len(first.position.mechanism.bodies)
+    columns = min(3, count)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(4.6 * columns, 4.4 * rows * len(equilibria)), layout="constrained")
+    parts: Any = figure.subfigures(len(equilibria), 1, squeeze=False)
+    for part, (heading, equilibrium) in zip(parts[:, 0], equilibria.items(), strict=True):
+        _draw_free_bodies(part.subplots(rows, columns, squeeze=False).ravel(), equilibrium)
+        scale = _scale_of_actions(equilibrium)
+        words = f"1 mm of an arrow is {1 / (scale * _MM):.3g} N" if scale else ""
+        part.suptitle(": ".join(filter(None, (heading, words))), fontsize="medium")
+    return figure
+
+
+def _draw_free_bodies(axes: np.ndarray, equilibrium: Equilibrium) -> None:
+    """Draw each body on axes of its own; those left over go."""
+    bodies, scale = equilibrium.position.mechanism.bodies, _scale_of_actions(equilibrium)
     for body, ax in zip(bodies, axes, strict=False):
         draw_free_body(equilibrium, body, ax, scale)
     for ax in axes[len(bodies) :]:
         ax.remove()
-    if scale:
-        figure.suptitle(f"1 mm of an arrow is {1 / (scale * _MM):.3g} N", fontsize="medium")
-    return figure
 
 
 def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) -> Axes:

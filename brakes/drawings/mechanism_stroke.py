@@ -1,18 +1,80 @@
-"""Curves over the stroke of a caliper."""
+"""Curves over the stroke of a mechanism or a caliper."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from beamdyn.common.pictures import COLOURS
+from brakes.drawings.mechanism import draw_open_and_closed
+from brakes.planar import Equilibrium, Position
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _STYLES = ("-", "--", "-.", ":")
+
+
+class StrokeChart(NamedTuple):
+    """Loads over a stroke.
+
+    travel : (S,), travel of the driver, in the unit of its label.
+    label : of its axis.
+    forces, moments : (S,) by name [N], [N m].
+    place : the travel to mark.
+    """
+
+    travel: np.ndarray
+    label: str
+    forces: Mapping[str, np.ndarray]
+    moments: Mapping[str, np.ndarray]
+    place: float
+
+
+def mechanism_figure(drawn: Position, shown: Equilibrium, heading: str, chart: StrokeChart | None) -> Figure:
+    """Draw a mechanism as drawn, at one position with its forces, and its loads over the stroke.
+
+    Parameters
+    ----------
+    drawn : Position
+        Drawn as a shadow.
+    shown : Equilibrium
+        At one position.
+    heading : str
+        Title, of one line or more.
+    chart : StrokeChart, optional
+        Forces and moments have panels of their own.
+    """
+    from matplotlib.figure import Figure
+
+    width = 12.0 if chart else 7.5
+    figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long
+    top = 0.97 - 0.04 * (1 + heading.count("\n"))
+    panels = _panels(chart) if chart else []
+    cells = figure.add_gridspec(
+        max(len(panels), 1), 2 if chart else 1, wspace=0.2, hspace=0.08,
+        left=0.8 / width, right=1 - 0.2 / width, bottom=0.1, top=top,
+    )  # fmt: skip
+    ax = draw_open_and_closed(drawn, shown, figure.add_subplot(cells[:, 0]))
+    ax.set_title(heading, fontsize="medium" if "\n" in heading else None)
+    for row, (curves, label) in enumerate(panels):
+        assert chart is not None
+        last = row == len(panels) - 1
+        axes = plot_curves(
+            chart.travel, curves, figure.add_subplot(cells[row, 1]), chart.label if last else "", label
+        )
+        axes.axvline(chart.place, color="0.4", linewidth=1, linestyle=":")
+        axes.tick_params(labelbottom=last)
+    return figure
+
+
+def _panels(chart: StrokeChart) -> list[tuple[Mapping[str, np.ndarray], str]]:
+    """The curves of each panel and the label of its axis: newtons and newton metres apart."""
+    both = [(chart.forces, "force of the load [N]"), (chart.moments, "moment of the load [N m]")]
+    return [panel for panel in both if panel[0]]
 
 
 def plot_curves(x: np.ndarray, curves: Mapping[str, np.ndarray], ax: Axes, xlabel: str, ylabel: str) -> Axes:

@@ -208,6 +208,14 @@ class Stop(Result):
     standing_rear_load: Numbers
 
     @property
+    def residual(self) -> Numbers:
+        """Residual moment of the axles' forces about the centre of gravity, over weight times wheelbase."""
+        (a, y), truck = self.truck.cg, self.truck
+        height, friction = y + truck.front_wheel_radius, self.conditions.friction * self.front_load
+        moment = (truck.wheelbase - a) * self.rear_load - a * self.front_load - height * friction
+        return np.abs(moment) / ((self.front_load + self.rear_load) * truck.wheelbase)
+
+    @property
     def message(self) -> str:
         """What the status means, in one sentence; of many cases, how many do not stop."""
         if np.ndim(self.status):

@@ -6,16 +6,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from brakes.planar.diagnosis import join_names
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position
-from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, forces_on_bodies, solve
+from brakes.planar.statics import (
+    Balance,
+    Equilibrium,
+    balance_at,
+    collect_result,
+    forces_on_bodies,
+    solve,
+    tolerance,
+)
 from brakes.planar.system import System
 
 _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
-_SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as self-locking
+_SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as jammed
 _TINY = np.finfo(float).tiny
-_STILL = 1e-9  # velocity, per unit motion, that counts as zero
 
 
 @dataclass(frozen=True)
@@ -25,8 +33,9 @@ class FrictionalEquilibrium:
     Parameters
     ----------
     squeeze, release : Equilibrium
-        While the driver's coordinate grows, and while it diminishes.  Where friction holds the mechanism
-        whatever the unknown load, the status is "self-locking" and the forces are nan.
+        While the driver's coordinate grows, and while it diminishes.  Where no unknown load of the direction
+        that it has without friction moves the mechanism this way, the status is "self-locking".  The load
+        then acts the other way; where the mechanism jams, so that no load moves it, all forces are nan.
     without : Equilibrium
         Without friction.
     """
@@ -66,7 +75,7 @@ def solve_with_friction(
     mechanism.load(driver)
     position = assemble(mechanism) if position is None else position.of(mechanism)
     without = solve(mechanism, position)
-    if without.status != "determined" or (without.mobility != 1).any():
+    if not without.is_determined or (without.mobility != 1).any():
         raise ValueError(
             f"friction needs mobility 1 and a determined equilibrium; here the mobility is "
             f"{np.max(without.mobility)}, and {without.message}"
@@ -84,9 +93,10 @@ def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
     rate = times(gradient, motion)
     driven = rate[:, [system.loads[driver]]]
     slip = rate[:, list(system.friction.values())]
-    if (np.abs(driven) < _STILL).any():
+    still = tolerance(system)  # velocities are those per unit motion
+    if (np.abs(driven) < still).any():
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
-    return np.where(np.abs(slip) > _STILL, np.sign(slip * driven), 0.0)
+    return np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)
 
 
 def _branch(
@@ -95,45 +105,72 @@ def _branch(
     """Equilibrium with friction that opposes sliding of the given signs."""
     system = mechanism.system
     start = np.atleast_2d(without.multiplier / system.unit)
-    multiplier, locked = _newton(system, balance, start, sliding)
-    loads = [row for row in balance.unknown if row >= system.constraints]
-    locked |= (multiplier[:, loads] * start[:, loads] < 0).any(axis=1)
-    multiplier[locked] = start[locked]  # finite placeholders: the result has nan there
+    multiplier, jammed = _newton(system, balance, start, sliding)
+    load = int(balance.unknown[-1])  # mobility 1 and a determined equilibrium leave one unknown load
+    reversed_ = _reversed(system, load, start, multiplier) & ~jammed
+    multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = collect_result(mechanism, position, balance, forces, multiplier, locked)
-    if not locked.any():
+    result = collect_result(mechanism, position, balance, forces, multiplier, jammed)
+    name = mechanism.loads[load - system.constraints].name
+    words = _explain(name, list(mechanism.friction), jammed, reversed_)
+    if not words:
         return result
-    names = " and ".join(map(repr, system.friction))
-    message = (
-        f"self-locking at {locked.sum()} of {len(locked)} positions: with the friction of {names} no load of "
-        "the given direction moves the mechanism this way; reduce friction or the radius of the pivots"
-    )
-    return replace(result, status="self-locking", message=message)
+    if set(result.open_or_slack) - {name}:  # a cable that would have to push back is what locks
+        return replace(result, message=f"{result.message}; {words}")
+    return replace(result, status="self-locking", message=words)
+
+
+def _reversed(system: System, load: int, start: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
+    """Where a load that is not zero without friction acts the other way with it, shape (S,)."""
+    largest = np.maximum(np.abs(start).max(axis=1), np.abs(multiplier).max(axis=1))
+    zero = tolerance(system) * largest
+    return (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
+
+
+def _explain(load: str, rubbing: list[str], jammed: np.ndarray, reversed_: np.ndarray) -> str:
+    """Why the mechanism locks itself; empty if it does not."""
+    words, names = [], join_names(map(repr, rubbing)) if rubbing else ""
+    if jammed.any():
+        words.append(
+            f"self-locking{_where(jammed)}: with the friction of {names} no size of {load!r} moves the "
+            "mechanism this way; reduce friction or the radius of the pivots"
+        )
+    if reversed_.any():
+        words.append(
+            f"self-locking{_where(reversed_)}: the friction of {names} holds the mechanism, and {load!r} has "
+            "to act the other way to move it this way"
+        )
+    return "; ".join(words)
+
+
+def _where(positions: np.ndarray) -> str:
+    """At how many of the positions, if there are several."""
+    return f" at {positions.sum()} of {len(positions)} positions" if len(positions) > 1 else ""
 
 
 def _newton(
     system: System, balance: Balance, start: np.ndarray, sliding: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Multipliers (S, R) with friction, and where there are none (S,)."""
+    """Multipliers (S, R) with friction, and where the mechanism jams, so that there are none (S,)."""
     multiplier, full = start.copy(), -sliding * system.coefficient
     sign = np.linalg.slogdet(balance.matrix).sign
-    locked = np.zeros(len(start), bool)
+    jammed = np.zeros(len(start), bool)
     for part in _RISE:
         size = np.inf
         for _ in range(40):
             residual, slope = _friction(system, balance, multiplier, part * full)
-            locked |= np.linalg.slogdet(slope).sign != sign  # past a singular matrix: another branch
-            slope[locked] = np.eye(slope.shape[1])
+            jammed |= np.linalg.slogdet(slope).sign != sign  # past a singular matrix: another branch
+            slope[jammed] = np.eye(slope.shape[1])
             step = np.linalg.solve(slope, residual[..., None])[..., 0]
-            step[locked] = 0.0
+            step[jammed] = 0.0
             multiplier[:, balance.unknown] -= step
             size = np.abs(step).max(axis=1) / np.maximum(np.abs(multiplier).max(axis=1), _TINY)
             if size.max() < 1e-13:
                 break
-        locked |= size > _SETTLED
-    locked |= np.abs(multiplier).max(axis=1) > np.abs(start).max(axis=1) / _SETTLED
+        jammed |= size > _SETTLED
+    jammed |= np.abs(multiplier).max(axis=1) > np.abs(start).max(axis=1) / _SETTLED
     _friction(system, balance, multiplier, full)
-    return multiplier, locked
+    return multiplier, jammed
 
 
 def _friction(

@@ -16,7 +16,7 @@ from brakes.planar.part import Joint, OneWay, Shape
 from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
 from brakes.planar.rows import FrictionLaw, Line, Path, Row, Turn
 
-SLACK = OneWay("cable", "push", "it is slack; remove it, or reverse the loads")
+SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,8 @@ class Pin(Joint):
         return (FrictionLaw(Turn(self.body, self.other), arm),)
 
     def with_pivot(self, radius: float, friction: float) -> Pin:
-        """The pin with another radius [m] and friction."""
-        return replace(self, radius=radius, friction=friction)
+        """The pin with a radius [m] and friction where it has none of its own."""
+        return self if self.friction else replace(self, radius=self.radius or radius, friction=friction)
 
     def shapes(self) -> tuple[Shape, ...]:
         """A pin."""
@@ -174,7 +174,9 @@ class Contact(Joint):
     """
 
     label = "contacts"
-    one_way = OneWay("contact", "pull", "it is open, or its normal is reversed; remove or turn it")
+    one_way = OneWay(
+        "contact", "pull", "contact opens", "it is open, or its normal is reversed; remove or turn it"
+    )
 
     body: Body
     other: Other

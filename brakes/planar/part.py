@@ -30,10 +30,17 @@ class Shape(NamedTuple):
 
 
 class OneWay(NamedTuple):
-    """Words for a joint or load that acts one way only: what it is, what it cannot do, and the remedy."""
+    """Words for a joint or load that acts one way only.
+
+    noun : what it is.
+    cannot : what it cannot do.
+    status : the status of an equilibrium in which it would have to.
+    remedy : what to do then.
+    """
 
     noun: str
     cannot: str
+    status: str
     remedy: str
 
 
@@ -135,7 +142,10 @@ class Joint(Part):
         return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
 
     def with_pivot(self, radius: float, friction: float) -> Joint:
-        """The joint with another radius [m] and friction of its pivot; itself if it has none."""
+        """The joint with a radius [m] and friction of its pivot where it has none of its own.
+
+        Itself if it has no pivot.
+        """
         return self
 
 

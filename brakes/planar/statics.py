@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import Decomposition, decompose, times
 from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.part import OneWay, Part
 from brakes.planar.system import Rows, System
 
 _BALANCED = 1e-9  # largest residual of equilibrium, over the largest force
@@ -28,8 +30,10 @@ class Equilibrium:
     ----------
     position : Position
         The position or positions.
-    status : {"determined", "undetermined", "loose", "no equilibrium", "self-locking"}
-        The worst of the positions.  "loose": in balance, but nothing holds it there.
+    status : str
+        The worst of the positions: "no equilibrium"; "undetermined"; "loose", in balance, but nothing holds
+        it there; "contact opens" or "cable slackens", if one would have to act the other way, so that the
+        forces are not those of the mechanism; "self-locking" (see `solve_with_friction`); "determined".
     message : str
         The status as a sentence, with the names of bodies and joints.
     reactions : dict of ndarray
@@ -47,6 +51,8 @@ class Equilibrium:
         Bodies that the joints let move, and those that move uncontrolled, at any of the positions.
     undetermined : tuple of str
         Reactions and amplitudes that equilibrium does not determine.
+    open_or_slack : tuple of str
+        Contacts that would have to pull and cables that would have to push, at any of the positions.
     virtual_work : ndarray
         Largest work of all loads on a free motion, over the largest force; with mobility 0 the closure of
         forces and moments on the whole.  It does not use the reactions.
@@ -74,12 +80,18 @@ class Equilibrium:
     movable: tuple[str, ...]
     loose: tuple[str, ...]
     undetermined: tuple[str, ...]
+    open_or_slack: tuple[str, ...]
     virtual_work: np.ndarray
     residual: np.ndarray
     kept: np.ndarray = field(repr=False)
     dropped: np.ndarray = field(repr=False)
     warnings: tuple[str, ...]
     multiplier: np.ndarray = field(repr=False)
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether statics gives every force, though a contact may have to pull or a cable to push."""
+        return not (self.undetermined or self.loose or np.isnan(self.multiplier).any())
 
 
 class Balance(NamedTuple):
@@ -162,15 +174,20 @@ def collect_result(
     constraints = decompose(balance.rows.gradient[:, : system.constraints], system.rounding)
     scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
     residual = np.abs(forces_on_bodies(balance, multiplier)).max(axis=1) / scale
-    unbalanced = (residual > max(_BALANCED, 1e3 * system.rounding)) & ~np.asarray(locked)
+    unbalanced = (residual > tolerance(system)) & ~np.asarray(locked)
     stressed = np.zeros(multiplier.shape, bool)
     stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
     shown = np.where(stressed | (unbalanced | locked)[:, None], np.nan, multiplier)
     undetermined = _names(system, np.any(stressed[~unbalanced], axis=0))
     worst = int(unbalanced.argmax()) if unbalanced.any() else int(forces.rank.argmin())
     loose = forces.left_null(worst)
-    status, message = _verdict(system, position.batch[worst], loose, undetermined, bool(unbalanced.any()))
     reactions, magnitudes, amplitudes, friction = _forces(mechanism, balance.rows, shown)
+    wrong_way = find_wrong_way(
+        one_way_parts(mechanism.parts), magnitudes | amplitudes, tolerance(system) * scale
+    )
+    status, message = _verdict(
+        system, position.batch[worst], loose, undetermined, wrong_way, bool(unbalanced.any())
+    )
 
     def shaped(array: np.ndarray) -> np.ndarray:
         return array.reshape((*position.coordinates.shape[:-1], *array.shape[1:]))
@@ -189,28 +206,77 @@ def collect_result(
         movable=names_of_moving(system, constraints.null(int(constraints.rank.argmin()))),
         loose=names_of_moving(system, loose),
         undetermined=undetermined,
+        open_or_slack=tuple(wrong_way),
         virtual_work=shaped(_virtual_work(system, balance, constraints, multiplier) / scale),
         residual=shaped(residual),
         kept=shaped(forces.kept),
         dropped=shaped(forces.dropped),
-        warnings=_warnings(mechanism, magnitudes | amplitudes, forces),
+        warnings=_warnings(forces),
         multiplier=shaped(shown * system.unit),
     )
 
 
+def tolerance(system: System) -> float:
+    """Force that counts as zero, over the largest: the rounding of a drawing grows with its distance."""
+    return max(_BALANCED, 1e3 * system.rounding)
+
+
+class WrongWay(NamedTuple):
+    """A contact that would have to pull, or a cable that would have to push: status and sentence."""
+
+    status: str
+    sentence: str
+
+
+def find_wrong_way(
+    ways: Mapping[str, OneWay], sizes: Mapping[str, np.ndarray], least: np.ndarray
+) -> dict[str, WrongWay]:
+    """What acts one way only and would have to act the other way, by name.
+
+    Parameters
+    ----------
+    ways : mapping
+        What acts one way only: see `one_way_parts`.
+    sizes : mapping
+        Size of each at S positions [N]; it may have others.
+    least : ndarray, shape (S,)
+        Force below which it counts as zero [N].
+    """
+    found = {}
+    for name, way in ways.items():
+        size = np.ravel(sizes[name])
+        if (wrong := size < -least).any():
+            where = f" at {wrong.sum()} of {len(size)} positions" if len(size) > 1 else ""
+            force = f"{-np.nanmin(size):.6g} N{where}"
+            sentence = f"{way.noun} {name!r} would have to {way.cannot} with {force}: {way.remedy}"
+            found[name] = WrongWay(way.status, sentence)
+    return found
+
+
+def one_way_parts(parts: Iterable[Part]) -> dict[str, OneWay]:
+    """Joints and loads that act one way only, by name."""
+    return {part.name: part.one_way for part in parts if part.one_way is not None}
+
+
 def _verdict(
-    system: System, y: np.ndarray, loose: np.ndarray, undetermined: tuple[str, ...], unbalanced: bool
+    system: System,
+    y: np.ndarray,
+    loose: np.ndarray,
+    undetermined: tuple[str, ...],
+    wrong_way: Mapping[str, WrongWay],
+    unbalanced: bool,
 ) -> tuple[str, str]:
     """Status and message."""
     if unbalanced:
         return "no equilibrium", f"the loads are not in balance: {describe_loose(system, y, loose)}"
-    words = [describe_self_stress(undetermined)] if undetermined else []
+    found = [("undetermined", describe_self_stress(undetermined))] if undetermined else []
     if loose.shape[1]:
-        words.append(
-            f"the loads are in balance, but nothing keeps them so: {describe_loose(system, y, loose)}"
-        )
-    status = "undetermined" if undetermined else "loose" if words else "determined"
-    return status, "; ".join(words) or "every reaction and amplitude is determined"
+        how = describe_loose(system, y, loose)
+        found.append(("loose", f"the loads are in balance, but nothing keeps them so: {how}"))
+    found += wrong_way.values()
+    if not found:
+        return "determined", "every reaction and amplitude is determined"
+    return found[0][0], "; ".join(sentence for _, sentence in found)
 
 
 def _names(system: System, rows: np.ndarray) -> tuple[str, ...]:
@@ -246,20 +312,11 @@ def _forces(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> tuple[d
     return reactions, magnitudes, amplitudes, friction
 
 
-def _warnings(mechanism: Mechanism, sizes: dict[str, np.ndarray], forces: Decomposition) -> tuple[str, ...]:
-    """Warnings of contacts that pull, cables that push, and ill-conditioned positions."""
-    least = {name: float(np.fmin.reduce(size)) for name, size in sizes.items()}
-    largest = max((float(np.fmax.reduce(np.abs(size))) for size in sizes.values()), default=0.0)
-    warnings = []
-    for part in mechanism.parts:
-        way, size = part.one_way, least[part.name]
-        if way is not None and size < -_BALANCED * largest:
-            warnings.append(
-                f"{way.noun} {part.name!r} would have to {way.cannot} with {-size:.6g} N: {way.remedy}"
-            )
-    if (weak := forces.kept.min()) < _WEAK:
-        warnings.append(
-            f"reactions hang on the last digits of the drawing (smallest singular value {weak:.1g}): "
-            "the position is close to a toggle position or to indeterminacy"
-        )
-    return tuple(warnings)
+def _warnings(forces: Decomposition) -> tuple[str, ...]:
+    """Warning of ill-conditioned positions."""
+    if (weak := forces.kept.min()) >= _WEAK:
+        return ()
+    return (
+        f"reactions hang on the last digits of the drawing (smallest singular value {weak:.1g}): "
+        "the position is close to a toggle position or to indeterminacy",
+    )

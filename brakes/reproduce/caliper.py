@@ -110,6 +110,6 @@ def draw(folder: Path) -> list[Path]:
     closed = caliper.equilibrium(_CABLE)
     pictures = {
         "eebrake.png": caliper_figure(caliper, caliper.stroke(_CABLE), closed),
-        "eebrake_free_bodies.png": free_body_diagrams(closed),
+        "eebrake_free_bodies.png": free_body_diagrams({"": closed}),
     }
     return [save_figure(figure, folder / name, force=True) for name, figure in pictures.items()]

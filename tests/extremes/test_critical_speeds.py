@@ -27,12 +27,17 @@ TOPPLING = bd.Scene(
 )
 TANGENTIAL = replace(HARVESTER, mount=replace(HARVESTER.mount, setting_angle=math.radians(89.9)))
 # By exact_critical_speed, which takes 16 s for the first.
-HIGH = {"toppling tip body": (TOPPLING, 1489.55707427074), "nearly tangential": (TANGENTIAL, 22131.6785767335)}
+HIGH = {
+    "toppling tip body": (TOPPLING, 1489.55707427074),
+    "nearly tangential": (TANGENTIAL, 22131.6785767335),
+}
 TOLERANCES = [None, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 
 
 def test_the_reference_of_the_nearly_tangential_harvester() -> None:
-    assert float(exact_critical_speed(TANGENTIAL, digits=15)) == pytest.approx(HIGH["nearly tangential"][1], rel=1e-14)
+    assert float(exact_critical_speed(TANGENTIAL, digits=15)) == pytest.approx(
+        HIGH["nearly tangential"][1], rel=1e-14
+    )
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)

@@ -23,6 +23,7 @@ from brakes.planar import (
     assemble,
     free_body,
     solve,
+    stroke,
 )
 
 RIMS = (Contact("rim R", "R", GROUND, ee.PAD_R, (1, 0)), Contact("rim L", "L", GROUND, ee.PAD_L, (-1, 0)))
@@ -159,11 +160,30 @@ def test_a_contact_that_pulls_and_a_cable_that_pushes_are_named():
         ),
         (Force("load", "beam", (2, 0), (0, -1), 1.0),),
     )
-    (warning,) = solve(beam).warnings
-    assert warning.startswith("contact 'stop' would have to pull with 2 N")
+    answer = solve(beam)
+    assert (answer.status, answer.open_or_slack) == ("contact opens", ("stop",))
+    assert answer.message.startswith("contact 'stop' would have to pull with 2 N")
     cable = Cable("stay", ("beam", GROUND), ((1, 0), (1, -1)))
-    (warning,) = solve(replace(beam, joints=(beam.joints[0], cable))).warnings
-    assert warning.startswith("cable 'stay' would have to push with 2 N")
+    answer = solve(replace(beam, joints=(beam.joints[0], cable)))
+    assert (answer.status, answer.open_or_slack) == ("cable slackens", ("stay",))
+    assert answer.message.startswith("cable 'stay' would have to push with 2 N")
+
+
+def test_what_opens_over_a_stroke_says_at_how_many_positions():
+    """A heavy arm leans on a block as long as it leans to the block's side."""
+    swing = Mechanism(
+        ("arm", "block"),
+        (
+            Pin("hinge", "arm", GROUND, (0, 0)),
+            Slot("rail", "block", GROUND, (0, 1), (1, 0)),
+            RotationLock("flat", "block", GROUND),
+            Contact("tip", "block", "arm", (0, 1), (1, 0)),
+        ),
+        (Force("push", "block", (0, 1), (-1, 0)), Force("weight", "arm", (0, 0.5), (0, -1), 1.0)),
+    )
+    moved = solve(swing, stroke(swing, "push", np.linspace(-0.2, 0.2, 5)).position)
+    assert moved.status == "contact opens"
+    assert "at 2 of 5 positions" in moved.message
 
 
 def test_free_bodies_are_in_balance():

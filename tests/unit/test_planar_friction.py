@@ -72,13 +72,39 @@ def test_inclined_plane(joint: type):
     assert both.release.amplitudes["push"] == pytest.approx(10 * math.tan(slope - phi), rel=ROUNDING)
 
 
-def test_self_locking_on_release_is_a_status():
-    both = solve_with_friction(ramp(0.1, 0.2), "push")
-    assert both.squeeze.status == "determined"
+def test_self_locking_keeps_its_flag_and_gives_the_force():
+    """A block that stays on its slope by itself is pulled down: tan(slope - phi) of its weight, below 0."""
+    release = solve_with_friction(ramp(0.1, 0.2), "push").release
+    assert release.status == "self-locking"
+    assert "'ramp'" in release.message and "'push' has to act the other way" in release.message
+    assert release.amplitudes["push"] == pytest.approx(10 * math.tan(0.1 - math.atan(0.2)), rel=ROUNDING)
+    assert release.virtual_work < 1e-14
+
+
+def test_a_wedge_that_stays_in_is_pulled_out_by_a_known_force():
+    """A wedge of 10 deg between ground and a load of 5 kN that is guided upright, friction 0.3 on both faces:
+    out with W (tan(phi - slope) + tan(phi)), in with W (tan(phi + slope) + tan(phi))."""
+    slope, mu, weight = math.radians(10), 0.3, 5000.0
+    face = math.sin(slope), math.cos(slope)
+    wedge = Mechanism(
+        ("wedge", "load"),
+        (
+            Contact("floor", "wedge", GROUND, (0, 0), (0, 1), friction=mu),
+            RotationLock("flat", "wedge", GROUND),
+            Contact("face", "load", "wedge", (0, 0.05), face, friction=mu),
+            Slot("guide", "load", GROUND, (0, 0.05), (0, 1)),
+            RotationLock("upright", "load", GROUND),
+        ),
+        (Force("push", "wedge", (0, 0), (1, 0)), Force("weight", "load", (0, 0.05), (0, -1), weight)),
+    )
+    both, phi = solve_with_friction(wedge, "push"), math.atan(mu)
+    assert both.squeeze.amplitudes["push"] == pytest.approx(
+        weight * (math.tan(phi + slope) + math.tan(phi)), rel=ROUNDING
+    )
     assert both.release.status == "self-locking"
-    assert "friction of 'ramp'" in both.release.message
-    assert np.isnan(both.release.amplitudes["push"])
-    assert all(np.isnan(force).all() for force in both.release.reactions.values())
+    assert both.release.amplitudes["push"] == pytest.approx(
+        -weight * (math.tan(phi - slope) + math.tan(phi)), rel=ROUNDING
+    )
 
 
 @pytest.mark.parametrize("mu", [(1 - 1e-12) / math.tan(math.radians(50)), 1.2, 3.0, 30.0])
@@ -86,7 +112,10 @@ def test_jamming_on_squeeze_is_a_status(mu: float):
     """No push moves the block up if slope + phi is 90 degrees or more."""
     slope = math.radians(50)
     assert slope + math.atan(mu) > math.pi / 2 - 1e-11
-    assert solve_with_friction(ramp(slope, mu), "push").squeeze.status == "self-locking"
+    jammed = solve_with_friction(ramp(slope, mu), "push").squeeze
+    assert jammed.status == "self-locking" and "no size of 'push'" in jammed.message
+    assert np.isnan(jammed.amplitudes["push"])
+    assert all(np.isnan(force).all() for force in jammed.reactions.values())
     below = solve_with_friction(ramp(slope, 0.83), "push").squeeze
     assert below.amplitudes["push"] == pytest.approx(10 * math.tan(slope + math.atan(0.83)), rel=1e-10)
 
@@ -135,3 +164,19 @@ def test_without_loads_there_is_no_friction():
     both = solve_with_friction(unloaded, "hand")
     assert both.squeeze.status == both.release.status == "determined"
     assert both.squeeze.amplitudes["hand"] == both.squeeze.friction["pivot"] == 0.0
+
+
+def test_a_contact_that_friction_opens_is_named():
+    """Pulled high up, a plank whose front rubs lifts its rear: N_f = 20, N_r = -10, pull 10 N."""
+    plank = Mechanism(
+        ("plank",),
+        (
+            Contact("rear", "plank", GROUND, (-0.1, 0), (0, 1)),
+            Slot("front", "plank", GROUND, (0.1, 0), (1, 0), friction=0.5),
+        ),
+        (Force("pull", "plank", (0.1, 0.3), (1, 0)), Force("weight", "plank", (0, 0), (0, -1), 10.0)),
+    )
+    both = solve_with_friction(plank, "pull")
+    assert both.without.status == "determined"
+    assert (both.squeeze.status, both.squeeze.open_or_slack) == ("contact opens", ("rear",))
+    assert "contact 'rear' would have to pull with 10 N" in both.squeeze.message

@@ -1,0 +1,144 @@
+"""Friction in a mechanism: its forces without friction, squeezing and releasing, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from rich.console import RenderableType
+
+from beamdyn.common.edge.tables import table
+from beamdyn.common.results import Result, plain
+from brakes.answers.planar_tables import format_force, largest_error
+from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Stroke, solve_with_friction
+from brakes.planar.rows import Row
+
+
+@dataclass(frozen=True)
+class MechanismFriction(Result):
+    """Equilibria of a mechanism with friction, as drawn and over the stroke.
+
+    Attributes
+    ----------
+    driver : str
+        The load whose travel grows while the mechanism is squeezed.
+    drawn : FrictionalEquilibrium
+        As drawn.
+    over : FrictionalEquilibrium, optional
+        At each position of the stroke.
+    """
+
+    driver: str
+    drawn: FrictionalEquilibrium
+    over: FrictionalEquilibrium | None
+
+    @classmethod
+    def of(cls, drawn: Equilibrium, driver: str, motion: Stroke | None) -> MechanismFriction:
+        """Solve with the friction of the joints; see `brakes.planar.solve_with_friction`."""
+        position = drawn.position
+        mechanism = position.mechanism
+        over = None if motion is None else solve_with_friction(mechanism, driver, motion.position)
+        return cls(driver, solve_with_friction(mechanism, driver, position), over)
+
+    @property
+    def last(self) -> FrictionalEquilibrium:
+        """Over the stroke, or as drawn."""
+        return self.over or self.drawn
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """Which way no force moves the mechanism, or a contact opens."""
+        return [sentence for way, sentence in self._locking() if not _has_answer(way)]
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """Which way the mechanism locks itself, so that the load has to be turned round."""
+        return [sentence for way, sentence in self._locking() if _has_answer(way)]
+
+    def _locking(self) -> list[tuple[Equilibrium, str]]:
+        ways = {"squeezing": self.last.squeeze, "releasing": self.last.release}
+        return [(way, f"{name}: {way.message}") for name, way in ways.items() if way.status != "determined"]
+
+    @property
+    def error(self) -> float:
+        """Largest residual and virtual work, over the largest force, where there is equilibrium."""
+        return max(largest_error(way) for way in _ways(self.last))
+
+    def table(self) -> RenderableType:
+        """Sizes of loads, joints and friction as drawn: without friction, squeezing, releasing."""
+        mechanism, ways = self.drawn.without.position.mechanism, _ways(self.drawn)
+        rows = [
+            _row(part.name, [(way.amplitudes | way.magnitudes)[part.name] for way in ways], part.unit)
+            for part in (*mechanism.loads, *mechanism.joints)
+        ]
+        rubbing = [
+            _row(f"friction of {name}", [0.0, *(way.friction[name] for way in ways[1:])], _unit(law.row))
+            for name, (_, law) in mechanism.friction.items()
+        ]
+        heads = ("size of", "without friction", "squeezing", "releasing", "unit")
+        title = f"With friction, as drawn: squeezing, {self.driver} moves along; releasing, it moves back"
+        return table(title, heads, [*rows, (), *rubbing], (0, 4))
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """The unknown load over the stroke, squeezing and releasing, by name and unit."""
+        return {f"{name} [{load.unit}]": size for load, name, size in self._curves()}
+
+    def curves(self, couples: bool) -> dict[str, np.ndarray]:
+        """The same by name: of moments, or of forces."""
+        return {name: size for load, name, size in self._curves() if load.is_couple == couples}
+
+    def _curves(self) -> list[tuple[Load, str, np.ndarray]]:
+        over = self.last
+        ways = {"squeezing": over.squeeze, "releasing": over.release}
+        loads = unknown_loads(over.without.position.mechanism)
+        return [
+            (load, f"{load.name}, {name}", way.amplitudes[load.name])
+            for load in loads
+            for name, way in ways.items()
+        ]
+
+    def caption(self, index: int) -> str:
+        """The unknown load in three numbers, at one of the positions."""
+        sentences = []
+        for load in unknown_loads(self.drawn.without.position.mechanism):
+            sizes = [np.ravel(way.amplitudes[load.name])[index] for way in _ways(self.last)]
+            without, squeezing, releasing = (_shown(size, load.unit) for size in sizes)
+            sentences.append(
+                f"{load.name}: {without} without friction, {squeezing} squeezing, {releasing} releasing"
+            )
+        return "; ".join(sentences)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As drawn, by the way of motion."""
+        keys = ("status", "message", "reactions", "magnitudes", "amplitudes", "friction", "residual")
+        ways = {"squeezing": self.drawn.squeeze, "releasing": self.drawn.release}
+        return {"driver": self.driver} | {
+            name: {key: plain(getattr(way, key)) for key in keys} for name, way in ways.items()
+        }
+
+
+def unknown_loads(mechanism: Mechanism) -> list[Load]:
+    """Loads whose size equilibrium gives."""
+    return [load for load in mechanism.loads if load.amplitude(np.zeros(1)) is None]
+
+
+def _ways(found: FrictionalEquilibrium) -> tuple[Equilibrium, Equilibrium, Equilibrium]:
+    return found.without, found.squeeze, found.release
+
+
+def _has_answer(way: Equilibrium) -> bool:
+    return way.status == "self-locking" and way.is_determined
+
+
+def _row(name: str, sizes: Sequence[Any], unit: str) -> Sequence[str]:
+    return (name, *("none" if np.isnan(np.ravel(size)[0]) else format_force(size) for size in sizes), unit)
+
+
+def _unit(row: Row) -> str:
+    return "N m" if row.is_couple else "N"
+
+
+def _shown(size: float, unit: str) -> str:
+    return "none" if np.isnan(size) else f"{size:.4g} {unit}"

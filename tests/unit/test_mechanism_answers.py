@@ -1,0 +1,307 @@
+"""What files, commands, drawings and reports show of a mechanism: friction, what opens, units, JSON."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beamdyn._version import __version__
+from brakes.answers.caliper import MECHANISM
+from brakes.cli import main
+from brakes.config.mechanism import load_mechanism, parse_mechanism
+
+EXAMPLES = Path("examples/calipers")
+CLAMP = (EXAMPLES / "toggle-clamp.toml").read_text()
+SIDE_PULL = (EXAMPLES / "own-caliper.toml").read_text()
+RADIUS, RUBS = 'radius = "8 mm"\n', "friction = 0.5\n"
+THREE = "364.27", "241.44", "723.52"  # N: without friction, squeezing, releasing
+
+BLOCK_BRAKE = """
+title = "block brake"
+bodies = ["lever", "drum"]
+pin = [{ name = "fulcrum", body = "lever", at = ["0 mm", "0 mm"] },
+       { name = "axle", body = "drum", at = ["250 mm", "-200 mm"] }]
+
+[[contact]]
+name = "block"
+body = "lever"
+other = "drum"
+at = ["250 mm", "-50 mm"]
+normal = [0, 1]
+friction = 0.4
+
+[[force]]
+name = "hand"
+body = "lever"
+at = ["600 mm", "0 mm"]
+direction = [0, -1]
+magnitude = "500 N"
+
+[[moment]]
+name = "torque"
+body = "drum"
+
+[run]
+driver = "torque"
+"""
+
+
+def in_both_pins(more: str) -> str:
+    """The toggle clamp with further keys in its pins."""
+    for line in ('at = "A"  ', 'at = "B"\n'):
+        assert CLAMP.count(line) == 1
+    return CLAMP.replace('at = "A"  ', f'{more}at = "A"  ').replace('at = "B"\n', f'{more}at = "B"\n')
+
+
+def write(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "m.toml"
+    path.write_text(text)
+    return path
+
+
+def run(capsys, *arguments) -> tuple[int, str, str]:
+    code = main(["caliper", *map(str, arguments)])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def read(path: Path) -> list[list[str]]:
+    return [*csv.reader(path.read_text().splitlines())]
+
+
+# Friction -----------------------------------------------------------------------------------------
+
+
+def test_a_command_shows_the_three_forces(capsys, tmp_path):
+    files = {key: tmp_path / f"t.{key}" for key in ("json", "csv", "report")}
+    files["report"] = tmp_path / "t.html"
+    options = [part for key, path in files.items() for part in (f"--{key}", path)]
+    code, out, _ = run(capsys, write(tmp_path, in_both_pins(RADIUS + RUBS)), *options)
+    assert code == 0
+    assert all(number in out and number in files["report"].read_text() for number in THREE)
+    found = json.loads(files["json"].read_text())
+    forces = [
+        found["amplitudes"]["work"],
+        *(found["friction"][way]["amplitudes"]["work"] for way in ("squeezing", "releasing")),
+    ]
+    assert [f"{force:.2f}" for force in forces] == [*THREE]
+    rows = read(files["csv"])
+    assert [f"{float(number):.2f}" for number in rows[1][-3:]] == [*THREE]
+    assert rows[0][-2:] == ["work, squeezing [N]", "work, releasing [N]"]
+
+
+def test_a_drawing_shows_the_three_forces(tmp_path):
+    answer = MECHANISM.solve(parse_mechanism(in_both_pins(RADIUS + RUBS)))
+    title = answer.figure(0.0).axes[0].get_title()
+    assert "work: 364.3 N without friction, 241.4 N squeezing, 723.5 N releasing" in title
+    legend = [text.get_text() for text in answer.figure().axes[1].get_legend().get_texts()]
+    assert {"work", "work, squeezing", "work, releasing"} <= {*legend}
+    headings = [part.get_suptitle() for part in answer.free_bodies().subfigs]
+    assert [heading.partition(":")[0] for heading in headings] == [
+        "without friction",
+        "squeezing",
+        "releasing",
+    ]
+
+
+def test_friction_of_the_run_is_that_of_every_pin_without_its_own():
+    each = MECHANISM.solve(parse_mechanism(in_both_pins(RADIUS + RUBS)))
+    all_ = MECHANISM.solve(parse_mechanism(in_both_pins(RADIUS).replace("[run]", "[run]\nfriction = 0.5")))
+    own = MECHANISM.solve(
+        parse_mechanism(in_both_pins(RADIUS + RUBS).replace("[run]", "[run]\nfriction = 0.9"))
+    )
+    loads = [answer.friction.drawn.squeeze.amplitudes["work"] for answer in (each, all_, own)]
+    assert loads[0] == loads[1] == loads[2]
+
+
+def test_friction_is_swept_and_its_forces_are_results():
+    tables = MECHANISM.open(str(EXAMPLES / "toggle-clamp.toml"))[0]
+    tables = {
+        **tables,
+        "pin": [{**pin, "radius": "8 mm"} for pin in tables["pin"]],
+        "run": {"driver": "hand", "friction": 0},
+    }
+    made, _ = MECHANISM.sweep(tables, "clamp", ["run.friction=0:0.5:3"], "work,work_squeezing,work_releasing")
+    without, squeezing, releasing = made.found
+    assert (without == without[0]).all() and np.isnan(squeezing[0])
+    assert f"{squeezing[-1]:.2f}" == THREE[1] and f"{releasing[-1]:.2f}" == THREE[2]
+    assert made.error.max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (in_both_pins(RADIUS + RUBS).partition("[run]")[0], ["run.driver", "friction of A and B"]),
+        (CLAMP.replace("[run]", "[run]\nfriction = 0.5"), ["run.friction = 0.5", "pin 'A'", "no radius"]),
+        (BLOCK_BRAKE.replace("friction = 0.4", "friction = 0").replace('driver = "torque"', "friction = 0.2"),
+         ["run.friction", "radius"]),
+        (CLAMP.replace('travel = "14 mm"', "#"), ["run.travel", "give the travel of the driver"]),
+        (CLAMP.replace("[run]", "[run]\nfriction = 70"), ["run.friction", "at most 10"]),
+    ],
+)  # fmt: skip
+def test_friction_that_cannot_act_is_refused(capsys, tmp_path, text, words):
+    code, _, err = run(capsys, write(tmp_path, text))
+    assert code == 2 and all(word in err for word in words), err
+
+
+def test_a_block_brake_needs_no_travel(capsys, tmp_path):
+    """mu r N with N = P arm / (block -+ mu offset); the drum, seen by the lever, turns either way."""
+    lever = {
+        way: 500 * 0.6 / (0.25 - sign * 0.4 * 0.05) for way, sign in (("squeezing", 1), ("releasing", -1))
+    }
+    code, out, err = run(capsys, write(tmp_path, BLOCK_BRAKE))
+    assert (code, err) == (0, "")
+    assert f"{0.4 * 0.15 * lever['squeezing']:.5g}" in out
+    assert f"{-0.4 * 0.15 * lever['releasing']:.5g}" in out
+
+
+def test_a_brake_that_jams_ends_with_1(capsys, tmp_path):
+    """At mu = block / offset = 5 the friction presses the block on as hard as its reaction lifts it."""
+    code, out, err = run(capsys, write(tmp_path, BLOCK_BRAKE.replace("friction = 0.4", "friction = 5.1")))
+    assert code == 1 and "squeezing: self-locking" in err and "no size of 'torque'" in err
+    assert "none" in out
+
+
+def test_friction_without_one_motion_is_an_answer_that_says_so(capsys, tmp_path):
+    text = (
+        in_both_pins(RADIUS + RUBS)
+        .replace('travel = "14 mm"', "#")
+        .replace(
+            "\n[[force]]                   # no magnitude",
+            '\n[[pin]]\nname = "stop"\nbody = "arm"\nat = "E"\n[[force]]                   # no magnitude',
+        )
+        .replace('name = "work"', 'name = "work"\nmagnitude = "1 N"')
+    )
+    text = text.replace('[[pin]]\nname = "stop"', '[[contact]]\nname = "stop"\nnormal = [0, 1]')
+    code, _, err = run(capsys, write(tmp_path, text))
+    assert code == 1 and "friction acts against one motion; the mobility is 0" in err
+
+
+# Calipers of parts --------------------------------------------------------------------------------
+
+
+def own_friction(caliper: str) -> str:
+    for bolt in ("right_bolt", "left_bolt"):
+        caliper = caliper.replace(f'at = "{bolt}"', f'at = "{bolt}"\nradius = "4 mm"\nfriction = 0.15')
+    return caliper
+
+
+def test_a_caliper_of_parts_keeps_the_friction_of_its_pins():
+    """The file's own friction gives what [run] friction gives with the usual radius of 4 mm."""
+    of_run = MECHANISM.solve(parse_mechanism(SIDE_PULL)).friction
+    own = MECHANISM.solve(parse_mechanism(own_friction(SIDE_PULL.replace("friction = 0.15", "")))).friction
+    assert own.squeezing_tension == pytest.approx(of_run.squeezing_tension, rel=1e-13)
+    assert own.releasing_tension == pytest.approx(of_run.releasing_tension, rel=1e-13)
+    assert own.releasing_tension < own.tension == 160.0 < own.squeezing_tension
+
+
+def test_a_caliper_shows_the_tension_of_its_cable_three_times(capsys):
+    code, out, _ = run(capsys, EXAMPLES / "own-caliper.toml")
+    found = MECHANISM.solve(load_mechanism(EXAMPLES / "own-caliper.toml"))
+    assert code == 0
+    text = " ".join(out.split())
+    assert (
+        f"cable 160 N without friction, {found.friction.squeezing_tension:.5g} N squeezing, "
+        f"{found.friction.releasing_tension:.5g} N releasing" in text
+    )
+    assert "160 N without friction" in found.figure().axes[0].get_title()
+
+
+# What opens ---------------------------------------------------------------------------------------
+
+
+def test_a_contact_that_would_have_to_pull_ends_with_1(capsys, tmp_path):
+    upward = BLOCK_BRAKE.replace("direction = [0, -1]", "direction = [0, 1]")
+    path = tmp_path / "found.json"
+    code, out, err = run(capsys, write(tmp_path, upward), "--json", path)
+    assert code == 1 and "contact 'block' would have to pull with 1200 N" in err
+    assert "block" in out
+    found = json.loads(path.read_text())
+    assert (found["status"], found["open_or_slack"]) == ("contact opens", ["block"])
+
+
+def test_a_cable_that_would_have_to_push_ends_with_1(capsys, tmp_path):
+    text = CLAMP.replace("[[bar]]", "[[cable]]").replace(
+        'body = "handle"\nat = "C"\nto = "D"', 'bodies = ["handle", "ground"]\npoints = ["C", "D"]'
+    )
+    code, _, _ = run(capsys, write(tmp_path, text))
+    assert code == 0  # it pulls as drawn
+    code, _, err = run(capsys, write(tmp_path, text.replace('"-90 deg"', '"90 deg"')))
+    assert code == 1 and "cable 'CD' would have to push" in err
+
+
+def test_a_roller_that_opens_ends_with_1(capsys, tmp_path):
+    text = 'caliper = "dual-pivot"\n[dimensions]\nside_pivot = ["27 mm", "80 mm"]\n[run]\ntravel = "1 mm"\n'
+    code, _, err = run(capsys, write(tmp_path, text))
+    assert code == 1 and "contact 'roller' would have to pull" in err
+
+
+# Units --------------------------------------------------------------------------------------------
+
+
+def test_newtons_and_newton_metres_have_axes_of_their_own(tmp_path):
+    text = BLOCK_BRAKE.replace("[[contact]]", "[[slot]]").replace("normal = [0, 1]", "along = [1, 0]")
+    text = text.replace("friction = 0.4", "friction = 0").replace("[run]", '[run]\ntravel = "1 deg"')
+    figure = MECHANISM.solve(parse_mechanism(text)).figure()
+    labels = [ax.get_ylabel() for ax in figure.axes[1:]]
+    assert labels == ["force of the load [N]", "moment of the load [N m]"]
+    curves = [
+        [line.get_label() for line in ax.get_lines() if line.get_label()[0] != "_"] for ax in figure.axes[1:]
+    ]
+    assert curves == [["hand"], ["torque"]]
+    assert [ax.get_xlabel() for ax in figure.axes[1:]] == ["", "travel of torque [deg]"]
+
+
+def test_each_row_of_forces_has_its_unit(capsys, tmp_path):
+    path = tmp_path / "t.csv"
+    _, out, _ = run(capsys, write(tmp_path, BLOCK_BRAKE), "--csv", path)
+    head, *rows = read(path)
+    assert head == ["force_of", "x_N", "y_N", "size", "squeezing", "releasing", "unit"]
+    assert {row[0]: row[-1] for row in rows} == {
+        "fulcrum": "N", "axle": "N", "block": "N", "hand": "N", "torque": "N m",
+    }  # fmt: skip
+    assert any(line.split()[0] == "torque" and "N m" in line for line in out.splitlines() if line.strip())
+    block = next(row for row in rows if row[0] == "block")
+    assert float(block[3]) == pytest.approx(500 * 0.6 / 0.25, rel=1e-14)
+
+
+# JSON ---------------------------------------------------------------------------------------------
+
+
+COMMANDS = {
+    "mechanism": ["caliper", EXAMPLES / "toggle-clamp.toml"],
+    "caliper": ["caliper", "v-brake"],
+    "drum": ["drum", "examples/drum.toml"],
+    "forklift": ["forklift", "examples/forklift.toml"],
+    "vehicle": ["forklift", "examples/forklift.toml", "--stage", "vehicle"],
+    "kinematics": ["forklift", "examples/forklift.toml", "--stage", "kinematics"],
+    "sweep": ["drum", "examples/drum.toml", "--sweep", "friction=0.1:0.3:3"],
+    "sweep of a caliper": ["caliper", "v-brake", "--sweep", "dimensions.lever_ratio=2:3:2"],
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS.values(), ids=COMMANDS)
+def test_json_says_from_what_and_how_well_it_was_computed(tmp_path, command):
+    path = tmp_path / "found.json"
+    assert main([*map(str, command), "--json", str(path)]) == 0
+    found = json.loads(path.read_text())
+    made = found["provenance"]
+    assert made["version"] == __version__
+    assert made["method"] and made["compared_with"] and made["wall_time"] > 0
+    errors = found["error"] if isinstance(found["error"], list) else [found["error"]]
+    assert all(0 <= error < 1e-11 for error in errors)
+    given = found["design"] if "design" in found else found["inputs"]
+    assert isinstance(given, dict) and given
+
+
+def test_inputs_in_json_are_in_si():
+    answer = MECHANISM.solve(load_mechanism(EXAMPLES / "toggle-clamp.toml"))
+    given = answer.to_dict()["inputs"]
+    assert given["points"]["grip"] == [0.08, 0.012]
+    assert given["run"]["travel"] == 0.014
+    assert math.isclose(math.hypot(*given["force"][0]["direction"]), 1.0)
