@@ -38,7 +38,11 @@ class Provenance:
 
 
 class Result:
-    """Base of the frozen results: dataclasses whose public fields are the answer."""
+    """Base of the frozen results: dataclasses whose public fields are the answer.
+
+    All fields, private ones (``field(repr=False)``) too, are data: numbers, strings, arrays, containers and
+    dataclasses of them.  Then a result is pickled, saved and loaded; see `beamdyn.common.snapshots`.
+    """
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings; complex numbers as [real, imaginary]."""
