@@ -38,7 +38,11 @@ class Provenance:
 
 
 class Result:
-    """Base of the frozen results: dataclasses whose public fields are the answer."""
+    """Base of the frozen results: dataclasses whose public fields are the answer.
+
+    All fields, private ones (``field(repr=False)``) too, are data: numbers, strings, arrays, containers and
+    dataclasses of them.  Then a result is pickled, saved and loaded; see `beamdyn.common.snapshots`.
+    """
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings; complex numbers as [real, imaginary]."""
@@ -105,12 +109,13 @@ def load(path: str | Path) -> Any:
     """
     try:
         content = unseal(Path(path).read_bytes())
-        if "record" not in content:
-            raise ValueError("it has numbers only")
         return _decode(content["record"])
+    except KeyError:
+        reason = "it has numbers only"
     except ValueError as error:
-        remedy = "compute the result again; any JSON reader gets its numbers"
-        raise ValueError(f"{path}: no result can be loaded: {error}; {remedy}") from None
+        reason = str(error)
+    remedy = "compute the result again; any JSON reader gets its numbers"
+    raise ValueError(f"{path}: no result can be loaded: {reason}; {remedy}")
 
 
 def _encode(result: Result) -> dict[str, Any]:
@@ -122,8 +127,10 @@ def _encode(result: Result) -> dict[str, Any]:
     return {"result": encode(result), "computed": kept}
 
 
-def _decode(record: Any) -> Any:
+def _decode(record: Any) -> Result:
     result = decode(record["result"])
+    if not isinstance(result, Result):
+        raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
     for key, value in record["computed"].items():
         object.__setattr__(result, key, decode(value))
     return result

@@ -62,7 +62,9 @@ class Discretization(Protocol):
     1. It is a frozen dataclass of its sizes: it is hashed and pickled, and its `repr` stands in the
        provenance of results.
     2. `spaces(beam)` returns the function spaces (`Spaces`).  They have a breakpoint, or a node, at each
-       of `beam.breakpoints`, so that integrals are exact where a property jumps.
+       of `beam.breakpoints`, so that integrals are exact where a property jumps.  Results keep them:
+       dataclasses of numbers and arrays, which compute the rest when asked (`FieldsOnly`), are pickled and
+       saved with a result.
     3. All physics is in the fields (`beamdyn.equations.fields`): a space only integrates and evaluates.
     4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
        from that of `coarser`; a tolerance is met by repeating `finer`.

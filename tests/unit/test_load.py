@@ -16,9 +16,11 @@ import beamdyn as bd
 from beamdyn import cli as beams
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.records import seal
+from beamdyn.common.results import Result
 from beamdyn.common.snapshots import LeftOut, decode, encode
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 from brakes import cli as brakes
+from brakes.calipers import NAMED
 from brakes.drum import BrakeResult
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -40,6 +42,7 @@ MAKERS = {
     "bounds": lambda d: bd.frequency_bounds(HARVESTER, 50.0),
     "terms": lambda d: bd.terms(SHORT_SPIN_UP),
     "tradeoff": lambda d: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.1),
+    "stroke of a caliper": lambda d: NAMED["dual-pivot"]().build().stroke(finger=40.0),
 }
 CASES = [
     *((name, "ritz") for name in MAKERS),
@@ -226,6 +229,18 @@ def test_save_keeps_a_file_that_exists_unless_forced(saved, made):
         made("locus").save(saved)
     made("locus").save(saved, force=True)
     assert isinstance(bd.load(saved), bd.Locus)
+
+
+@dataclasses.dataclass(frozen=True)
+class OwnResult(Result):
+    value: float
+
+
+def test_a_result_of_the_users_own_has_numbers_only(tmp_path):
+    OwnResult(1.5).save(tmp_path / "own.json")
+    assert json.loads((tmp_path / "own.json").read_text())["value"] == 1.5
+    with pytest.raises(ValueError, match=r"OwnResult of .* is none of beamdyn"):
+        bd.load(tmp_path / "own.json")
 
 
 # What is no data ----------------------------------------------------------------------------------

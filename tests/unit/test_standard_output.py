@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.edge.tables import spell
+from beamdyn.common.edge.tables import Screen, spell, spell_output, table
 from brakes import cli as brakes
 
 ROOT = Path(__file__).parents[2]
@@ -65,6 +65,16 @@ def test_symbols_that_a_console_lacks_are_spelled_and_columns_stay_aligned(run_i
     lines = printed.getvalue().decode().splitlines()
     assert any("omega^2 KGB q2" in line for line in lines)
     assert len({len(line) for line in lines[1:-1] if line}) == 1
+
+
+def test_rules_and_titles_are_spelled_too():
+    printed = io.BytesIO()
+    stream = io.TextIOWrapper(printed, "ascii")
+    spell_output(stream)
+    screen = Screen(file=stream, width=8)
+    screen.rule()
+    screen.print(table("Δω in °", ("a",), [("b",)]))
+    assert printed.getvalue().startswith(b"--------\n?omega")
 
 
 def test_spelling():

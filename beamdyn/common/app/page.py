@@ -174,7 +174,7 @@ class Page:
         if len(content) > _LARGEST:  # whatever the browser has let through
             return self._refuse(_TOO_LARGE)
         try:
-            text = content.decode("utf-8")
+            text = content.decode("utf-8-sig")
         except UnicodeDecodeError:
             return self._refuse(f"{name}: it is not text in UTF-8; give a TOML file")
         self.open(text, name)

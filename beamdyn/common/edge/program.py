@@ -64,10 +64,10 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 
 
 def _call(app: App, arguments: Sequence[str]) -> None:
-    from beamdyn.common.edge.tables import Screen
+    from beamdyn.common.edge.tables import Screen, spell_output
 
-    if isinstance(sys.stdout, TextIOWrapper):  # what is printed may name a file or a brake of any name
-        sys.stdout.reconfigure(errors="replace")
+    if isinstance(sys.stdout, TextIOWrapper):
+        spell_output(sys.stdout)
     app(arguments, console=Screen(), exit_on_error=False, print_error=False, result_action="return_value")
 
 

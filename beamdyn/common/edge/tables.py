@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from io import TextIOWrapper
 from typing import Any
 from unicodedata import normalize
 
@@ -22,7 +24,7 @@ _PIPE_WIDTH = 120  # of tables that go to a file or another program
 # ASCII for characters of our tables that a console without Unicode may lack.
 _SPELLED = {
     **{"ω": "omega", "ζ": "zeta", "Λ": "Lambda", "Ω": "ohm", "µ": "u", "μ": "u", "ᵀ": "^T", "²": "^2"},
-    **{"³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x"},
+    **{"³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x", "─": "-"},
 }
 
 
@@ -42,8 +44,22 @@ def _spell_character(character: str, encoding: str) -> str:
     return _SPELLED.get(character) or plain or "?"
 
 
+def spell_output(stream: TextIOWrapper) -> None:
+    """Let a stream spell the characters that its encoding lacks, where nothing else has."""
+    codecs.register_error("beamdyn.spell", _spell_error)
+    stream.reconfigure(errors="beamdyn.spell")
+
+
+def _spell_error(error: UnicodeError) -> tuple[str, int]:
+    assert isinstance(error, UnicodeEncodeError)
+    return spell(error.object[error.start : error.end], "ascii"), error.end
+
+
 class Screen(Console):
-    """A console on standard output that prints with the characters it has, whoever reads it."""
+    """A console on standard output whose columns are laid out for the characters it has.
+
+    The reader of a pipe may leave.
+    """
 
     def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Convert a string to rich's text."""
