@@ -32,7 +32,7 @@ _ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding err
 _SETTLED = 1e-6  # change of the growth rate by one more interaction, over the rate
 _MOST_INTERACTIONS = 4  # beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # share of an eigenvector in the outermost harmonics
-_SAME_RATE = 0.1  # difference between copies of one growth rate, over the rate
+_SAME_RATE = 0.05  # difference between copies of one growth rate, over what the resonance adds to it
 _NEAREST = 8  # eigenvalues that are followed from one number of interactions to the next
 _OFF = 1e-4  # distance from the eigenvalue, at which the matrix is singular, over the largest
 _STILL = 1e-9  # rate of a harmonic that stands still, over those of the phases
@@ -268,8 +268,9 @@ class _Resonance:
         s, outer = s[outer < _MOST_OUTSIDE], outer[outer < _MOST_OUTSIDE]
         if not (len(s) and _largest_real_part(s, scale)):
             return 0.0, self.sigma[self.mode]
-        fastest = np.real(s) >= np.real(s).max() - _SAME_RATE * np.abs(np.real(s).max())
-        best = s[fastest][outer[fastest].argmin()]
+        fastest, alone = np.real(s).max(), np.real(self.sigma[self.mode])
+        copies = np.real(s) >= fastest - _SAME_RATE * abs(fastest - alone)
+        best = s[copies][outer[copies].argmin()]
         return float(np.real(best)), complex(best)
 
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:

@@ -100,11 +100,19 @@ def test_growth_depends_on_the_phase_of_a_road_that_repeats() -> None:
 
 
 def test_decay_under_damping() -> None:
-    """Between the tongues the modulated beam decays almost as the mean one."""
+    """Between tongues the modulated beam decays almost as the mean one."""
     scene = rolling(4, 1.0, damping_ratio=0.01)
     rate, error, expected = compare(scene, np.array([40.0, 80.0, 128.0]), 1)
     assert (rate < 0).all() and (error > 0).all()
     np.testing.assert_array_less(np.abs(rate - expected), error)
+
+
+def test_decay_in_a_tongue_that_damping_closes() -> None:
+    scene = rolling(8, 1.5, damping_ratio=0.01)
+    speeds = tongues(scene)["2 road"] * np.array([0.98, 1.0])
+    rate, error, expected = compare(scene, speeds, 1)
+    assert rate[0] + 0.05 < rate[1] < 0
+    np.testing.assert_array_less(np.abs(rate - expected), error + 1e-6)
 
 
 def test_response_states_the_error_of_its_growth_rate() -> None:
