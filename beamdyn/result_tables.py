@@ -143,7 +143,8 @@ def crossings_table(result: Crossings) -> Group:
         )
         for c in result
     ]
-    title = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}, by {result.provenance.method}"
+    number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
+    title = f"{number}, by {result.provenance.method}. {result.extent}"
     return table(title, ("speed [rad/s]", "line", "mode", "frequency [Hz]", "kind"), rows, (1, 4))
 
 
@@ -259,7 +260,9 @@ def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
 
 
 def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
-    """Steady amplitude, error, growth rate and status over speed."""
-    yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", "growth_rate_per_s", "status"
-    columns = result.speeds, result.amplitude, result.bound, result.error, result.growth_rate, result.status
+    """Steady amplitude, growth rate, their errors, and status over speed."""
+    growth = "growth_rate_per_s", "growth_rate_error_per_s"
+    yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", *growth, "status"
+    sizes = result.speeds, result.amplitude, result.bound, result.error
+    columns = *sizes, result.growth_rate, result.growth_rate_error, result.status
     yield from zip(*(column.tolist() for column in columns), strict=True)

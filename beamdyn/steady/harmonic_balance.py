@@ -21,8 +21,6 @@ import numpy as np
 Pair = tuple[int, int]  # a harmonic (j, k)
 
 _EPS = np.finfo(float).eps
-_ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding error
-_LEAST_SHARE = 0.1  # of an eigenvector in the first harmonic: 0.5 in the tongue of two modes, 1 outside
 _MAXIMA = 6  # largest local maxima of the samples over the phases, which are refined
 _NEWTON_STEPS = 4  # each squares the error
 
@@ -154,10 +152,10 @@ def _select(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     return np.where(inside, spectrum[:, j, k], 0)
 
 
-def _convolution_matrix(spectrum: np.ndarray, harmonics: list[Pair]) -> np.ndarray:
-    """Matrices (S, H, H) of the product with a spectrum: its harmonic h - h' is at (h, h')."""
+def convolution_matrix(spectrum: np.ndarray, harmonics: list[Pair], shift: Pair = (0, 0)) -> np.ndarray:
+    """Matrices (S, H, H) of the product with a spectrum: its harmonic h - h' + shift is at (h, h')."""
     h = np.array(harmonics)
-    return _select(spectrum, h[:, None] - h[None, :])
+    return _select(spectrum, h[:, None] - h[None, :] + np.array(shift))
 
 
 # Forced response ----------------------------------------------------------------------------------
@@ -203,7 +201,7 @@ def _assemble(system: PeriodicSystem, harmonics: list[Pair], T: np.ndarray) -> t
     if C.any():
         A += np.einsum("sab,sij->saibj", rate, C)
     for order, spectrum, matrix in system.varying:
-        R = np.real(T.conj().T @ _convolution_matrix(spectrum, harmonics) @ T)
+        R = np.real(T.conj().T @ convolution_matrix(spectrum, harmonics) @ T)
         A += np.einsum("sab,ij->saibj", R @ rate if order else R, matrix)
     load = sum((_select(f, h)[..., None] * vector for f, vector in system.loads), np.zeros((S, H, n)))
     return A.reshape(S, H * n, H * n), np.real(T.conj().T @ load).reshape(S, H * n)
@@ -217,124 +215,6 @@ def _solve(A: np.ndarray, b: np.ndarray) -> np.ndarray:
         if len(A) == 1:
             return np.full_like(b, np.nan)
         return np.concatenate([_solve(A[i : i + 1], b[i : i + 1]) for i in range(len(A))])
-
-
-# Stability ----------------------------------------------------------------------------------------
-
-
-def growth_rate(system: PeriodicSystem, interactions: int) -> np.ndarray:
-    """Largest rate of growth of a free motion [1/s], shape (S,); 0 or less where it is stable.
-
-    A free motion is exp(s t) times a function of the phases (Hill's method in two phases).  Where the
-    ratio of the rates is irrational there is no period and no monodromy matrix, but the exponents s
-    are still eigenvalues of the operator of harmonic balance, here in the modes of the mean equations:
-
-        (s + i Omega_h) z_h = diag(sigma) z_h + sum_g V_(h-g) z_g
-
-    With V = 0 the eigenvalues are sigma_a - i Omega_h.  Each stays in the Gershgorin disc about that value
-    with the radius rho_a, the sum of its row of |V|.  Without damping, and with a mean energy that
-    is positive, an eigenvalue leaves the imaginary axis only by meeting one of opposite energy (Krein),
-    so that the motion is stable if no disc of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h, or
-    if all discs lie left of the axis.  Only where discs overlap are the eigenvalues computed.  Instability
-    tongues of up to `interactions` interactions are detected.  Those of higher order, which exist without
-    damping near every rational combination of the rates, are narrower than the neglected harmonics resolve,
-    and the slightest damping closes them.
-
-    Parameters
-    ----------
-    system : PeriodicSystem
-        The equations.
-    interactions : int
-        Number of interactions with the periodic coefficients whose harmonics are kept.
-
-    Returns
-    -------
-    ndarray, shape (S,)
-    """
-    A, periodic = _first_order(system)
-    sigma, R = np.linalg.eig(A)
-    largest = np.abs(sigma).max(axis=1)
-    rate = _largest_real_part(sigma, largest)
-    harmonics = [h for level in generate_harmonics([(0, 0)], system.coupling, interactions) for h in level]
-    steady = np.flatnonzero((rate <= 0) & (np.abs(sigma).min(axis=1) > 0))
-    if len(harmonics) == 1 or not len(steady):
-        return rate
-    sigma, V = (
-        sigma[steady],
-        _to_modes(sigma[steady], R[steady], [(f[steady], B[steady]) for f, B in periodic]),
-    )
-    omega = system.rates[steady] @ np.array(harmonics).T
-    for i in np.flatnonzero(_overlap(sigma, V, omega)):
-        hill = _hill_matrix(sigma[i], [(f[i : i + 1], v[i]) for f, v in V], omega[i], harmonics)
-        rate[steady[i]] = _hill_growth_rate(hill, A.shape[-1], largest[steady[i]])
-    return rate
-
-
-def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
-    """Largest real part, 0 where it is only rounding error."""
-    largest = np.real(s).max(axis=-1)
-    return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
-
-
-def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
-    """Matrices of y' = (A + sum_h c_h B e^(ih.phi)) y for y = (w q, q'); w [rad/s] balances the scales."""
-    K, C, M = system.mean
-    S, n = len(K), system.size
-    K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
-    w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
-    A = np.zeros((S, 2 * n, 2 * n))
-    A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
-    periodic = []
-    for order, spectrum, matrix in system.varying:
-        B = np.zeros_like(A)
-        B[:, n:, n * order : n * order + n] = -np.linalg.solve(M, matrix) / (1 if order else w)
-        periodic.append((spectrum, B))
-    return A, periodic
-
-
-def _to_modes(
-    sigma: np.ndarray, R: np.ndarray, periodic: list[tuple[np.ndarray, np.ndarray]]
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Transform B to modes, V = R^-1 B R; the columns of R have equal action, which makes |V| symmetric."""
-    n = R.shape[-1] // 2
-    R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma)))[:, None, :]
-    return [(spectrum, np.linalg.solve(R, B @ R)) for spectrum, B in periodic]
-
-
-def _overlap(sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]], omega: np.ndarray) -> np.ndarray:
-    """Whether discs of positive and of negative energy overlap, some to the right of the imaginary axis."""
-    radius = sum(
-        (np.abs(f).sum(axis=(1, 2))[:, None] * np.abs(v).sum(axis=2) for f, v in V), 0 * np.abs(sigma)
-    )
-    gap = sigma[:, :, None, None] - sigma[:, None, :, None] + 1j * omega[:, None, None, :]
-    near = np.abs(gap) <= (radius[:, :, None] + radius[:, None, :])[..., None]
-    opposite = (np.imag(sigma) >= 0)[:, :, None] & (np.imag(sigma) <= 0)[:, None, :]
-    rightmost = (np.real(sigma) + radius).max(axis=1) > 0
-    return (near & opposite[..., None]).any(axis=(1, 2, 3)) & rightmost
-
-
-def _hill_growth_rate(hill: np.ndarray, n: int, scale: float) -> np.ndarray:
-    """Growth rate from Hill's matrix, by eigenvectors with a large share in its first harmonic, (0, 0).
-
-    Every exponent s reappears as s + i Omega_h about each harmonic; the copies about the outermost harmonics
-    are wrong, because their neighbours are truncated.  In a tongue two harmonics have equal shares.
-    """
-    rate = _largest_real_part(np.linalg.eigvals(hill), scale)
-    if rate <= 0:
-        return rate
-    s, z = np.linalg.eig(hill)
-    share = (np.abs(z[:n]) ** 2).sum(axis=0) / (np.abs(z) ** 2).sum(axis=0)
-    return _largest_real_part(s[share > _LEAST_SHARE], scale)
-
-
-def _hill_matrix(
-    sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]], omega: np.ndarray, harmonics: list[Pair]
-) -> np.ndarray:
-    """Hill's matrix, the operator of harmonic balance in the modes, at one pair of rates."""
-    hill = np.diag((sigma - 1j * omega[:, None]).ravel())
-    for spectrum, v in V:
-        hill += np.kron(_convolution_matrix(spectrum, harmonics)[0], v)
-    return hill
 
 
 # Largest value over the phases --------------------------------------------------------------------

@@ -24,7 +24,7 @@ from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
-from beamdyn.steady.harmonic_balance import generate_harmonics
+from beamdyn.steady.harmonic_balance import Pair, generate_harmonics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,8 +80,12 @@ class Crossings(Result, Sequence[Crossing]):
         Speeds of the locus [rad/s], up to the top speed or the critical one.
     frequency : ndarray, shape (S, m)
         Natural frequencies [Hz], numbered at rest.
+    order : int
+        Highest order of the lines that were sought.
+    left_out : int
+        Number of crossings of the next order, which are weaker; those of still higher order are not counted.
     warnings : tuple of str
-        Limitations of the result.
+        Limitations of the result, and why there is no crossing.
     provenance : Provenance
         How the result was computed.
     """
@@ -90,6 +94,8 @@ class Crossings(Result, Sequence[Crossing]):
     lines: tuple[Line, ...]
     speeds: np.ndarray
     frequency: np.ndarray
+    order: int
+    left_out: int
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
@@ -99,6 +105,15 @@ class Crossings(Result, Sequence[Crossing]):
 
     def __len__(self) -> int:
         return len(self.crossings)
+
+    @property
+    def extent(self) -> str:
+        """What was sought, and what is left out, as a sentence."""
+        sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
+        if not self.left_out:
+            return f"{sought}; there are none of order {self.order + 1}."
+        crossings = f"{self.left_out} crossing{'s' * (self.left_out != 1)} of order {self.order + 1}"
+        return f"{sought}; {crossings}, and those of higher order, are weaker and left out."
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
@@ -136,7 +151,7 @@ def resonance_speeds(
     order : int
         1: the lines of the load, and 2 lambda_i = a line of the stiffness.  n: also the lines that up to
         n - 1 interactions of the load with the periodic stiffness add, and lambda_i + lambda_j = sums
-        and differences of up to n lines of the stiffness.
+        and differences of up to n lines of the stiffness.  The crossings of order n + 1 are counted.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -158,18 +173,20 @@ def resonance_speeds(
     model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     locus = _Loci(model, min(top, critical), modes)
-    forced, parametric = _excitation_lines(model.equations, scene.motion, top, order)
-    candidates = [("forced", line, (i,)) for line in forced for i in range(modes)]
-    pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
-    candidates += [("parametric", line, pair) for line in parametric for pair in pairs]
-    crossings = [c for kind, line, indices in candidates for c in locus.crossings(kind, line, indices)]
+    lines = [_excitation_lines(model.equations, scene.motion, top, n) for n in (order, order + 1)]
+    sought, more = (_list_resonances(*lines[k], modes, order + k) for k in (0, 1))
+    crossings = [c for resonance in sought for c in locus.crossings(*resonance)]
+    further = [resonance for resonance in more if resonance not in sought]
+    left_out = sum(locus.count_crossings(line, indices) for _, line, indices in further)
     names = str(model.discretization), str(model.coarser.discretization)
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
-        lines=tuple(forced),
+        lines=tuple(lines[0][0]),
         speeds=locus.speeds,
         frequency=np.take_along_axis(locus.values, locus.order, axis=1) / (2 * np.pi),
-        warnings=() if top < critical else (f"searched up to the critical speed, {critical:.6g} rad/s",),
+        order=order,
+        left_out=left_out,
+        warnings=tuple(_warnings(scene, lines[0], len(crossings), order, top, critical)),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
     )
@@ -181,11 +198,42 @@ def _excitation_lines(
     """Lines of the load and of the stiffness at a speed [rad/s], up to an order."""
     system = periodic_system(equations, motion, np.array([speed]))
     motion = check_steady_state(motion)
-    forced = generate_harmonics(system.load_harmonics, system.coupling, order - 1)
-    parametric = generate_harmonics([(0, 0)], system.coupling, order)
-    return tuple(
-        _distinct(name_line(motion, h) for level in levels for h in level) for levels in (forced, parametric)
-    )  # pyright: ignore[reportReturnType]
+
+    def generate_lines(start: Iterable[Pair], interactions: int) -> list[Line]:
+        levels = generate_harmonics(start, system.coupling, interactions)
+        return _distinct(name_line(motion, h) for level in levels for h in level)
+
+    return generate_lines(system.load_harmonics, order - 1), generate_lines([(0, 0)], order)
+
+
+def _list_resonances(
+    forced: list[Line], parametric: list[Line], modes: int, order: int
+) -> list[tuple[str, Line, tuple[int, ...]]]:
+    """Kinds, lines and indices of the modes of the resonances up to an order."""
+    pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
+    by_load = [("forced", line, (i,)) for line in forced for i in range(modes)]
+    return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]
+
+
+def _warnings(
+    scene: Scene,
+    lines: tuple[list[Line], list[Line]],
+    found: int,
+    order: int,
+    top: float,
+    critical: float,
+) -> Iterator[str]:
+    if top >= critical:
+        yield f"searched up to the critical speed, {critical:.6g} rad/s"
+    names = ", ".join(dict.fromkeys(line.name for kind in lines for line in kind))
+    if not names:
+        motion = "has no motion" if scene.motion is None else f"has a {type(scene.motion).__name__}"
+        yield (
+            f"nothing varies in time at steady speed: the scene {motion} and gravity = {scene.gravity:g}; "
+            "a RollingWheel with a road, or gravity, excites the beam"
+        )
+    elif not found:
+        yield f"no mode meets a line of order {order} up to {min(top, critical):.6g} rad/s; lines: {names}"
 
 
 def _distinct(lines: Iterable[Line]) -> list[Line]:
@@ -232,6 +280,11 @@ class _Loci:
         for a, b in _bracket(detuning, self.speeds, detunings):
             speed = brentq(detuning, a, b, xtol=_ROUNDING * b, rtol=_ROUNDING)  # pyright: ignore[reportArgumentType]
             yield self._crossing(kind, line, indices, float(speed), (detuning(b) - detuning(a)) / (b - a))
+
+    def count_crossings(self, line: Line, indices: tuple[int, ...]) -> int:
+        """Count the crossings of a line by the changes of sign over the speeds of the locus."""
+        detunings = self.values[:, indices].sum(axis=1) - line.multiple * self.speeds
+        return int(np.count_nonzero(np.diff(detunings > 0)))
 
     def _crossing(
         self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float

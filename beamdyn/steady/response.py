@@ -24,15 +24,14 @@ from beamdyn.steady.harmonic_balance import (
     Pair,
     PeriodicSystem,
     generate_harmonics,
-    growth_rate,
     largest_over_phases,
     solve_harmonic_balance,
 )
+from beamdyn.steady.stability import growth_rate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_INTERACTIONS = 2  # with the periodic coefficients, for the stability
 _MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
 _MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
 _MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
@@ -59,6 +58,8 @@ class SteadyResponse(Result):
         "stable", "parametric instability" or "past the critical speed".
     growth_rate : ndarray, shape (S,)
         Largest growth rate of free vibration [1/s].
+    growth_rate_error : ndarray, shape (S,)
+        Estimated error of the growth rate [1/s] by the harmonics left out.
     error : ndarray, shape (S,)
         Estimated truncation error of the harmonics, relative to the bound.
     lines : tuple of Line, length l
@@ -85,6 +86,7 @@ class SteadyResponse(Result):
     stable: np.ndarray
     status: np.ndarray
     growth_rate: np.ndarray
+    growth_rate_error: np.ndarray
     error: np.ndarray
     lines: tuple[Line, ...]
     line_frequency: np.ndarray
@@ -150,7 +152,7 @@ def steady_response(
     treated as independent, whether or not their rates are commensurate: the amplitude is the largest in
     time if they are not, and the largest over time and over the phase between road and rotation if they
     are.  Stability is decided by the exponents of free motion over the same phases: see
-    `beamdyn.steady.harmonic_balance.growth_rate`.
+    `beamdyn.steady.stability`.
 
     Parameters
     ----------
@@ -208,7 +210,8 @@ class ResponseRequest:
         scene, speeds, model = self.scene, self.speeds, self._model
         equations = model.modal_equations(self.basis)
         system = periodic_system(equations, scene.motion, speeds)
-        rate, status = _stability(system, speeds, model.solver.critical_speed)
+        rate, rate_error = growth_rate(system)
+        status = _status(rate, speeds, model.solver.critical_speed)
         used, c, error = _solve_harmonics(system, equations.tip, self.harmonics, self.tolerance)
         stable = (status == "stable") & np.isfinite(c).all(axis=1)
         c[~stable], error[~stable] = np.nan, np.nan
@@ -224,6 +227,7 @@ class ResponseRequest:
             stable=stable,
             status=status,
             growth_rate=rate,
+            growth_rate_error=rate_error,
             error=error,
             lines=tuple(name_line(motion, h) for h in map(tuple, harmonic.tolist())),
             line_frequency=np.abs(system.rates @ harmonic.T) / (2 * np.pi),
@@ -262,11 +266,10 @@ class ResponseRequest:
         return choose_model(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
 
 
-def _stability(system: PeriodicSystem, speeds: np.ndarray, critical: float) -> tuple[np.ndarray, np.ndarray]:
-    """Growth rates [1/s] and status at each speed."""
-    rate = growth_rate(system, _INTERACTIONS)
+def _status(rate: np.ndarray, speeds: np.ndarray, critical: float) -> np.ndarray:
+    """Status at each speed."""
     status = np.where(rate > 0, "parametric instability", "stable")
-    return rate, np.where(np.abs(speeds) >= critical, "past the critical speed", status)
+    return np.where(np.abs(speeds) >= critical, "past the critical speed", status)
 
 
 def _solve_harmonics(

@@ -1,0 +1,319 @@
+"""Stability of free motion about the steady response: Hill's method in two phases.
+
+A free motion is exp(s t) times a function of the phases.  Where the ratio of the rates is irrational there
+is no period and no monodromy matrix, but the exponents s are still eigenvalues of the operator of harmonic
+balance, here in the modes of the mean equations:
+
+    (s + i Omega_h) z_h = diag(sigma) z_h + sum_g V_(h-g) z_g
+
+With V = 0 the eigenvalues are sigma_a - i Omega_h.  Each stays in the Gershgorin disc about that value with
+the radius rho_a, the sum of its row of |V|.  Without damping, and with a mean energy that is positive, an
+eigenvalue leaves the imaginary axis only by meeting one of opposite energy (Krein), so that the motion is
+stable if no disc of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h, or if all discs lie left of
+the axis.  Only where discs overlap are the eigenvalues computed: with the harmonics h of the overlaps and
+(0, 0), between which the motion resonates, and those that some interactions with the periodic coefficients
+add on all sides.  Their number grows until the growth rate settles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, reduce
+
+import numpy as np
+import scipy.sparse
+from scipy.sparse.linalg import ArpackError, eigs
+
+from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, convolution_matrix, generate_harmonics
+
+_TONGUE_ORDER = 2  # largest number of interactions with the periodic coefficients by which two modes resonate
+_ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding error
+_SETTLED = 1e-6  # change of the growth rate by one more interaction, over the rate
+_MOST_INTERACTIONS = 4  # beyond the resonant harmonics
+_MOST_OUTSIDE = 0.1  # share of an eigenvector in the outermost harmonics
+_SAME_RATE = 0.05  # difference between copies of one growth rate, over what the resonance adds to it
+_NEAREST = 8  # eigenvalues that are followed from one number of interactions to the next
+_OFF = 1e-4  # distance from the eigenvalue, at which the matrix is singular, over the largest
+_STILL = 1e-9  # rate of a harmonic that stands still, over those of the phases
+_MOST_STEPS = 6  # interactions that make a harmonic that stands still
+_PHASES = 8  # between commensurate rates, of which the fastest growth is taken
+_BETWEEN_PHASES = 0.1  # of the difference over these, by which the growth between two of them may be faster
+
+
+def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
+    """Largest rate of growth of a free motion, 0 or less where it is stable, and its error [1/s].
+
+    Instability tongues of up to two interactions are detected.  Those of higher order, which exist without
+    damping near every rational combination of the rates, are narrower, and the slightest damping closes them.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+        The equations, at S pairs of rates.
+
+    Returns
+    -------
+    rate, error : ndarray, shape (S,)
+        The error of modes that resonate is the change by the last interaction whose harmonics are kept.
+        The rate of others is that of the mean equations, and its error the shift by the periodic
+        coefficients in second order; 0 without damping.  It is infinite where the mean equations are
+        singular.
+    """
+    A, periodic = _first_order(system)
+    sigma, R = np.linalg.eig(A)
+    scale = np.abs(sigma).max(axis=1)
+    rate, error = _largest_real_part(sigma, scale), np.zeros(len(A))
+    if not system.coupling:
+        return rate, error
+    singular = np.abs(sigma).min(axis=1) == 0
+    error[singular] = np.inf
+    rows = np.flatnonzero(~singular)
+    if len(rows):
+        V = _to_modes(sigma[rows], R[rows], [(f[rows], B[rows]) for f, B in periodic])
+        free = _FreeMotion(system.rates[rows], system.coupling, sigma[rows], V)
+        shift = np.where(rate[rows, None] == 0, 0.0, free.second_order_shift())
+        error[rows] = shift.max(axis=1)
+        for i, resonances in free.resonances(rate[rows] <= 0):
+            rate[rows[i]], error[rows[i]] = _combine(sigma[rows[i]], shift[i], resonances)
+    return rate, error
+
+
+def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance]) -> tuple[float, float]:
+    """Growth rate and error: the largest of the resonances and of the modes that do not resonate."""
+    scale, resonant = np.abs(sigma).max(), {resonance.mode for resonance in resonances}
+    alone = [a for a in range(len(sigma)) if np.imag(sigma[a]) >= 0 and a not in resonant]
+    found = [resonance.growth_rate(scale) for resonance in resonances]
+    found += [(float(_largest_real_part(sigma[[a]], scale)), float(shift[a])) for a in alone]
+    rate, error = np.transpose(found)
+    largest = rate.max()
+    return float(largest), float(max((rate + error).max() - largest, largest - (rate - error).max()))
+
+
+def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
+    """Largest real part, 0 where it is only rounding error."""
+    largest = np.real(s).max(axis=-1)
+    return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
+
+
+# The equations in the modes of the mean equations ---------------------------------------------------
+
+
+def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
+    """Matrices of y' = (A + sum_h c_h B e^(ih.phi)) y for y = (w q, q'); w [rad/s] balances the scales."""
+    K, C, M = system.mean
+    S, n = len(K), system.size
+    K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
+    w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
+    A = np.zeros((S, 2 * n, 2 * n))
+    A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
+    periodic = []
+    for order, spectrum, matrix in system.varying:
+        B = np.zeros_like(A)
+        B[:, n:, n * order : n * order + n] = -np.linalg.solve(M, matrix) / (1 if order else w)
+        periodic.append((spectrum, B))
+    return A, periodic
+
+
+def _to_modes(
+    sigma: np.ndarray, R: np.ndarray, periodic: list[tuple[np.ndarray, np.ndarray]]
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Transform B to modes, V = R^-1 B R; the columns of R have equal action, which makes |V| symmetric."""
+    n = R.shape[-1] // 2
+    R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma)))[:, None, :]
+    return [(spectrum, np.linalg.solve(R, B @ R)) for spectrum, B in periodic]
+
+
+# Which modes and harmonics resonate -----------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _FreeMotion:
+    """Free motion at S pairs of rates (S, 2), in the modes of the mean equations.
+
+    Parameters
+    ----------
+    rates : ndarray, shape (S, 2)
+        Rates of the phases [rad/s].
+    coupling : set of pair
+        Harmonics of the periodic coefficients.
+    sigma : ndarray of complex, shape (S, m)
+        Eigenvalues of the mean equations [1/s].
+    V : list of (ndarray, ndarray)
+        Periodic coefficients: a spectrum (S, N, N), and its matrix in the modes (S, m, m).
+    """
+
+    rates: np.ndarray
+    coupling: set[Pair]
+    sigma: np.ndarray
+    V: list[tuple[np.ndarray, np.ndarray]]
+
+    @property
+    def radius(self) -> np.ndarray:
+        """Radius of the Gershgorin disc of each mode, shape (S, m)."""
+        parts = (np.abs(f).sum(axis=(1, 2))[:, None] * np.abs(v).sum(axis=2) for f, v in self.V)
+        return reduce(np.add, parts)
+
+    def gap(self, harmonics: list[Pair]) -> np.ndarray:
+        """Distance of sigma_a from sigma_b - i Omega_h, shape (S, m, m, H)."""
+        omega = self.rates @ np.array(harmonics).T
+        difference = self.sigma[:, :, None] - self.sigma[:, None, :]
+        return difference[..., None] + 1j * omega[:, None, None, :]
+
+    def second_order_shift(self) -> np.ndarray:
+        """Shift (S, m) of each eigenvalue by the periodic coefficients in second order, within its disc."""
+        harmonics = sorted(self.coupling)
+        h = np.array(harmonics)
+        spectra = [convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V]
+        parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
+        coupling = reduce(np.add, parts)
+        product = np.abs(coupling[..., _opposite(h)] * np.swapaxes(coupling, 1, 2))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
+        return np.minimum(shift, self.radius)
+
+    def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
+        """Yield each index at which discs of opposite energy overlap, with the resonances there."""
+        levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
+        harmonics = [h for level in levels for h in level]
+        radius = self.radius
+        near = np.abs(self.gap(harmonics)) <= (radius[:, :, None] + radius[:, None, :])[..., None]
+        opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
+        rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0
+        overlap = near & opposite[..., None] & (rightmost & considered)[:, None, None, None]
+        for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
+            V, still = [(f[i : i + 1], v[i]) for f, v in self.V], self._find_still(self.rates[i])
+            found = []
+            for a in np.flatnonzero(overlap[i].any(axis=(1, 2))):
+                partners = {(0, 0)} | {harmonics[k] for k in np.flatnonzero(overlap[i, a].any(axis=0))}
+                found.append(
+                    _Resonance(self.rates[i], self.coupling, self.sigma[i], V, int(a), partners, still)
+                )
+            yield int(i), found
+
+    @cached_property
+    def _reached(self) -> np.ndarray:
+        """Harmonics (H, 2) that a few interactions make of (0, 0), beginning with the fewest."""
+        levels = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)
+        return np.array([h for level in levels[1:] for h in level])
+
+    def _find_still(self, rates: np.ndarray) -> Pair | None:
+        """Find a harmonic that stands still at a pair of commensurate rates; None if there is none."""
+        still = self._reached[np.abs(self._reached @ rates) <= _STILL * np.abs(rates).max()]
+        return (int(still[0, 0]), int(still[0, 1])) if len(still) else None
+
+
+def _opposite(h: np.ndarray) -> np.ndarray:
+    """Index of -h for each of the harmonics h (H, 2)."""
+    return (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
+
+
+# Eigenvalues of the modes that resonate -------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Resonance:
+    """A mode that resonates with others through the periodic coefficients, at one pair of rates.
+
+    Parameters
+    ----------
+    rates, coupling, sigma, V
+        As of `_FreeMotion`, at these rates.
+    mode : int
+        Index of the mode, in the harmonic (0, 0).
+    harmonics : set of pair
+        Harmonics of the modes whose discs overlap that of the mode, and (0, 0).
+    still : pair or None
+        A harmonic that stands still, because the rates are commensurate.
+    """
+
+    rates: np.ndarray
+    coupling: set[Pair]
+    sigma: np.ndarray
+    V: list[tuple[np.ndarray, np.ndarray]]
+    mode: int
+    harmonics: set[Pair]
+    still: Pair | None
+
+    def growth_rate(self, scale: float) -> tuple[float, float]:
+        """Growth rate and its error [1/s], the largest over the phase between commensurate rates.
+
+        `scale` is the largest |eigenvalue| of the mean equations.
+        """
+        phases = np.arange(_PHASES if self.still else 1) * (2 * np.pi / _PHASES)
+        rates, errors = np.transpose([self._growth_rate_at(phase, scale) for phase in phases])
+        return float(rates.max()), float(errors.max() + _BETWEEN_PHASES * np.ptp(rates))
+
+    def _growth_rate_at(self, phase: float, scale: float) -> tuple[float, float]:
+        """Growth rate and its error [1/s], with as many harmonics as it takes to settle."""
+        hill, inner = self._hill_matrix(1, phase)
+        s, z = np.linalg.eig(hill.toarray())
+        rate, near, error = *self._select(s, z, inner, scale), np.inf
+        for interactions in range(2, _MOST_INTERACTIONS + 1):
+            last, (hill, inner) = rate, self._hill_matrix(interactions, phase)
+            rate, near = self._select(*_nearest_eigenvalues(hill, near, scale), inner, scale)
+            error = abs(rate - last)
+            if error <= _SETTLED * abs(rate):
+                break
+        return rate, error
+
+    def _select(self, s: np.ndarray, z: np.ndarray, inner: int, scale: float) -> tuple[float, complex]:
+        """Growth rate from eigenvalues and vectors, and the value near which to seek with more harmonics.
+
+        Every exponent s reappears as s + i Omega_h about each harmonic h.  Copies about the outermost
+        harmonics, past the `inner` rows, are wrong, because their neighbours are missing; of the others,
+        that with the smallest share there is the most accurate.
+        """
+        outer = (np.abs(z[inner:]) ** 2).sum(axis=0) / (np.abs(z) ** 2).sum(axis=0)
+        s, outer = s[outer < _MOST_OUTSIDE], outer[outer < _MOST_OUTSIDE]
+        if not (len(s) and _largest_real_part(s, scale)):
+            return 0.0, self.sigma[self.mode]
+        fastest, alone = np.real(s).max(), np.real(self.sigma[self.mode])
+        copies = np.real(s) >= fastest - _SAME_RATE * abs(fastest - alone)
+        best = s[copies][outer[copies].argmin()]
+        return float(np.real(best)), complex(best)
+
+    def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
+        """Hill's matrix, the operator of harmonic balance in the modes, and its rows before the last level.
+
+        Harmonics whose difference stands still are one, with the phase between the commensurate rates.
+        """
+        levels = generate_harmonics(self.harmonics, self.coupling, interactions)
+        inner = dict.fromkeys(self._fold(h) for level in levels[:-1] for h in level)
+        harmonics = list(inner | dict.fromkeys(map(self._fold, levels[-1])))
+        omega = np.array(harmonics) @ self.rates
+        hill = scipy.sparse.diags_array((self.sigma - 1j * omega[:, None]).ravel()).tocsc()
+        for spectrum, v in self.V:
+            hill += scipy.sparse.kron(self._folded_convolution(spectrum, harmonics, phase), v, format="csc")
+        return hill, len(inner) * len(self.sigma)
+
+    def _fold(self, h: Pair) -> Pair:
+        """The harmonic that represents all from which h differs by multiples of the one that stands still."""
+        if self.still is None:
+            return h
+        (j, k), (a, b) = h, self.still
+        turns = int(np.floor((j * a + k * b) / (a * a + b * b) + 0.5))
+        return j - turns * a, k - turns * b
+
+    def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
+        """Matrix (H, H) of the product with a spectrum, summed over harmonics that are one."""
+        if self.still is None:
+            return convolution_matrix(spectrum, harmonics)[0]
+        most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(map(abs, self.still))
+        total = np.zeros((len(harmonics), len(harmonics)), dtype=complex)
+        for m in range(-most, most + 1):
+            shift = m * self.still[0], m * self.still[1]
+            total += np.exp(1j * m * phase) * convolution_matrix(spectrum, harmonics, shift)[0]
+        return total
+
+
+def _nearest_eigenvalues(
+    hill: scipy.sparse.csc_array, near: complex, scale: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues and vectors of a sparse matrix nearest to a value."""
+    start = np.ones(hill.shape[0], dtype=complex)
+    try:
+        return eigs(hill, min(_NEAREST, hill.shape[0] - 2), sigma=near + _OFF * scale, v0=start)
+    except ArpackError:
+        s, z = np.linalg.eig(hill.toarray())
+        return s, z
