@@ -130,4 +130,4 @@ def _find_highest_maxima(size: np.ndarray) -> np.ndarray:
     bend = np.maximum(2 * middle - left - right, 1e-300)
     is_maximum = (middle >= left) & (middle >= right)
     height = np.where(is_maximum, middle + (right - left) ** 2 / (8 * bend), middle)
-    return 1 + np.argsort(height)[-_CANDIDATES:]
+    return 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]
