@@ -16,6 +16,7 @@ import numpy as np
 
 from beamdyn.scene.motion import SteadyRotation
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, tableau
+from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.step_size import StepSize, check_number_of_steps, split_at_breakpoints
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import (
@@ -80,10 +81,10 @@ def integrate_batch(systems: Sequence[ModalSystem], t_end: float, tolerance: flo
         stalled = last / 2 < total < _ITERATION_ERROR / tolerance * bound
         if total <= bound or stalled or step_size.is_finest:
             return TipHistories(tuple(tips), tuple(e.total for e in errors))
-        step_size, last = step_size.refine(errors[worst], bound), total
+        step_size, last = step_size.refine(errors[worst], bound, 2 * STAGES), total
 
 
-def _largest_deflection(segment: Segment) -> float:
+def _largest_deflection(segment: Segment | RecordSegment) -> float:
     """Largest tip deflection at the ends of the steps [m], of a segment whose only coordinate it is."""
     return float(np.abs(segment.state[:, 1]).max())
 

@@ -15,8 +15,9 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.batch import integrate_batch
+from beamdyn.transient.record_steps import is_record
 from beamdyn.transient.simulate import TransientRequest
-from beamdyn.transient.step_size import TooManySteps
+from beamdyn.transient.step_size import StepSize, TooManySteps
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Trajectory, largest_deflection
 
@@ -74,6 +75,10 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
 def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseResult]:
     equations = request.model().modal_equations(request.basis)
     systems = [ModalSystem(equations, motion) for motion in motions]
+    if is_record(systems[-1], request.t_end, StepSize.from_tolerance(request.tolerance)):
+        return [
+            _solve_single(request, motion) for motion in motions
+        ]  # steps over samples, which batches lack
     try:
         batch = integrate_batch(systems, request.t_end, request.tolerance)
     except TooManySteps:

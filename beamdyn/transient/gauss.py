@@ -103,12 +103,16 @@ class StepMaps:
 
 
 def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> StepMaps:
-    """Solve the collocation equations of all steps that begin at `starts` [s] with length h [s].
+    """Solve the collocation equations of all steps that begin at `starts` [s] with length h [s]."""
+    return solve_steps(*system.coefficients(starts[:, None] + h * table.c), h, table)
+
+
+def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> StepMaps:
+    """Solve the collocation equations of steps of length h [s], given C, K and f at their nodes.
 
     The accelerations a_i at the nodes satisfy
     a_i + C_i (v + h sum A_ij a_j) + K_i (q + c_i h v + h^2 sum A2_ij a_j) = f_i.
     """
-    C, K, f = system.coefficients(starts[:, None] + h * table.c)
     if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
         return _maps_of_equal_steps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
     a = np.linalg.solve(left_side(C, K, h, table), _right_side(C, K, f, h, table))
@@ -209,26 +213,33 @@ class Segment:
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Interpolate displacement and velocity at times t [s]: shape (len(t), n)."""
-        N, s, n = self.acceleration.shape
         x = (np.asarray(t, dtype=float) - self.start) / self.h
-        k = np.clip(x.astype(int), 0, N - 1)
-        table, theta = tableau(s), x - k
-        weights = legendre.legvander(2 * theta - 1, s) @ table.integrals
-        a, state = self.acceleration[k], self.state[k]
-        q, v = state[:, 1 : n + 1], state[:, n + 1 :]
-        dq, dv = (np.einsum("tj,tjn->tn", w, a) for w in (weights @ table.A, weights))
-        return q + (theta * self.h)[:, None] * v + self.h**2 * dq, v + self.h * dv
+        k = np.clip(x.astype(int), 0, len(self.acceleration) - 1)
+        return interpolate_each(self.h, self.state[k], self.acceleration[k], x - k)
+
+
+def interpolate_each(
+    h: float | np.ndarray, state: np.ndarray, acceleration: np.ndarray, theta: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Interpolate displacement and velocity, each (k, n), at a fraction theta (k,) of each of k steps."""
+    _, s, n = acceleration.shape
+    table = tableau(s)
+    weights = legendre.legvander(2 * theta - 1, s) @ table.integrals
+    q, v = state[:, 1 : n + 1], state[:, n + 1 :]
+    dq, dv = (np.einsum("tj,tjn->tn", w, acceleration) for w in (weights @ table.A, weights))
+    h = np.broadcast_to(h, theta.shape)[:, None]
+    return q + theta[:, None] * h * v + h**2 * dq, v + h * dv
 
 
 def interpolate(
-    h: float, state: np.ndarray, acceleration: np.ndarray, theta: np.ndarray
+    h: float | np.ndarray, state: np.ndarray, acceleration: np.ndarray, theta: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Interpolate displacement and velocity at the same fractions of every step.
 
     Parameters
     ----------
-    h : float
-        Step size [s].
+    h : float or ndarray, shape (N, 1, 1)
+        Step size, or that of each step [s].
     state : ndarray, shape (N, 2 n + 1)
         Augmented states at the beginnings of the steps.
     acceleration : ndarray, shape (N, s, n)

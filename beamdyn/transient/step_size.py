@@ -11,6 +11,8 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.gauss import Segment, propagate
+from beamdyn.transient.record_error import estimate_record_error
+from beamdyn.transient.record_steps import RecordSteps, is_record, propagate_record
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import STAGES, CheckedSteps, TimeError, estimate_time_error
 from beamdyn.transient.trajectory import Trajectory
@@ -26,6 +28,8 @@ _TIMES_COMPARED = 257  # times at which the equations are compared with those at
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 _ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
 _SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
+_ORDER = 2 * STAGES  # of the error, in the step size
+_ORDER_ACROSS_SAMPLES = 3  # the same inside steps in which the acceleration has kinks
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
 
 
@@ -47,7 +51,7 @@ class StepSize:
     @classmethod
     def from_tolerance(cls, tolerance: float) -> StepSize:
         """Estimate the step size that meets a tolerance, relative to the largest deflection."""
-        return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / (2 * STAGES)))
+        return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / _ORDER))
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
         """Number of equal steps from start to end [s]."""
@@ -59,14 +63,17 @@ class StepSize:
         fastest = max(natural, speed * (system.equations.gravity != 0), *lines, 0.0)
         return max(1, int(np.ceil((end - start) * fastest / self.phase)))
 
-    def refine(self, error: TimeError, bound: float) -> StepSize:
-        """Next step size, where the error exceeds its bound [m]: more modes resolved, or a smaller angle."""
+    def refine(self, error: TimeError, bound: float, order: int) -> StepSize:
+        """Next step size, where the error exceeds its bound [m]: more modes resolved, or a smaller angle.
+
+        The `order` is that at which the error falls with the step size.
+        """
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
         modes = int((cumulative > bound / 4).sum())  # the errors of all higher modes add up to less
         if modes > self.modes:  # only as closely as the highest of them contributes
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
             return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
-        shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / (2 * STAGES)))
+        shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / order))
         return StepSize(self.phase * shrink, self.modes)
 
     @property
@@ -104,23 +111,46 @@ def integrate(
     TooManySteps
         If the steps of the run do not fit into memory.
     """
-    edges, step_size = split_at_breakpoints(system.motion, t_end), StepSize.from_tolerance(tolerance)
     if stays_in_equilibrium(system, y0, t_end):
-        path = _propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance)
+        edges = np.array([0.0, *(b for b in system.motion.breakpoints if 0 < b < t_end), t_end])
+        path = Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
         return path, 0.0, "no steps: the beam stays in equilibrium"
-    last = np.inf
+    step_size, last = StepSize.from_tolerance(tolerance), np.inf
+    attempt = _attempt_record if is_record(system, t_end, step_size) else _attempt
     while True:
-        steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
-        check_number_of_steps(sum(steps), system.size, t_end)
-        path = _propagate(system, edges, steps, y0, tolerance)
-        error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in path.segments])
+        path, error, order = attempt(system, y0, t_end, tolerance, step_size)
         largest = max(
             float(np.abs(s.state[:, 1 : system.size + 1] @ system.tip).max()) for s in path.segments
         )
         stalled = last / 2 < error.total < _ROUNDING * largest
-        if error.total <= tolerance * largest or stalled or step_size.is_finest:
-            return path, error.total, f"Gauss collocation of order {2 * STAGES}, {sum(steps)} steps"
-        step_size, last = step_size.refine(error, tolerance * largest), error.total
+        finest = step_size.is_finest and order == _ORDER
+        if error.total <= tolerance * largest or stalled or finest:
+            steps = sum(len(s.acceleration) for s in path.segments)
+            return path, error.total, f"Gauss collocation of order {_ORDER}, {steps} steps"
+        step_size, last = step_size.refine(error, tolerance * largest, order), error.total
+
+
+def _attempt(
+    system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
+) -> tuple[Trajectory, TimeError, int]:
+    """Integrate with equal steps in each segment: path, error, and the order of the error."""
+    edges = split_at_breakpoints(system.motion, t_end)
+    steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
+    check_number_of_steps(sum(steps), system.size, t_end)
+    segments = _propagate(system, edges, steps, y0, tolerance)
+    error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in segments])
+    return Trajectory(segments), error, _ORDER
+
+
+def _attempt_record(
+    system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
+) -> tuple[Trajectory, TimeError, int]:
+    """Integrate a motion given by samples: path, error, and the order of the error."""
+    steps, n = RecordSteps.choose(system, t_end, step_size), system.size
+    check_number_of_steps(len(steps), n, t_end)
+    segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES)
+    order = _ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
+    return Trajectory((segment,)), estimate_record_error(system, segment), order
 
 
 def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
@@ -159,13 +189,13 @@ def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
 
 def _propagate(
     system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray, tolerance: float
-) -> Trajectory:
+) -> tuple[Segment, ...]:
     """Integrate segment by segment, with the given numbers of steps."""
     segments, n, accuracy = [], system.size, _SERIES_SHARE * tolerance
     for (a, b), count in zip(pairwise(edges), steps, strict=True):
         segments.append(_propagate_segment(system, a, b, count, y0[:n], y0[n:], accuracy))
         y0 = segments[-1].state[-1, 1:]
-    return Trajectory(tuple(segments))
+    return tuple(segments)
 
 
 def _propagate_segment(

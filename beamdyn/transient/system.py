@@ -45,7 +45,10 @@ class ModalSystem:
 
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
         """Evaluate C (None if zero), K and f at times t [s] of any shape."""
-        root = self.root(np.asarray(t, dtype=float))
+        return self.assemble(self.root(np.asarray(t, dtype=float)))
+
+    def assemble(self, root: RootMotion) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
+        """Assemble C (None if zero), K and f for a motion of the root."""
         return self._damping(root), self.equations.matrix(0, root), self.equations.load(root)
 
     def _damping(self, root: RootMotion) -> np.ndarray | None:

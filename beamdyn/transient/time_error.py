@@ -14,7 +14,7 @@ STAGES = 8  # of the Gauss collocation that is checked
 _MOST_CHECKED = 48  # steps of a segment at which the local error is measured
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 _INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
-_UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
+UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
 _ROUNDING = 1e-14  # rounding error of a step, over the sum of the magnitudes of its terms
 _MARGIN = 1.5  # safety factor of the estimate
 
@@ -52,11 +52,11 @@ class CheckedSteps:
         return cls(starts, segment.h, steps, segment.state[chosen], segment.state[chosen + 1, 1:])
 
 
-def choose_checked_steps(steps: int) -> np.ndarray:
-    """Choose the indices of the checked steps of a segment."""
-    if steps <= _MOST_CHECKED:
+def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
+    """Choose the indices of the checked steps of a segment, at most so many."""
+    if steps <= most:
         return np.arange(steps)
-    return np.unique((steps * (_GOLDEN * np.arange(_MOST_CHECKED) % 1)).astype(int))
+    return np.unique((steps * (_GOLDEN * np.arange(most) % 1)).astype(int))
 
 
 @dataclass(frozen=True)
@@ -109,27 +109,50 @@ def estimate_time_error(
     total, interpolation, unresolved = np.zeros(n), 0.0, np.zeros(n, dtype=bool)
     for check in checks:
         maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
-        local = _local_errors(system, maps.step, finer.step, check)
-        delta = _phase_errors(system, finer.step - maps.step)
-        total += np.minimum(check.steps, 2 / np.maximum(delta, 1e-30)) * local
-        unresolved |= delta > _UNRESOLVED_PHASE
+        local = local_errors(system, maps.step, finer.step, check.state, check.end_state).mean(axis=0)
+        delta = phase_errors(system, finer.step - maps.step)
+        total += total_of_local_errors(local, delta, check.steps)
+        unresolved |= delta > UNRESOLVED_PHASE
         accelerations = [(m.acceleration @ check.state[:, None, :, None])[..., 0] for m in (maps, finer)]
         q = [interpolate(check.h, check.state, a, _INTERPOLATION_POINTS)[0] for a in accelerations]
         interpolation = max(interpolation, float(np.abs((q[0] - q[1]) @ tip).max()))
     return TimeError(total * np.abs(tip), interpolation, unresolved)
 
 
-def _local_errors(system: ModalSystem, step: np.ndarray, fine: np.ndarray, check: CheckedSteps) -> np.ndarray:
-    """Mean local error of each coordinate, as an amplitude: of the collocation and of its solution."""
+def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
+    """Error of each coordinate after some steps, from the mean local and the largest phase error (n,)."""
+    return np.minimum(steps, 2 / np.maximum(delta, 1e-30)) * local
+
+
+def local_errors(
+    system: ModalSystem, step: np.ndarray, fine: np.ndarray, state: np.ndarray, end_state: np.ndarray
+) -> np.ndarray:
+    """Local error of each step and coordinate, as an amplitude: of the collocation and of its solution.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        The equations.
+    step, fine : ndarray, shape (k, 2 n, 2 n + 1)
+        Maps of the steps, and more accurate ones.
+    state : ndarray, shape (k, 2 n + 1)
+        Augmented states at their beginnings.
+    end_state : ndarray, shape (k, 2 n)
+        Computed coordinates and velocities at their ends.
+
+    Returns
+    -------
+    ndarray, shape (k, n)
+    """
     n = system.size
-    residual = np.einsum("kij,kj->ki", step, check.state) - check.end_state
-    size = np.einsum("kij,kj->ki", np.abs(step), np.abs(check.state))
+    residual = np.einsum("kij,kj->ki", step, state) - end_state
+    size = np.einsum("kij,kj->ki", np.abs(step), np.abs(state))
     residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding, which does not add up
-    error = np.abs(np.einsum("kij,kj->ki", fine - step, check.state)) + np.abs(residual)
-    return np.hypot(error[:, :n], error[:, n:] / _frequencies(system)).mean(axis=0)
+    error = np.abs(np.einsum("kij,kj->ki", fine - step, state)) + np.abs(residual)
+    return np.hypot(error[:, :n], error[:, n:] / _frequencies(system))
 
 
-def _phase_errors(system: ModalSystem, difference: np.ndarray) -> np.ndarray:
+def phase_errors(system: ModalSystem, difference: np.ndarray) -> np.ndarray:
     """Largest phase error of each coordinate per step [rad], from the difference of two step maps."""
     n, k = system.size, np.arange(system.size)
     by_velocity = np.abs(difference[:, k, 1 + n + k]) * _frequencies(system)

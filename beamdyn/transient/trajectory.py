@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from beamdyn.transient.gauss import Segment
+from beamdyn.transient.record_steps import RecordSegment
 
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
@@ -51,9 +52,9 @@ class Path(Protocol):
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Consecutive segments of equal steps."""
+    """Consecutive segments, of equal steps or, of a motion given by samples, of unequal ones."""
 
-    segments: tuple[Segment, ...]
+    segments: tuple[Segment | RecordSegment, ...]
 
     @property
     def start(self) -> float:
@@ -129,4 +130,4 @@ def _find_highest_maxima(size: np.ndarray) -> np.ndarray:
     bend = np.maximum(2 * middle - left - right, 1e-300)
     is_maximum = (middle >= left) & (middle >= right)
     height = np.where(is_maximum, middle + (right - left) ** 2 / (8 * bend), middle)
-    return 1 + np.argsort(height)[-_CANDIDATES:]
+    return 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]
