@@ -100,8 +100,9 @@ def critical_point(
 ) -> CriticalPoint:
     """Compute the critical speed and its error: the lowest with a singular stiffness K0 + omega^2 K2.
 
-    Whether there is one is decided first, by `decide_buckling`; if there is, it is sought with finer and finer
-    discretizations, because it may belong to a short bend at the tip.
+    Whether there is one is decided first, by an argument (`beamdyn.spectrum.buckling`).  If there is, it is
+    sought with finer and finer discretizations, because it may belong to a short bend at the tip; if these
+    end without one, guaranteed bounds say up to which speed there is none.
 
     Parameters
     ----------
@@ -136,7 +137,10 @@ def critical_point(
         reason=buckling.why,
         warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
         provenance=Provenance(
-            __version__, str(found.model.discretization), str(found.coarse.discretization), perf_counter() - start
+            __version__,
+            str(found.model.discretization),
+            str(found.coarse.discretization),
+            perf_counter() - start,
         ),
     )
 
@@ -197,7 +201,9 @@ def _critical_warnings(
     if discretization == "fem" and found.model.discretization.order is None:
         yield f"finite elements find no critical speed: it was sought with {found.model.discretization}"
     if np.isinf(found.speed):
-        exists = "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
+        exists = (
+            "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
+        )
         yield (
             f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
             f"there is certainly none below {searched:.4g} rad/s"
@@ -205,7 +211,7 @@ def _critical_warnings(
     elif tolerance is not None:
         yield from warn_of_missed_tolerance(found.error, tolerance)
     elif found.error > 1e-6:
-        yield f"estimated relative error of the critical speed {found.error:.1g}: the model did not resolve it"
+        yield f"estimated relative error {found.error:.1g}: the model did not resolve the critical speed"
 
 
 # Setting angles at which the locus changes its character -----------------------------------------

@@ -27,12 +27,17 @@ TOPPLING = bd.Scene(
 )
 TANGENTIAL = replace(HARVESTER, mount=replace(HARVESTER.mount, setting_angle=math.radians(89.9)))
 # By exact_critical_speed, which takes 16 s for the first.
-HIGH = {"toppling tip body": (TOPPLING, 1489.55707427074), "nearly tangential": (TANGENTIAL, 22131.6785767335)}
+HIGH = {
+    "toppling tip body": (TOPPLING, 1489.55707427074),
+    "nearly tangential": (TANGENTIAL, 22131.6785767335),
+}
 TOLERANCES = [None, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 
 
 def test_the_reference_of_the_nearly_tangential_harvester() -> None:
-    assert float(exact_critical_speed(TANGENTIAL, digits=15)) == pytest.approx(HIGH["nearly tangential"][1], rel=1e-14)
+    assert float(exact_critical_speed(TANGENTIAL, digits=15)) == pytest.approx(
+        HIGH["nearly tangential"][1], rel=1e-14
+    )
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)
@@ -67,22 +72,28 @@ def mounted_at_random(rng: np.random.Generator) -> bd.Scene:
     )
 
 
-@pytest.mark.parametrize("discretization", ["ritz", "fem"])
-def test_errors_cover_the_true_ones(discretization: str) -> None:
-    rng = np.random.default_rng(5)
-    found = 0
-    for _ in range(20):
-        scene = mounted_at_random(rng)
-        solver = Model(scene, bd.Ritz(140)).solver
-        for tolerance in TOLERANCES[1:]:
-            point = bd.critical_point(scene, discretization, tolerance)
-            assert np.isfinite(point.speed) == np.isfinite(solver.critical_speed), scene
-            if np.isfinite(point.speed):
-                true = abs(point.speed / solver.critical_speed - 1)
-                assert true <= point.error + solver.critical_rounding, scene
-                assert point.error <= tolerance or point.warnings
-                found += 1
-    assert found > 40
+# Of seeds 0 to 400 those with a critical speed that a basis of ten functions does not see or understates.
+HARD = (40, 110, 149, 169, 171, 185, 221, 225, 230, 240, 241, 244, 248, 275, 294, 326, 369, 396)
+
+
+def assert_within_errors(scene: bd.Scene, discretization: str, tolerance: float) -> None:
+    solver = Model(scene, bd.Ritz(140)).solver
+    point = bd.critical_point(scene, discretization, tolerance)
+    assert np.isfinite(point.speed)
+    assert abs(point.speed / solver.critical_speed - 1) <= point.error + solver.critical_rounding
+    assert point.error <= tolerance or point.warnings
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES[1:])
+@pytest.mark.parametrize("seed", HARD)
+def test_errors_cover_the_true_ones(seed: int, tolerance: float) -> None:
+    assert_within_errors(mounted_at_random(np.random.default_rng(seed)), "ritz", tolerance)
+
+
+@pytest.mark.parametrize("tolerance", [1e-1, 1e-3])
+@pytest.mark.parametrize("seed", HARD)
+def test_errors_of_finite_elements_cover_the_true_ones(seed: int, tolerance: float) -> None:
+    assert_within_errors(mounted_at_random(np.random.default_rng(seed)), "fem", tolerance)
 
 
 def test_the_argument_agrees_with_the_sign_in_a_large_basis() -> None:
