@@ -251,7 +251,10 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
     functions = 0
     for functions in _sizes(scene.beam, modes):
-        low, high = Split(scene, functions, speed, flexibility).bounds(modes)
+        try:
+            low, high = Split(scene, functions, speed, flexibility).bounds(modes)
+        except np.linalg.LinAlgError:  # rounding of so many functions at such a speed
+            break
         last_width, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
         width = upper - lower
         if (width <= _NARROW * np.abs(upper)).all() or (width > last_width / 2).all():

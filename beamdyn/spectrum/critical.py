@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -51,8 +52,8 @@ class CriticalPoint(Result):
     error : float
         Its estimated relative error; 0 if there is none, inf if it is unresolved.
     searched : float
-        Where `speed` is inf, the speed below which there is certainly none [rad/s]: inf by `reason`, else
-        by guaranteed bounds, and 0 if these prove nothing.  Where `speed` is finite, `speed`.
+        `speed` where it is found within a finite error.  Else the speed below which there is certainly
+        none [rad/s]: inf by `reason`, or what guaranteed bounds prove, which may be 0.
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
@@ -119,30 +120,39 @@ def critical_point(
     """
     start = perf_counter()
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-    goal = max(target, least_target(discretization))
-    modes = _SIZED_FOR if isinstance(discretization, str) else 1
-    models = list_models(scene, discretization, modes, goal, tolerance is not None)
+    models = partial(_list_models, target=target, cheapest=tolerance is not None)
+    first = models(scene, discretization)
     buckling = decide_buckling(scene)
     if buckling.exists is False and not scene.stretch:
         none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
         return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
-    found = _search(models, goal)
-    if np.isinf(found.speed) and discretization == "fem":
-        found = _search(list_models(scene, "ritz", modes, goal, tolerance is not None), goal)
-    searched = found.speed if np.isfinite(found.speed) else bound_critical_speed(scene)
+    target = max(target, least_target(discretization))
+    found = _search(first, target)
+    if np.isinf(found.error) and discretization == "fem":
+        found = _search(models(scene, "ritz"), target)
+    if scene.stretch and buckling.exists is not False:  # a basis that resolves stretch may not see bending
+        bending = _search(models(replace(scene, stretch=False), discretization), target)
+        found = min(found, bending, key=lambda f: f.speed)
+    searched = (
+        found.speed if np.isfinite(found.error) else 0.0 if scene.stretch else bound_critical_speed(scene)
+    )
+    names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
         error=found.error,
         searched=searched,
         reason=buckling.why,
         warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
-        provenance=Provenance(
-            __version__,
-            str(found.model.discretization),
-            str(found.coarse.discretization),
-            perf_counter() - start,
-        ),
+        provenance=Provenance(__version__, *names, perf_counter() - start),
     )
+
+
+def _list_models(
+    scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
+) -> Iterator[Model]:
+    """List the models in which a critical speed is sought; see `list_models`."""
+    modes = _SIZED_FOR if isinstance(discretization, str) else 1
+    return list_models(scene, discretization, modes, max(target, least_target(discretization)), cheapest)
 
 
 @dataclass(frozen=True)
@@ -199,7 +209,7 @@ def _critical_warnings(
     tolerance: float | None,
 ) -> Iterator[str]:
     if discretization == "fem" and found.model.discretization.order is None:
-        yield f"finite elements find no critical speed: it was sought with {found.model.discretization}"
+        yield f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
     if np.isinf(found.speed):
         exists = (
             "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
