@@ -192,3 +192,8 @@ def test_more_segments_than_can_be_solved_are_refused_at_once() -> None:
         for discretization in ("ritz", "fem", bd.Ritz(14)):
             with pytest.raises(ValueError, match=r"301 segments.*at most 200; give fewer stations"):
                 analysis(bd.Scene(beam), discretization=discretization)
+
+
+def test_a_tolerance_past_double_precision_gives_the_last_result_with_a_warning() -> None:
+    found = bd.natural_modes(HARVESTER, 1e9, tolerance=1e-3)
+    assert np.isinf(found.error).all() and any("is not reached" in text for text in found.warnings)
