@@ -120,31 +120,41 @@ def critical_point(
     """
     start = perf_counter()
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
-    first = models(scene, discretization)
-    buckling = decide_buckling(scene)
+    first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.exists is False and not scene.stretch:
         none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
         return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
-    target = max(target, least_target(discretization))
-    found = _search(first, target)
+    found, reason = _search(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = _search(models(scene, "ritz"), target)
-    if scene.stretch and buckling.exists is not False:  # a basis that resolves stretch may not see bending
-        bending = _search(models(replace(scene, stretch=False), discretization), target)
-        found = min(found, bending, key=lambda f: f.speed)
-    searched = (
-        found.speed if np.isfinite(found.error) else 0.0 if scene.stretch else bound_critical_speed(scene)
-    )
+    searched = found.speed
+    if scene.stretch:
+        stiff = replace(scene, stretch=False)
+        bending = None if buckling.exists is False else _search(models(stiff, discretization), target)
+        found, reason = _choose_lower(found, bending, reason)
+        searched = found.speed if np.isfinite(found.error) else 0.0
+    elif np.isinf(found.error):
+        searched = bound_critical_speed(scene)
     names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
         error=found.error,
         searched=searched,
-        reason=buckling.why,
+        reason=reason,
         warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
         provenance=Provenance(__version__, *names, perf_counter() - start),
     )
+
+
+def _choose_lower(both: _Found, bending: _Found | None, why_bending: str) -> tuple[_Found, str]:
+    """Choose the lower of two critical speeds, as a basis that resolves the stretch may not see bending."""
+    if bending is not None and np.isfinite(bending.speed):
+        same = min(bending.error + both.error, UNRESOLVED)
+        if bending.speed <= both.speed * (1 + same):
+            return bending, why_bending
+    return both, "the rotation softens the stretch by more than the axial stiffness"
 
 
 def _list_models(
@@ -152,7 +162,7 @@ def _list_models(
 ) -> Iterator[Model]:
     """List the models in which a critical speed is sought; see `list_models`."""
     modes = _SIZED_FOR if isinstance(discretization, str) else 1
-    return list_models(scene, discretization, modes, max(target, least_target(discretization)), cheapest)
+    return list_models(scene, discretization, modes, target, cheapest)
 
 
 @dataclass(frozen=True)
