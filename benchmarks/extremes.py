@@ -1,4 +1,6 @@
-"""Frequencies over the whole range of inputs: right, or refused.  Run: python -m benchmarks.extremes
+"""Frequencies and critical speeds over the whole range of inputs: right, or refused.
+
+Run: python -m benchmarks.extremes
 
 Every answer is held against another route: guaranteed bounds, the power series in mpmath, the closed form
 of the uniform beam at rest for up to 200 modes, or finite elements for the beam with stretch.  It is wrong
@@ -13,7 +15,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
@@ -23,8 +25,9 @@ from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 import beamdyn as bd
+from beamdyn.spectrum.bounds import Split, _flexibility, _nondimensional
 from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
-from benchmarks.cases.reference.of_scene import exact, relative_errors
+from benchmarks.cases.reference.of_scene import exact, exact_critical_speed, relative_errors
 from benchmarks.cases.scenes import time_unit
 from benchmarks.rows import Row, show
 
@@ -32,6 +35,9 @@ _EPS = float(np.finfo(float).eps)
 
 _QUARTER = np.pi / 2
 SEED = 11
+_NEAR = 1e-9  # relative distance from a critical speed at which rounding leaves bounds a sign
+_QUICK_TENSION = 1e4  # over EI / L^2, for which the series of a critical speed takes a second
+_FASTEST_GAMMA = 1e6  # up to which a proof is asked for where there is no critical speed
 _WARNED = 1e-6  # stated error from which an answer carries a warning
 _STEEL = 200e9, 7850.0
 
@@ -60,16 +66,34 @@ def draw_beam(rng: np.random.Generator, taper: bool = True, tip: bool = True) ->
     return bd.Beam.rectangular(length, *sides, *_STEEL, tip=body)
 
 
-def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Any scene and speed: hubs to 1e6 lengths, gamma to 1e4, past the critical speed, all angles."""
-    beam = draw_beam(rng)
+def draw_mount(rng: np.random.Generator, length: float) -> bd.Mount:
+    """Hubs to 1e6 lengths, all angles, many of them at or near a quarter turn."""
     angles = [0.0, np.pi, _QUARTER, _QUARTER + rng.choice([-1, 1]) * 1e-12, rng.uniform(-np.pi, np.pi)]
-    mount = bd.Mount(
-        beam.length * rng.choice([0.0, 10 ** rng.uniform(-3, 6)]),
+    return bd.Mount(
+        length * rng.choice([0.0, 10 ** rng.uniform(-3, 6)]),
         angles[rng.integers(len(angles))],
         rng.choice([0.0, _QUARTER, rng.uniform(-np.pi, np.pi)]),
     )
-    scene = bd.Scene(beam, mount)
+
+
+def draw_scene_that_may_buckle(rng: np.random.Generator) -> bd.Scene:
+    """Half of the tip bodies with inertia and also inboard; half of the directions nearly tangential."""
+    beam = draw_beam(rng)
+    mount = draw_mount(rng, beam.length)
+    if beam.tip is not None and rng.integers(0, 2):
+        moments = np.sort(beam.tip.mass * beam.length**2 * 10 ** rng.uniform(-6, -1, 3))
+        moments[2] = min(moments[2], moments[0] + moments[1])
+        tip = bd.TipMass(beam.tip.mass, beam.length * rng.uniform(-0.3, 0.3), *rng.permutation(moments))
+        beam = replace(beam, tip=tip)
+    if rng.integers(0, 2):
+        mount = replace(mount, setting_angle=_QUARTER + rng.choice([-1, 1]) * 10 ** rng.uniform(-6, -1.7))
+    return bd.Scene(beam, mount)
+
+
+def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
+    """Any scene and speed: gamma to 1e4, past the critical speed."""
+    beam = draw_beam(rng)
+    scene = bd.Scene(beam, draw_mount(rng, beam.length))
     gamma = rng.choice([0.0, 10 ** rng.uniform(-8, 4)]) / time_unit(beam)
     if rng.integers(0, 2) and np.isfinite(critical := bd.critical_speed(scene)):
         side = rng.choice([1 - 10 ** rng.uniform(-12, 0), 1 + 10 ** rng.uniform(-12, 0.5)])
@@ -119,6 +143,64 @@ def check_at_rest(rng: np.random.Generator) -> Outcome:
     return judge("closed form at rest, to 200 modes", modes, fits, _EPS, f"{beam}, {count} modes")
 
 
+def check_critical_by_bounds(rng: np.random.Generator) -> Outcome:
+    """A critical speed against guaranteed bounds beside it; none, at speeds up to where it was looked."""
+    scene = draw_scene_that_may_buckle(rng)
+    discretization = rng.choice(["ritz", "fem"], p=[0.9, 0.1])
+    point = bd.critical_point(scene, str(discretization), draw_tolerance(rng))
+    prover = Prover(scene)
+    if np.isinf(point.error) or np.isinf(point.speed):
+        top = min(point.searched, _FASTEST_GAMMA / time_unit(scene.beam))
+        speeds = top * np.append(1 - _NEAR, 10 ** rng.uniform(-6, 0, 3))
+        fits, known = not any(prover.is_stable(speed) is False for speed in speeds), np.nan
+    else:
+        stable = [prover.is_stable(point.speed * (1 + side * (point.error + _NEAR))) for side in (-1, 1)]
+        fits = stable[0] is not False and stable[1] is not True
+        known = point.error if stable == [True, False] else np.nan
+    kind = "guaranteed bounds, critical speed"
+    return judge_answer(
+        kind, bool(point.warnings), fits, known, f"{scene}: {point.speed!r} +- {point.error:.1e}"
+    )
+
+
+class Prover:
+    """Proofs that the stiffness of a scene at a speed is positive, or is not, in two sizes of the bounds."""
+
+    def __init__(self, scene: bd.Scene) -> None:
+        scaled, self.time = _nondimensional(scene)
+        flexibility = _flexibility(scaled.beam.bending_stiffness)
+        self.splits = [Split(scaled, size, 0.0, flexibility) for size in (32, 64)]
+
+    def is_stable(self, speed: float) -> bool | None:
+        """Whether the stiffness is proved positive or not; None if neither is."""
+        for split in self.splits:
+            lower = split.stiffness_form((speed * self.time) ** 2)
+            if lower is not None and np.isfinite(lower).all() and np.linalg.eigvalsh(lower)[0] >= 0:
+                return True
+            split.speed = speed * self.time
+            if np.linalg.eigvalsh(split.upper_form(0.0))[0] <= 0:
+                return False
+        return None
+
+
+def draw_tolerance(rng: np.random.Generator) -> float | None:
+    """None, or 0.1 to 1e-9."""
+    return None if rng.integers(0, 2) else float(10 ** rng.uniform(-9, -1))
+
+
+def check_critical_by_series(rng: np.random.Generator) -> Outcome:
+    """A critical speed against the power series, which is exact, at a tension of up to 1e4 EI / L^2."""
+    tension = np.inf
+    while tension > _QUICK_TENSION:  # past it, and where there is none, the series would take long
+        scene = draw_scene_that_may_buckle(rng)
+        point = bd.critical_point(scene, tolerance=draw_tolerance(rng))
+        tension = point.speed**2 * largest_tension(scene)
+    exact = exact_critical_speed(scene, digits=20)
+    fits = bool(abs(point.speed / exact - 1) <= max(point.error, 4 * _EPS))
+    kind = "power series, critical speed"
+    return judge_answer(kind, bool(point.warnings), fits, 1e-20, f"{scene}: {point.speed!r}, exactly {exact}")
+
+
 def find_root(n: int) -> float:
     """The n-th root of cos x = -1 / cosh x."""
     middle = (n - 0.5) * np.pi
@@ -150,15 +232,21 @@ def check_with_stretch(rng: np.random.Generator) -> Outcome:
 
 
 def judge(kind: str, modes: bd.Modes, fits: bool, known: float, detail: str) -> Outcome:
+    """The outcome for modes that agree with what is known, or do not."""
+    return judge_answer(kind, bool(modes.error.max() > _WARNED), fits, known, detail)
+
+
+def judge_answer(kind: str, warned: bool, fits: bool, known: float, detail: str) -> Outcome:
     """The outcome for an answer that agrees with what is known, or does not."""
     if not fits:
         return Outcome(kind, "wrong in silence", known, detail)
-    warned = modes.error.max() > _WARNED
     return Outcome(kind, "right, with a warning" if warned else "right", known)
 
 
 _KINDS: tuple[tuple[str, float, Callable[[np.random.Generator], Outcome]], ...] = (
-    ("guaranteed bounds", 0.94, check_by_bounds),
+    ("guaranteed bounds", 0.64, check_by_bounds),
+    ("guaranteed bounds, critical speed", 0.29, check_critical_by_bounds),
+    ("power series, critical speed", 0.01, check_critical_by_series),
     ("power series", 0.01, check_by_series),
     ("closed form at rest, to 200 modes", 0.03, check_at_rest),
     ("finite elements, with stretch", 0.02, check_with_stretch),

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn import critical_speed, frequency_locus, resonance_speeds
+from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.app.inputs import DRAGS, TABLES, read
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.app.screens import Screen
@@ -54,7 +54,7 @@ def solve(tables: Mapping[str, Any]) -> Frequencies:
             crossings = resonance_speeds(scene, top, modes)
         except ValueError as error:
             refused = f"no excitation lines: {error}"
-    return Frequencies(locus, crossings, critical_speed(scene), refused)
+    return Frequencies(locus, crossings, critical_point(scene).speed, refused)
 
 
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:

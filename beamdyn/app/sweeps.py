@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn import critical_speed, natural_modes, resonance_speeds, steady_response
+from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.common.app.form_entries import entries_of
 from beamdyn.common.app.screens import Sweeps
@@ -104,7 +104,7 @@ def frequency_outputs(modes: int) -> list[Output]:
     ]
     return [
         *frequencies,
-        Output("critical_speed", "critical speed", lambda case: critical_speed(case.scene), "rad/s"),
+        Output("critical_speed", "critical speed", lambda case: critical_point(case.scene).speed, "rad/s"),
         Output("first_resonance", "lowest speed of resonance", lambda case: case.first_resonance, "rad/s"),
     ]
 

@@ -233,10 +233,10 @@ def _describe_critical(result: CriticalPoint) -> str:
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:
-    from beamdyn import critical_speed
+    from beamdyn import critical_point
     from beamdyn.output.plots import mark_critical
 
-    mark_critical(result.plot(ax), critical_speed(result.scene))
+    mark_critical(result.plot(ax), critical_point(result.scene).speed)
 
 
 def _write_shapes(result: Modes, path: Path, force: bool) -> None:
@@ -250,12 +250,12 @@ def _write_shapes(result: Modes, path: Path, force: bool) -> None:
 
 def _unstable(result: Modes) -> str:
     """The sentence that names the unstable modes and the critical speed; empty if all are stable."""
-    from beamdyn import critical_speed
+    from beamdyn import critical_point
 
     unstable = [i for i, status in enumerate(result.status) if status in ("divergence", "flutter")]
     if not unstable:
         return ""
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
-    critical = critical_speed(result.scene)
+    critical = critical_point(result.scene).speed
     where = f"; the critical speed is {critical:.6g} rad/s" if critical <= result.speed else ""
     return f"unstable at {result.speed:g} rad/s: {which}{where}"

@@ -20,8 +20,6 @@ TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
 _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
-_USUAL_IN_ALL = 200  # of the first candidate: many short segments need few functions each
-_FEWEST_ON_SEGMENT = 5  # of several segments
 _MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
@@ -48,7 +46,10 @@ def solve_to_tolerance(
     while isinstance(discretization, str) and not result.meet(tolerance):
         if (finer := _refine(result.model)) is None:
             break
-        result = solve_with_error(finer, speeds, modes, extra)
+        try:
+            result = solve_with_error(finer, speeds, modes, extra)
+        except np.linalg.LinAlgError:  # rounding of so many functions: the last result is the best
+            break
     return result
 
 
@@ -129,8 +130,8 @@ def list_models(
     segments = len(scene.beam.breakpoints) - 1
     if segments > _MOST_SEGMENTS:
         raise ValueError(
-            f"the beam has {segments} segments between its stations and breakpoints: at most {_MOST_SEGMENTS}; "
-            "give fewer stations, or its properties as polynomials or functions of x/L"
+            f"the beam has {segments} segments between its stations and breakpoints: at most "
+            f"{_MOST_SEGMENTS}; give fewer stations, or its properties as polynomials or functions of x/L"
         )
     if isinstance(discretization, str):
         model = Model(scene, _find_first(discretization, segments, modes, target, cheapest))
@@ -166,11 +167,9 @@ def _find_first(name: str, segments: int, modes: int, target: float, cheapest: b
 
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
-    fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else _FEWEST_ON_SEGMENT
-    total = int(np.ceil(4 + 1.3 * modes - np.log10(target)))
-    many = max(fewest, _USUAL_IN_ALL // segments)
-    functions = max(fewest, -(-total // segments)) if cheapest else min(10 + 2 * modes, many)
-    return Ritz(min(functions, MOST_FUNCTIONS))
+    fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
+    total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
+    return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
 
 
 def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:

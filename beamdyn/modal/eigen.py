@@ -122,7 +122,7 @@ class Solver:
             return self.solve(speeds, count).eigenvalue
         scale = 1 / np.sqrt(stiffness)
         mu = np.linalg.eigvalsh(scale[:, :, None] * self.mass * scale[:, None, :])
-        return 1j / np.sqrt(mu[:, : -count - 1 : -1])
+        return 1j / np.sqrt(_above_rounding(mu[:, : -count - 1 : -1]))
 
     # Conservative equations: a real symmetric problem -----------------------------------------------
 
@@ -177,8 +177,8 @@ def _explained() -> Iterator[None]:
         yield
     except np.linalg.LinAlgError as error:
         raise np.linalg.LinAlgError(
-            "stiffness, mass and speed span more digits than double precision has: give a lower speed, a smaller "
-            "tip inertia, or properties and breakpoints that vary less"
+            "stiffness, mass and speed span more digits than double precision has: give a lower speed, "
+            "a smaller tip inertia, or properties and breakpoints that vary less"
         ) from error
 
 
@@ -224,7 +224,12 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     else:  # most of the time goes into the vectors, of which only a few are computed
         modes = [scipy.linalg.eigh(a, subset_by_index=(n - count, n - 1)) for a in A]
         mu, z = (np.array(values) for values in zip(*modes, strict=True))
-    return mu[:, : -count - 1 : -1], z[:, :, : -count - 1 : -1]
+    return _above_rounding(mu[:, : -count - 1 : -1]), z[:, :, : -count - 1 : -1]
+
+
+def _above_rounding(mu: np.ndarray) -> np.ndarray:
+    """Raise eigenvalues (S, k), descending, to half their rounding error, where it may make them negative."""
+    return np.maximum(mu, _FORWARD / 2 * mu[:, :1])
 
 
 def _find_shift(M: np.ndarray, d: np.ndarray, smallest: float) -> np.ndarray:

@@ -67,8 +67,8 @@ _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a t
 _NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
 _MOST_STEPS = 12  # of the search for z from a Ritz value
 _LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
-# Functions on all segments with which a bound of the critical speed is sought, the relative square at which it
-# is close enough to the Ritz value, and the shares of this square that are tried.
+# Functions on all segments with which a bound of the critical speed is sought; the part of the squared Ritz
+# value at which it is close enough; and the parts that are tried.
 _PROOF_SIZES, _CLOSE = (24, 48, 96), 1 - 1e-6
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
@@ -253,7 +253,10 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
     functions = 0
     for functions in _sizes(scene.beam, modes):
-        low, high = Split(scene, functions, speed, flexibility).bounds(modes)
+        try:
+            low, high = Split(scene, functions, speed, flexibility).bounds(modes)
+        except np.linalg.LinAlgError:  # rounding of so many functions at such a speed
+            break
         last_width, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
         width = upper - lower
         if (width <= _NARROW * np.abs(upper)).all() or (width > last_width / 2).all():

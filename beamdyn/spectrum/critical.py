@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -51,8 +52,8 @@ class CriticalPoint(Result):
     error : float
         Its estimated relative error; 0 if there is none, inf if it is unresolved.
     searched : float
-        Where `speed` is inf, the speed below which there is certainly none [rad/s]: inf by `reason`, else
-        by guaranteed bounds, and 0 if these prove nothing.  Where `speed` is finite, `speed`.
+        `speed` where it is found within a finite error.  Else the speed below which there is certainly
+        none [rad/s]: inf by `reason`, or what guaranteed bounds prove, which may be 0.
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
@@ -100,8 +101,9 @@ def critical_point(
 ) -> CriticalPoint:
     """Compute the critical speed and its error: the lowest with a singular stiffness K0 + omega^2 K2.
 
-    Whether there is one is decided first, by `decide_buckling`; if there is, it is sought with finer and finer
-    discretizations, because it may belong to a short bend at the tip.
+    Whether there is one is decided first, by an argument (`beamdyn.spectrum.buckling`).  If there is, it is
+    sought with finer and finer discretizations, because it may belong to a short bend at the tip; if these
+    end without one, guaranteed bounds say up to which speed there is none.
 
     Parameters
     ----------
@@ -119,30 +121,49 @@ def critical_point(
     start = perf_counter()
     check_scene(scene)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-    goal = max(target, least_target(discretization))
-    modes = _SIZED_FOR if isinstance(discretization, str) else 1
-    models = list_models(scene, discretization, modes, goal, tolerance is not None)
-    buckling = decide_buckling(scene)
+    target = max(target, least_target(discretization))
+    models = partial(_list_models, target=target, cheapest=tolerance is not None)
+    first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.exists is False and not scene.stretch:
         none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
         return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
-    found = _search(models, goal)
-    if np.isinf(found.speed) and discretization == "fem":
-        found = _search(list_models(scene, "ritz", modes, goal, tolerance is not None), goal)
-    searched = found.speed if np.isfinite(found.speed) else bound_critical_speed(scene)
+    found, reason = _search(first, target), buckling.why
+    if np.isinf(found.error) and discretization == "fem":
+        found = _search(models(scene, "ritz"), target)
+    searched = found.speed
+    if scene.stretch:
+        stiff = replace(scene, stretch=False)
+        bending = None if buckling.exists is False else _search(models(stiff, discretization), target)
+        found, reason = _choose_lower(found, bending, reason)
+        searched = found.speed if np.isfinite(found.error) else 0.0
+    elif np.isinf(found.error):
+        searched = bound_critical_speed(scene)
+    names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
         error=found.error,
         searched=searched,
-        reason=buckling.why,
+        reason=reason,
         warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
-        provenance=Provenance(
-            __version__,
-            str(found.model.discretization),
-            str(found.coarse.discretization),
-            perf_counter() - start,
-        ),
+        provenance=Provenance(__version__, *names, perf_counter() - start),
     )
+
+
+def _choose_lower(both: _Found, bending: _Found | None, why_bending: str) -> tuple[_Found, str]:
+    """Choose the lower of two critical speeds, as a basis that resolves the stretch may not see bending."""
+    if bending is not None and np.isfinite(bending.speed):
+        same = min(bending.error + both.error, UNRESOLVED)
+        if bending.speed <= both.speed * (1 + same):
+            return bending, why_bending
+    return both, "the rotation softens the stretch by more than the axial stiffness"
+
+
+def _list_models(
+    scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
+) -> Iterator[Model]:
+    """List the models in which a critical speed is sought; see `list_models`."""
+    modes = _SIZED_FOR if isinstance(discretization, str) else 1
+    return list_models(scene, discretization, modes, target, cheapest)
 
 
 @dataclass(frozen=True)
@@ -159,7 +180,12 @@ def _search(models: Iterator[Model], target: float) -> _Found:
     """Refine until the error meets the target or rounding, or the models end."""
     found = None
     for model in models:
-        found = _compare(model)
+        try:
+            found = _compare(model)
+        except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
+            if found is None:
+                raise
+            break
         if np.isfinite(found.speed) and found.error <= max(target, 3 * model.solver.critical_rounding):
             break
     assert found is not None
@@ -199,7 +225,7 @@ def _critical_warnings(
     tolerance: float | None,
 ) -> Iterator[str]:
     if discretization == "fem" and found.model.discretization.order is None:
-        yield f"finite elements find no critical speed: it was sought with {found.model.discretization}"
+        yield f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
     if np.isinf(found.speed):
         exists = (
             "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
@@ -211,7 +237,7 @@ def _critical_warnings(
     elif tolerance is not None:
         yield from warn_of_missed_tolerance(found.error, tolerance)
     elif found.error > 1e-6:
-        yield f"estimated relative error of the critical speed {found.error:.1g}: the model did not resolve it"
+        yield f"estimated relative error {found.error:.1g}: the model did not resolve the critical speed"
 
 
 # Setting angles at which the locus changes its character -----------------------------------------

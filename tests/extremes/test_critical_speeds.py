@@ -1,12 +1,13 @@
 """Critical speeds where they are hard to see: high up, by a short bend at the tip, or not there at all.
 
 The references are power series in mpmath (`exact_critical_speed`), which share nothing with beamdyn, and the
-sign of the stiffness by rotation in a basis of 160 functions.
+sign of the stiffness by rotation in a basis of 120 functions.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -72,33 +73,38 @@ def mounted_at_random(rng: np.random.Generator) -> bd.Scene:
     )
 
 
-@pytest.mark.parametrize("discretization", ["ritz", "fem"])
-def test_errors_cover_the_true_ones(discretization: str) -> None:
-    rng = np.random.default_rng(5)
-    found = 0
-    for _ in range(20):
-        scene = mounted_at_random(rng)
-        solver = Model(scene, bd.Ritz(140)).solver
-        for tolerance in TOLERANCES[1:]:
-            point = bd.critical_point(scene, discretization, tolerance)
-            assert np.isfinite(point.speed) == np.isfinite(solver.critical_speed), scene
-            if np.isfinite(point.speed):
-                true = abs(point.speed / solver.critical_speed - 1)
-                assert true <= point.error + solver.critical_rounding, scene
-                assert point.error <= tolerance or point.warnings
-                found += 1
-    assert found > 40
+# Some of the seeds to 400 with a critical speed that a basis of ten functions does not see or understates.
+HARD = (40, 149, 169, 225, 244, 326, 369)
+
+
+def assert_within_errors(seed: int, discretization: str, tolerances: Sequence[float]) -> None:
+    scene = mounted_at_random(np.random.default_rng(seed))
+    solver = Model(scene, bd.Ritz(140)).solver
+    for tolerance in tolerances:
+        point = bd.critical_point(scene, discretization, tolerance)
+        assert abs(point.speed / solver.critical_speed - 1) <= point.error + solver.critical_rounding
+        assert point.error <= tolerance or point.warnings
+
+
+@pytest.mark.parametrize("seed", HARD)
+def test_errors_cover_the_true_ones(seed: int) -> None:
+    assert_within_errors(seed, "ritz", [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
+
+
+@pytest.mark.parametrize("seed", HARD)
+def test_errors_of_finite_elements_cover_the_true_ones(seed: int) -> None:
+    assert_within_errors(seed, "fem", [1e-1, 1e-3])
 
 
 def test_the_argument_agrees_with_the_sign_in_a_large_basis() -> None:
     rng = np.random.default_rng(6)
     verdicts = []
-    for _ in range(80):
+    for _ in range(60):
         scene = mounted_at_random(rng)
         verdict = decide_buckling(scene).exists
-        assert verdict == np.isfinite(Model(scene, bd.Ritz(160)).solver.critical_speed), scene
+        assert verdict == np.isfinite(Model(scene, bd.Ritz(120)).solver.critical_speed), scene
         verdicts.append(verdict)
-    assert 20 < sum(verdicts) < 100
+    assert 10 < sum(verdicts) < 50
 
 
 @pytest.mark.parametrize(
@@ -154,5 +160,14 @@ def test_guaranteed_bound_is_below_the_critical_speed_and_close() -> None:
 
 def test_stretch_has_a_critical_speed_of_its_own() -> None:
     """K_S - omega^2 M11 of a uniform rod is singular at pi/2 sqrt(EA / rho A) / L."""
-    scene = replace(steel_strip(hub=1.0), stretch=True)
-    assert bd.critical_speed(scene) == pytest.approx(math.pi / 2 * math.sqrt(200e9 / 7850), rel=1e-12)
+    point = bd.critical_point(replace(steel_strip(hub=1.0), stretch=True))
+    assert point.speed == pytest.approx(math.pi / 2 * math.sqrt(200e9 / 7850), rel=1e-12)
+    assert "softens the stretch" in point.reason and not point.warnings
+
+
+def test_bending_is_found_below_the_critical_speed_of_stretch() -> None:
+    """A basis that resolves the stretch sees no bending that buckles, at a seventh of its speed."""
+    for tolerance in (None, 1e-2):
+        point = bd.critical_point(replace(TANGENTIAL, stretch=True), tolerance=tolerance)
+        assert abs(point.speed / HIGH["nearly tangential"][1] - 1) <= point.error <= (tolerance or 1e-9)
+        assert "softens the beam" in point.reason

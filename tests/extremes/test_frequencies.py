@@ -6,14 +6,16 @@ critical speed the squared frequency is a small difference: there 4 eps times it
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import time
 
 import numpy as np
 import pytest
 
 import beamdyn as bd
 from benchmarks.cases.reference.of_scene import exact, relative_errors
-from benchmarks.cases.scenes import steel_strip, time_unit
+from benchmarks.cases.scenes import HARVESTER, steel_strip, time_unit
 
 EPS = float(np.finfo(float).eps)
 INWARD, OUTWARD, TANGENTIAL = 0.0, math.pi, math.pi / 2
@@ -122,3 +124,76 @@ def test_tolerances(changes: dict[str, float], gamma: float, tolerance: float) -
     fine = bd.natural_modes(made, at(gamma, made))
     true = np.abs(found.eigenvalue - fine.eigenvalue) / np.abs(fine.eigenvalue)
     assert found.error.max() <= tolerance and (true <= found.error + fine.error).all()
+
+
+@pytest.mark.parametrize("elements", [5, 10, 20, 80])
+def test_a_conservative_beam_never_flutters(elements: int) -> None:
+    """Its squared eigenvalues are real; the two meshes pass zero at different speeds."""
+    tip = bd.TipMass(1e-3, inertia=1e-5)
+    made = bd.Scene(dataclasses.replace(HARVESTER.beam, tip=tip), HARVESTER.mount)
+    speeds = bd.critical_speed(made) * (1 + np.concatenate([[0], np.geomspace(1e-9, 1e-2, 40)]))
+    locus = bd.frequency_locus(made, speeds, 2, bd.Fem(elements))
+    assert (np.real(locus.eigenvalue) * np.imag(locus.eigenvalue) == 0).all()
+    assert set(locus.status[:, 0]) <= {"stable", "divergence"}
+
+
+def test_higher_modes_keep_their_errors_where_the_first_vanishes() -> None:
+    made = steel_strip(hub=1.0, setting=1.55)
+    speed = bd.critical_speed(made)
+    found, fine = (bd.natural_modes(made, speed, 3, bd.Ritz(n)) for n in (8, 60))
+    true = np.abs(found.eigenvalue / fine.eigenvalue - 1)
+    assert np.isinf(found.error[0])
+    assert (true[1:] <= found.error[1:]).all() and (found.error[1:] < 0.05).all()
+
+
+def test_a_mode_that_a_coarse_mesh_puts_below_an_unresolved_one_is_unresolved() -> None:
+    """The toppling mode of a small tip body is the lowest, at zero; a mesh puts it above another mode."""
+    tip = bd.TipMass(0.00713906, -0.00949844, 0.000923927, 0.00080495, 0.000375134)
+    made = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0, tip=tip))
+    found = bd.natural_modes(made, 1489.55707427074, 3, "fem")
+    fine = bd.natural_modes(made, 1489.55707427074, 3, bd.Ritz(120))
+    true = np.abs(found.eigenvalue - fine.eigenvalue) / np.abs(fine.eigenvalue)
+    assert (true <= found.error).all()
+
+
+# Inputs past double precision -------------------------------------------------------------------------
+
+
+SPLIT = bd.Table([0, 5e-9, 0.5, 1], [2e-4, 2.1e-4, 1.9e-4, 1.5e-4])  # a first station at 0.25 nm
+
+
+def test_a_speed_past_double_precision_ends_with_a_reason() -> None:
+    beam = bd.Beam.rectangular(0.05, 0.01, SPLIT, 200e9, 7850.0)
+    started = time.perf_counter()
+    with pytest.raises(ValueError, match="more digits than double precision has: give a lower speed"):
+        bd.natural_modes(bd.Scene(beam, bd.Mount(0.2)), 1e9)
+    assert time.perf_counter() - started < 5
+
+
+@pytest.mark.parametrize("discretization", ["ritz", "fem"])
+@pytest.mark.parametrize("speed", [0.0, 50.0, 1e9])
+def test_an_immense_tip_inertia_ends_with_an_answer_or_a_reason(speed: float, discretization: str) -> None:
+    beam = dataclasses.replace(HARVESTER.beam, tip=bd.TipMass(1e-3, 0.0, 1e20))
+    started = time.perf_counter()
+    try:
+        found = bd.natural_modes(bd.Scene(beam, bd.Mount(0.2)), speed, 3, discretization)
+        assert np.isinf(found.error[1:]).all() and any("relative error" in text for text in found.warnings)
+    except ValueError as error:
+        assert "more digits than double precision has" in str(error)
+    assert time.perf_counter() - started < 20
+
+
+def test_more_segments_than_can_be_solved_are_refused_at_once() -> None:
+    stations = np.linspace(0, 1, 302)
+    beam = bd.Beam.rectangular(
+        0.05, 0.01, bd.Table(stations.tolist(), (2e-4 * (1 - 0.1 * stations)).tolist()), 200e9, 7850.0
+    )
+    for analysis in (bd.natural_modes, bd.critical_point):
+        for discretization in ("ritz", "fem", bd.Ritz(14)):
+            with pytest.raises(ValueError, match=r"301 segments.*at most 200; give fewer stations"):
+                analysis(bd.Scene(beam), discretization=discretization)
+
+
+def test_a_tolerance_past_double_precision_gives_the_last_result_with_a_warning() -> None:
+    found = bd.natural_modes(HARVESTER, 1e9, tolerance=1e-3)
+    assert np.isinf(found.error).all() and any("is not reached" in text for text in found.warnings)

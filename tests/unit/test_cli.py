@@ -74,6 +74,18 @@ def test_critical(run):
     assert "no critical speed" in run("critical", BLADE)[1]
 
 
+def test_critical_says_why_there_is_none_or_how_far_it_was_looked(run, tmp_path):
+    assert "no critical speed: the rotation stiffens the beam" in run("critical", BLADE)[1]
+    scene = tmp_path / "inboard.toml"
+    body = '[beam.tip]\nmass = "1 g"\noffset = "-0.0001 mm"\n\n[mount]'
+    text = Path(SCENE).read_text().replace("[mount]", body)
+    scene.write_text(text.replace('radius = "215 mm"', 'radius = "0 mm"'))
+    code, out, err = run("critical", scene)
+    assert code == DONE
+    assert "no critical speed found; there is certainly none below" in out
+    assert "a critical speed exists (the rotation topples the tip body" in err
+
+
 def test_limits(run):
     code, out, err = run("limits", SCENE, "--top-speed", "400 rad/s")
     assert code == DONE
