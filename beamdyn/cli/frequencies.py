@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beamdyn.cli.program import app, deliver, warn
-from beamdyn.cli.values import Discretization, SceneFile, Text, parse_positive, parse_speeds, speed_or_final
+from beamdyn.cli.values import (
+    Count,
+    Discretization,
+    SceneFile,
+    Text,
+    parse_positive,
+    parse_speeds,
+    speed_or_final,
+)
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
 from beamdyn.common.edge.program import NoAnswer
 
@@ -23,7 +31,7 @@ def modes(
     /,
     *,
     speed: Text | None = None,
-    modes: int = 3,
+    modes: Count = 3,
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
     shapes: Path | None = None,
@@ -72,7 +80,7 @@ def locus(
     /,
     *,
     speeds: Text,
-    modes: int = 3,
+    modes: Count = 3,
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
     outputs: Outputs = NO_FILES,

@@ -7,6 +7,7 @@ from typing import Any
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
+    Count,
     Discretization,
     SceneFile,
     Text,
@@ -22,8 +23,8 @@ def resonances(
     /,
     *,
     top_speed: Text,
-    modes: int = 3,
-    order: int = 1,
+    modes: Count = 3,
+    order: Count = 1,
     discretization: Discretization = "ritz",
     outputs: Outputs = NO_FILES,
 ) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.cli.program import app, deliver
-from beamdyn.cli.values import SceneFile, Text, parse_positive, parse_speed
+from beamdyn.cli.values import Count, SceneFile, Text, parse_positive, parse_speed
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def tradeoff(
     /,
     *,
     speed: Text | None = None,
-    modes: int = 3,
+    modes: Count = 3,
     t_end: Text | None = None,
     budget: Text = "60 s",
     outputs: Outputs = NO_FILES,

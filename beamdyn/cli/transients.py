@@ -13,9 +13,11 @@ from cyclopts import Parameter
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
+    Count,
     Discretization,
     SceneFile,
     Text,
+    load_moving,
     parse_positive,
     parse_speeds,
     parse_window,
@@ -73,7 +75,6 @@ def simulate(
     outputs
         Output files.
     """
-    from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import transient_csv, transient_table
     from beamdyn.transient.simulate import simulate
@@ -81,7 +82,7 @@ def simulate(
     outputs.check(series=series, animation=animation)
     end = parse_positive("--t-end", t_end, "s")
     span = None if window is None else parse_window(window, end)
-    loaded = load_scene(scene)
+    loaded = load_moving(scene)
     question = Question.on_file(
         "beamdyn simulate", scene, t_end=t_end, modes=modes, tolerance=tolerance, method=method,
         discretization=discretization, window=window,
@@ -100,7 +101,7 @@ def sweep(
     window: Text,
     modes: BasisSize = "auto",
     tolerance: float = 1e-5,
-    workers: int = 1,
+    workers: Count = 1,
     scheduler: Annotated[
         str | None, Parameter(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
     ] = None,
@@ -128,13 +129,12 @@ def sweep(
     outputs
         Output files.
     """
-    from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import sweep_csv, sweep_table
     from beamdyn.transient.sweep import sweep
 
     outputs.check()
-    given, span, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
+    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene)
     question = Question.on_file(
         "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
     )

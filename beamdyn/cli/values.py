@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
 if TYPE_CHECKING:
     import numpy as np
@@ -19,9 +20,23 @@ if TYPE_CHECKING:
 SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Discretization = Literal["ritz", "fem"]
-BasisSize = int | Literal["auto"]
+
+
+def _whole(kind: object, tokens: Sequence[Token]) -> int | str:
+    """A whole number, or "auto" where that is allowed; cyclopts alone would cut 2.5 down to 2."""
+    text, auto = tokens[0].value.strip(), kind is not int
+    if auto and text == "auto":
+        return text
+    if not _WHOLE.fullmatch(text):
+        raise ValueError(f'"{text}" is not a whole number{" or auto" if auto else ""}.')
+    return int(text)
+
+
+Count = Annotated[int, Parameter(converter=_whole)]
+BasisSize = Annotated[int | Literal["auto"], Parameter(converter=_whole)]
 
 _MOST_SPEEDS = 100_000
+_WHOLE = re.compile(r"[-+]?\d{1,18}", re.ASCII)
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
 _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
@@ -113,8 +128,15 @@ def _list(text: str, numbers: str, unit: str) -> np.ndarray:
     values = [_member(text, part.strip(), unit) for part in numbers.split(",")]
     for low, high in pairwise(values):
         if high <= low:
-            raise ValueError(f"--speeds: {low:g} is followed by {high:g} rad/s; sort them and drop repeats")
+            raise ValueError(_not_ascending(text, numbers, unit))
     return np.array(values)
+
+
+def _not_ascending(text: str, numbers: str, unit: str) -> str:
+    """What to give in place of speeds that do not ascend, each as it was written."""
+    parts = {float(part): part.strip() for part in numbers.split(",")}
+    ordered = ", ".join(parts[number] for number in sorted(parts))
+    return f'--speeds = "{text}": the speeds must ascend without repeats; give "{ordered} {unit}"'
 
 
 def _member(text: str, number: str, unit: str) -> float:
@@ -125,6 +147,18 @@ def _member(text: str, number: str, unit: str) -> float:
             'e.g. "0, 50, 100 rad/s"'
         )
     return parse_speed("--speeds", f"{number} {unit}")
+
+
+def load_moving(path: Path) -> Scene:
+    """Read a scene that must have a motion."""
+    from beamdyn.config import ConfigError, load_scene
+
+    scene = load_scene(path)
+    if scene.motion is None:
+        example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
+        sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"
+        raise ConfigError(str(path), [sentence], ["motion"])
+    return scene
 
 
 def speed_or_final(scene: Scene, speed: str | None) -> float:
