@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from types import NoneType, UnionType
+from typing import Any, get_args
 
 import numpy as np
 
@@ -191,10 +192,35 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def kind(name: str, value: object, wanted: type, remedy: str = "") -> None:
-    """Refuse what is not of the wanted class."""
+def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -> None:
+    """Refuse what is not of the wanted class, or of one of several."""
     if not isinstance(value, wanted):
-        raise InvalidValue(name, value, f"give a {wanted.__name__}", remedy)
+        classes: tuple[Any, ...] = get_args(wanted) or (wanted,)
+        names = " or ".join(map(_name_of, classes))
+        raise InvalidValue(name, value, f"give {names}", remedy)
+
+
+def _name_of(wanted: type) -> str:
+    return {NoneType: "None", str: "text"}.get(wanted, f"a {wanted.__name__}")
+
+
+def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any, ...]:
+    """The values as a tuple, each of the wanted class."""
+    try:
+        given = None if isinstance(values, str | bytes | dict) else tuple(values)
+    except TypeError:
+        given = None
+    if given is None:
+        raise InvalidValue(name, values, "give a sequence, such as a tuple", remedy)
+    for k, each in enumerate(given):
+        kind(f"{name}[{k}]", each, wanted, remedy)
+    return given
+
+
+def text(name: str, value: object) -> None:
+    """Refuse what is not text, such as a name."""
+    if not isinstance(value, str):
+        raise InvalidValue(name, value, "give text")
 
 
 def function(name: str, value: object, remedy: str = "") -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
-from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, forces_on_bodies, solve
 from brakes.planar.system import System
 
@@ -63,6 +63,7 @@ def solve_with_friction(
     ValueError
         If the mobility is not 1, or equilibrium without friction is not determined.
     """
+    check_mechanism(mechanism, position)
     mechanism.load(driver)
     position = assemble(mechanism) if position is None else position.of(mechanism)
     without = solve(mechanism, position)

@@ -49,7 +49,9 @@ class RoadWave:
         amplitudes = {"velocity_amplitude": (self.velocity_amplitude, "m/s"), "height": (self.height, "m")}
         amplitudes = {name: value for name, value in amplitudes.items() if value[0] is not None}
         if len(amplitudes) != 1:
-            both = " and ".join(f"{name} = {value!r}" for name, (value, _) in amplitudes.items())
+            both = " and ".join(
+                f"{name} = {' '.join(repr(v).split())}" for name, (v, _) in amplitudes.items()
+            )
             raise ValueError(
                 f"{both or 'neither velocity_amplitude nor height'} given: give exactly one, "
                 "velocity_amplitude [m/s] of the wheel or height [m] of the road"
