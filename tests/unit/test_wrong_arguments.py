@@ -351,6 +351,13 @@ def test_sentence(call, name, value, sentence):
     assert sentence in str(refusal.value)
 
 
+def test_a_road_of_too_short_waves_is_refused():
+    with pytest.raises(ValueError, match="road.wavelength = 1e-30 m: .*1e12 waves a turn"):
+        bd.RollingWheel(0.3, 5.0, bd.RoadWave(1e-30, 0.01))
+    with pytest.raises(ValueError, match="road.wavelength"):
+        bd.RollingWheel(1e300, 5.0, bd.RoadWave(1e-300, 0.01))
+
+
 # Doubtful units ---------------------------------------------------------------------------------------
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}

@@ -84,6 +84,7 @@ def _as_sentences(name: str) -> Iterator[None]:
         warn(name, [str(message)])
 
     with warnings.catch_warnings():
+        warnings.simplefilter("default", UserWarning)  # whatever filters are set outside
         warnings.showwarning = show
         yield
 

@@ -9,11 +9,13 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import function, kind, positive, real, set_fields
+from beamdyn.common.checks import function, kind, positive, real, refuse, set_fields
 from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times
 from beamdyn.scene.motion.checks import check_consistent
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
+
+_MOST_WAVES = 1e12  # of the road per turn; with more, the phase of the road has few right digits
 
 
 @dataclass(frozen=True)
@@ -118,6 +120,9 @@ class RollingWheel(Motion):
             set_fields(self, speed=SteadyRotation(real("speed", self.speed, "rad/s", remedy)))
         if self.road is not None:
             kind("road", self.road, RoadWave, "road = RoadWave(wavelength=0.3, height=0.001)")
+            bound = "a wheel of this radius would pass more than 1e12 waves a turn"
+            past = self.rolling_radius * self.road.wavenumber > _MOST_WAVES
+            refuse(past, "road.wavelength", self.road.wavelength, "m", bound, "give m")
 
     @property
     def rotation(self) -> Rotation:
