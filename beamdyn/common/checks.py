@@ -10,6 +10,7 @@ from typing import Any, get_args
 
 import numpy as np
 
+MOST = 1e50  # largest size in SI units: products of six are still far from overflow
 _LONGEST = 60  # characters of a value that a message shows
 
 
@@ -150,6 +151,21 @@ def positive(name: str, value: object, unit: str = "", remedy: str = "") -> floa
     """A finite number above zero."""
     number = real(name, value, unit, remedy)
     refuse(number <= 0, name, number, unit, "it must be greater than 0", remedy)
+    return number
+
+
+def moderate(name: str, value: object, unit: str = "") -> float:
+    """A finite number whose powers and products with its like do not overflow."""
+    number = real(name, value, unit)
+    refuse(abs(number) > MOST, name, number, unit, "give at most {limit} either way", limit=MOST)
+    return number
+
+
+def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
+    """A number above zero, neither so large nor so small that powers and products overflow."""
+    number = positive(name, value, unit, remedy)
+    bound = f"give a size from {1 / MOST:g} to {{limit}}"
+    refuse(not 1 / MOST <= number <= MOST, name, number, unit, bound, remedy, limit=MOST)
     return number
 
 

@@ -355,7 +355,26 @@ def test_a_road_of_too_short_waves_is_refused():
     with pytest.raises(ValueError, match=r"wavelength = 1e-30 m: .*1e12 waves a turn"):
         bd.RollingWheel(0.3, 5.0, bd.RoadWave(1e-30, 0.01))
     with pytest.raises(ValueError, match="1e12 waves a turn"):
-        bd.RollingWheel(1e300, 5.0, bd.RoadWave(1e-300, 0.01))
+        bd.RollingWheel(1e20, 5.0, bd.RoadWave(1e-20, 0.01))
+
+
+@pytest.mark.parametrize("size", [5e-324, 1e-300, 1e-60, 1e60, 1e300, 1.7e308])
+def test_a_size_beyond_all_use_is_refused_before_it_overflows(size):
+    for call in ("Beam.rectangular", "Beam.from_stiffness"):
+        make, good = CALLS[call]
+        for name in set(good) - {"tip", "breakpoints"}:
+            varying = (bd.Table([0, 1], [size, size]), lambda xi, size=size: size * (1 + xi))
+            for value in (size, *varying) if name not in ("length", "youngs_modulus", "density") else (size,):
+                with pytest.raises(ValueError, match=name):
+                    make(**(good | {name: value}))
+    for call, name in [
+        ("SpinUp", "duration"),
+        ("RollingWheel", "rolling_radius"),
+        ("RoadWave", "wavelength"),
+    ]:
+        make, good = CALLS[call]
+        with pytest.raises(ValueError, match=name):
+            make(**(good | {name: size}))
 
 
 # Doubtful units ---------------------------------------------------------------------------------------

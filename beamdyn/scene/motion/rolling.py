@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import function, kind, positive, real, refuse, set_fields
+from beamdyn.common.checks import function, kind, moderate, positive, real, refuse, set_fields, size
 from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times
 from beamdyn.scene.motion.checks import check_consistent
@@ -47,7 +47,7 @@ class RoadWave:
     ] = None
 
     def __post_init__(self) -> None:
-        set_fields(self, wavelength=positive("wavelength", self.wavelength, "m"))
+        set_fields(self, wavelength=size("wavelength", self.wavelength, "m"))
         amplitudes = {"velocity_amplitude": (self.velocity_amplitude, "m/s"), "height": (self.height, "m")}
         amplitudes = {name: value for name, value in amplitudes.items() if value[0] is not None}
         if len(amplitudes) != 1:
@@ -59,7 +59,7 @@ class RoadWave:
                 "velocity_amplitude [m/s] of the wheel or height [m] of the road"
             )
         for name, (value, unit) in amplitudes.items():
-            set_fields(self, **{name: real(name, value, unit)})
+            set_fields(self, **{name: moderate(name, value, unit)})
 
     @property
     def wavenumber(self) -> float:
@@ -114,7 +114,7 @@ class RollingWheel(Motion):
     road: RoadWave | None = None
 
     def __post_init__(self) -> None:
-        set_fields(self, rolling_radius=positive("rolling_radius", self.rolling_radius, "m"))
+        set_fields(self, rolling_radius=size("rolling_radius", self.rolling_radius, "m"))
         if not isinstance(self.speed, Rotation):
             remedy = "or a rotation, such as SpinUp(speed, duration)"
             set_fields(self, speed=SteadyRotation(real("speed", self.speed, "rad/s", remedy)))
