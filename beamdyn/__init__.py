@@ -13,14 +13,19 @@ from beamdyn._version import __version__ as __version__
 # The public names by their module.
 _NAMES = {
     "common.results": ("load",),
-    "config": ("load_scene",),
+    "config": ("ConfigError", "load_scene"),
+    "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
-    "equations.terms": ("terms",),
+    "equations.terms": ("Terms", "terms"),
     "scene.beam": ("Beam", "TipMass"),
     "scene.motion": (
+        "Line",
+        "Motion",
+        "MotionSample",
         "RoadWave",
         "RollingWheel",
+        "Rotation",
         "RotationFunction",
         "SampledRotation",
         "SpinUp",
@@ -28,10 +33,16 @@ _NAMES = {
         "UserMotion",
     ),
     "scene.mount": ("Mount",),
-    "scene.profile": ("Table",),
+    "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
-    "spectrum.critical": ("critical_point", "critical_speed", "setting_angle_limits"),
+    "spectrum.critical": (
+        "CriticalPoint",
+        "SettingAngleLimits",
+        "critical_point",
+        "critical_speed",
+        "setting_angle_limits",
+    ),
     "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
@@ -45,15 +56,23 @@ _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names
 __all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
 
 if TYPE_CHECKING:
+    from numpy.polynomial import Polynomial
+
+    from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.results import load
     from beamdyn.config import load_scene
+    from beamdyn.equations.discretization import Discretization
     from beamdyn.equations.fem import Fem
     from beamdyn.equations.ritz import Ritz
-    from beamdyn.equations.terms import terms
+    from beamdyn.equations.terms import Terms, terms
     from beamdyn.scene.beam import Beam, TipMass
     from beamdyn.scene.motion import (
+        Line,
+        Motion,
+        MotionSample,
         RoadWave,
         RollingWheel,
+        Rotation,
         RotationFunction,
         SampledRotation,
         SpinUp,
@@ -61,10 +80,16 @@ if TYPE_CHECKING:
         UserMotion,
     )
     from beamdyn.scene.mount import Mount
-    from beamdyn.scene.profile import Table
+    from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
-    from beamdyn.spectrum.critical import critical_point, critical_speed, setting_angle_limits
+    from beamdyn.spectrum.critical import (
+        CriticalPoint,
+        SettingAngleLimits,
+        critical_point,
+        critical_speed,
+        setting_angle_limits,
+    )
     from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response

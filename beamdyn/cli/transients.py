@@ -17,6 +17,7 @@ from beamdyn.cli.values import (
     SceneFile,
     Text,
     Workers,
+    load_moving,
     naming_option,
     parse_positive,
     parse_speeds,
@@ -75,7 +76,6 @@ def simulate(
     outputs
         Output files.
     """
-    from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import transient_csv, transient_table
     from beamdyn.transient.simulate import simulate
@@ -83,7 +83,7 @@ def simulate(
     outputs.check(scene, series=series, animation=animation)
     end = parse_positive("--t-end", t_end, "s")
     span = None if window is None else parse_window(window, end)
-    loaded = load_scene(scene)
+    loaded = load_moving(scene)
     question = Question.on_file(
         "beamdyn simulate", scene, t_end=t_end, modes=modes, tolerance=tolerance, method=method,
         discretization=discretization, window=window,
@@ -131,13 +131,12 @@ def sweep(
     outputs
         Output files.
     """
-    from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import sweep_csv, sweep_table
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
-    given, span, loaded = parse_speeds(speeds), parse_window(window), load_scene(scene)
+    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene)
     question = Question.on_file(
         "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
     )

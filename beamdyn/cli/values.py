@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
@@ -11,7 +11,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
 from beamdyn.common.checks import InvalidValue
 
@@ -24,19 +24,31 @@ SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Discretization = Literal["ritz", "fem"]
 
+
+def _whole(kind: object, tokens: Sequence[Token]) -> int | str:
+    """A whole number, or "auto" where that is allowed; cyclopts alone would cut 2.5 down to 2."""
+    text, auto = tokens[0].value.strip(), kind is not int
+    if auto and text == "auto":
+        return text
+    if not _WHOLE.fullmatch(text):
+        raise ValueError(f'"{text}" is not a whole number{" or auto" if auto else ""}.')
+    return int(text)
+
+
 _MOST_SPEEDS = 10_000
+_WHOLE = re.compile(r"[-+]?\d{1,18}", re.ASCII)
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
 _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 
 def _at_most(most: int) -> Parameter:
-    """Upper limit of a whole number, beyond which a command takes hours or fills the memory."""
+    """A whole number with an upper limit, beyond which a command takes hours or fills the memory."""
 
     def check(_: object, value: object) -> None:
         if isinstance(value, int) and value > most:
             raise ValueError(f"Give at most {most}.")
 
-    return Parameter(validator=check)
+    return Parameter(converter=_whole, validator=check)
 
 
 ModeCount = Annotated[int, _at_most(100)]
@@ -145,8 +157,15 @@ def _list(text: str, numbers: str, unit: str) -> np.ndarray:
     values = [_member(text, part.strip(), unit) for part in numbers.split(",")]
     for low, high in pairwise(values):
         if high <= low:
-            raise ValueError(f"--speeds: {low:g} is followed by {high:g} rad/s; sort them and drop repeats")
+            raise ValueError(_not_ascending(text, numbers, unit))
     return np.array(values)
+
+
+def _not_ascending(text: str, numbers: str, unit: str) -> str:
+    """What to give in place of speeds that do not ascend, each as it was written."""
+    parts = {float(part): part.strip() for part in numbers.split(",")}
+    ordered = ", ".join(parts[number] for number in sorted(parts))
+    return f'--speeds = "{text}": the speeds must ascend without repeats; give "{ordered} {unit}"'
 
 
 def _member(text: str, number: str, unit: str) -> float:
@@ -157,6 +176,18 @@ def _member(text: str, number: str, unit: str) -> float:
             'e.g. "0, 50, 100 rad/s"'
         )
     return parse_speed("--speeds", f"{number} {unit}")
+
+
+def load_moving(path: Path) -> Scene:
+    """Read a scene that must have a motion."""
+    from beamdyn.config import ConfigError, load_scene
+
+    scene = load_scene(path)
+    if scene.motion is None:
+        example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
+        sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"
+        raise ConfigError(str(path), [sentence], ["motion"])
+    return scene
 
 
 def speed_or_final(scene: Scene, speed: str | None) -> float:

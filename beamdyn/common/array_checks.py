@@ -19,6 +19,8 @@ def numbers(name: str, value: Any, unit: str = "") -> Numbers:
     array = as_floats(value)
     if array is None:
         raise InvalidValue(name, value, "give a finite number, or an array" + in_unit(unit), unit=unit)
+    if not array.size:
+        raise InvalidValue(name, value, "it is empty; give a number, or an array" + in_unit(unit), unit=unit)
     refuse(~np.isfinite(array), name, array, unit, "it must be a finite number")
     return array if array.ndim else float(array)
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from types import NoneType, UnionType
+from typing import Any, get_args
 
 import numpy as np
 
+MOST = 1e50  # largest size in SI units: products of six are still far from overflow
 _LONGEST = 60  # characters of a value that a message shows
 
 
@@ -152,6 +154,21 @@ def positive(name: str, value: object, unit: str = "", remedy: str = "") -> floa
     return number
 
 
+def moderate(name: str, value: object, unit: str = "") -> float:
+    """A finite number whose powers and products with its like do not overflow."""
+    number = real(name, value, unit)
+    refuse(abs(number) > MOST, name, number, unit, "give at most {limit} either way", limit=MOST)
+    return number
+
+
+def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
+    """A number above zero, neither so large nor so small that powers and products overflow."""
+    number = positive(name, value, unit, remedy)
+    bound = f"give a size from {1 / MOST:g} to {{limit}}"
+    refuse(not 1 / MOST <= number <= MOST, name, number, unit, bound, remedy, limit=MOST)
+    return number
+
+
 def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> float:
     """A finite number of zero or more."""
     number = real(name, value, unit, remedy)
@@ -191,10 +208,35 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def kind(name: str, value: object, wanted: type, remedy: str = "") -> None:
-    """Refuse what is not of the wanted class."""
+def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -> None:
+    """Refuse what is not of the wanted class, or of one of several."""
     if not isinstance(value, wanted):
-        raise InvalidValue(name, value, f"give a {wanted.__name__}", remedy)
+        classes: tuple[Any, ...] = get_args(wanted) or (wanted,)
+        names = " or ".join(map(_name_of, classes))
+        raise InvalidValue(name, value, f"give {names}", remedy)
+
+
+def _name_of(wanted: type) -> str:
+    return {NoneType: "None", str: "text"}.get(wanted, f"a {wanted.__name__}")
+
+
+def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any, ...]:
+    """The values as a tuple, each of the wanted class."""
+    try:
+        given = None if isinstance(values, str | bytes | dict) else tuple(values)
+    except TypeError:
+        given = None
+    if given is None:
+        raise InvalidValue(name, values, "give a sequence, such as a tuple", remedy)
+    for k, each in enumerate(given):
+        kind(f"{name}[{k}]", each, wanted, remedy)
+    return given
+
+
+def text(name: str, value: object) -> None:
+    """Refuse what is not text, such as a name."""
+    if not isinstance(value, str):
+        raise InvalidValue(name, value, "give text")
 
 
 def function(name: str, value: object, remedy: str = "") -> None:

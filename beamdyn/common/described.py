@@ -65,8 +65,8 @@ class Described:
         }
         return ", ".join(f"{word} {convert(bound):g}" for word, bound in words.items() if bound is not None)
 
-    def check(self, name: str, value: Any) -> None:
-        """Refuse a value that is no finite number, is negative, or is 0 where the bounds exclude that.
+    def check(self, name: str, value: Any) -> Any:
+        """Return the value as a float; refuse what is not finite, negative, or 0 where the bounds exclude it.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Described:
             With the name.
         """
         bounded = positive if self.above == 0 else not_negative if self.least == 0 else real
-        bounded(name, value, self.unit, self.remedy)
+        return bounded(name, value, self.unit, self.remedy)
 
 
 def description(hint: Any) -> Described | None:

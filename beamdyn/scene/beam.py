@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse, set_fields
+from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse, set_fields, size
 from beamdyn.common.described import Described
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints
@@ -164,15 +164,14 @@ class Beam:
         UserWarning
             If waves along the beam would run at less than 100 or more than 20 000 m/s: a mistake of units.
         """
-        length = positive("length", length, "m")
-        e = positive("youngs_modulus", youngs_modulus, "Pa")
-        rho = positive("density", density, "kg/m3")
+        length = size("length", length, "m")
+        e = size("youngs_modulus", youngs_modulus, "Pa")
+        rho = size("density", density, "kg/m3")
         b = as_profile("width", width, breakpoints)
         h = as_profile("thickness", thickness, breakpoints)
         _check_section(length, b, h)
         warn_of_material(e, rho)
-        with np.errstate(over="ignore", invalid="ignore"):  # refused below
-            area = b * h
+        area = b * h
         return cls(
             length=length,
             mass_per_length=area.scaled(rho),
@@ -233,7 +232,7 @@ class Beam:
             return None if value is None else as_profile(name, value, breakpoints)
 
         beam = cls(
-            length=positive("length", length, "m"),
+            length=size("length", length, "m"),
             mass_per_length=as_profile("mass_per_length", mass_per_length, breakpoints),
             bending_stiffness=as_profile("bending_stiffness", bending_stiffness, breakpoints),
             axial_stiffness=profile("axial_stiffness", axial_stiffness),

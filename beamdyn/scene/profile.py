@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
-from beamdyn.common.checks import InvalidValue, real, real_array
+from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
@@ -155,10 +155,18 @@ def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
         profile = Profile(ends, tuple(_fit(name, value, a, b) for a, b in pairwise(ends)))
     else:
         constant = real(name, value, remedy="or a Polynomial in x/L, a Table or a function of x/L")
+        _check_sizes(name, np.array([constant]))
         profile = Profile((0.0, 1.0), ((constant,),))
     profile = profile.split(ends)
     check_positive(name, profile)
     return profile
+
+
+def _check_sizes(name: str, values: np.ndarray) -> None:
+    """Refuse values so large or small that powers and products of them overflow."""
+    sizes = np.abs(values)
+    bad = (sizes > MOST) | ((sizes < 1 / MOST) & (sizes > 0))
+    refuse(bad, name, values, "", f"give sizes from {1 / MOST:g} to {{limit}} in SI units", limit=MOST)
 
 
 def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
@@ -180,14 +188,15 @@ def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
         raise ValueError(
             f"{name}: the polynomial {polynomial} has coefficients that are complex or not finite"
         )
+    _check_sizes(name, np.where(np.abs(polynomial.coef) < 1 / MOST, 0.0, polynomial.coef))
     t, w = legendre.leggauss(polynomial.degree() + 1)
-    with np.errstate(over="ignore", invalid="ignore"):  # check_positive refuses values that overflow
-        return Profile((0.0, 1.0), (_project(polynomial, 0.0, 1.0, t, w),))
+    return Profile((0.0, 1.0), (_project(polynomial, 0.0, 1.0, t, w),))
 
 
 def _from_table(name: str, table: Table) -> Profile:
     x, y = real_array(f"{name}.stations", table.stations), real_array(f"{name}.values", table.values)
     _check_stations(f"{name}.stations", x, len(y))
+    _check_sizes(f"{name}.values", y)
     segments = [(x[i + 1], y[i], y[i + 1]) for i in range(len(x) - 1) if x[i + 1] > x[i]]
     rows = tuple(((p + q) / 2, (q - p) / 2) for _, p, q in segments)
     return Profile((0.0, *(float(b) for b, _, _ in segments)), rows)
@@ -196,18 +205,18 @@ def _from_table(name: str, table: Table) -> Profile:
 def _check_stations(name: str, x: np.ndarray, values: int) -> None:
     """Refuse stations that do not ascend from 0 to 1, one for each value; two at one place are a jump."""
 
-    def refuse(k: int, bound: str) -> None:
+    def refuse_station(k: int, bound: str) -> None:
         raise InvalidValue(f"{name}[{k}]", float(x[k]), bound, "give fractions x/L")
 
     if len(x) != values or len(x) < 2:
         bound = f"{len(x)} stations and {values} values: give as many of each, at least two"
         raise InvalidValue(name, x.tolist(), bound)
     if x[0] != 0:
-        refuse(0, "the first station must be 0, the root")
+        refuse_station(0, "the first station must be 0, the root")
     if (falls := np.flatnonzero(np.diff(x) < 0) + 1).size:
-        refuse(falls[0], f"it follows {x[falls[0] - 1]:g}; stations must ascend")
+        refuse_station(falls[0], f"it follows {x[falls[0] - 1]:g}; stations must ascend")
     if x[-1] != 1:
-        refuse(len(x) - 1, "the last station must be 1, the tip")
+        refuse_station(len(x) - 1, "the last station must be 1, the tip")
     if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
         bound = "a station given twice is a jump and stands between others"
         raise InvalidValue(name, x.tolist(), bound, "give none three times, nor twice at an end")
@@ -250,7 +259,8 @@ def _misfit(
 def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
     """Evaluate a user's function, with a ValueError if it fails, is not vectorised or not finite."""
     try:
-        values = np.asarray(function(x))
+        with np.errstate(all="ignore"):  # what is not finite is refused below
+            values = np.asarray(function(x))
         values = values if np.iscomplexobj(values) else values.astype(float)
     except Exception as error:  # whatever a user's function may raise
         raise ValueError(
@@ -266,6 +276,7 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
         raise ValueError(
             f"{name}: the function is {values[bad][0]} at x/L = {x[bad][0]:.3f}; it must be finite"
         )
+    _check_sizes(name, values)
     return values
 
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.checks import refuse
+from beamdyn.common.checks import MOST, refuse
 
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses contact with it
-FASTEST = 1e50  # largest accepted speed [rad/s]: its fourth power is far from overflow
+FASTEST = MOST  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
 
 def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:

@@ -327,6 +327,11 @@ def _warnings(
     for name in ("parametric instability", "past the critical speed"):
         if (at := speeds[status == name]).size:
             yield f"{name} at {len(at)} speed(s), {list_range(at)}: no steady response"
+    if (at := speeds[amplitude == 0]).size:
+        yield (
+            f"nothing excites the beam at {list_range(at)}, so that it does not move: "
+            "that takes gravity, or a wavy road and a speed other than 0"
+        )
     yield from warn_of_deflection(amplitude, scene.beam.length, speeds)
     yield from warn_of_road(road, speeds)
     if (at := speeds[error > tolerance]).size:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import count, function, positive, real
+from beamdyn.common.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.ritz import MOST_FUNCTIONS
 from beamdyn.modal.choice import choose_model
@@ -110,9 +110,8 @@ def tradeoff(
     if progress is not None:
         function("progress", progress, "it takes the numbers of finished diagrams and of all")
     if t_end is not None and scene.motion is None:
-        raise ValueError(
-            f"t_end = {t_end!r}: the scene has no motion, so there is no transient; add one, or leave it out"
-        )
+        bound = "the scene has no motion, so there is no transient"
+        raise InvalidValue("t_end", t_end, bound, "add one, or leave it out")
     speed = _default_speed(scene) if speed is None else real("speed", speed, "rad/s")
     check_speeds(speed, "speed")
     end = np.nan if scene.motion is None else _end(scene) if t_end is None else positive("t_end", t_end, "s")

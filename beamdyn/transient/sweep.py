@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, ascending, count, function, positive, real, within
+from beamdyn.common.checks import InvalidValue, ascending, count, function, positive, real_array, within
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
@@ -196,9 +196,9 @@ def _check_request(
         raise InvalidValue(
             "scene.motion", None, "a sweep needs a motion", "such as SpinUp(50.0, duration=10.0)"
         )
-    if not isinstance(window, tuple | list | np.ndarray) or len(window) != 2:
+    if len(ends := real_array("window", window).tolist()) != 2:
         raise InvalidValue("window", window, "give its beginning and its end [s], such as (20.0, 30.0)")
-    start, end = real("window[0]", window[0], "s"), real("window[1]", window[1], "s")
+    start, end = ends
     last = end if t_end is None else positive("t_end", t_end, "s")
     if not 0 <= start < end <= last:
         raise ValueError(

@@ -22,7 +22,7 @@ from brakes.calipers.caliper import (
     Split,
 )
 from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
-from brakes.planar.inputs import DescribedPoint
+from brakes.planar.inputs import DescribedPoint, check_inputs
 from brakes.planar.points import Point
 
 MM = 1e-3
@@ -52,6 +52,9 @@ class Design:
     lever_ratio: LeverRatio = 4.0
     clearance: Clearance = 1.25e-3
     pivot_radius: PivotRadius = 4e-3
+
+    def __post_init__(self) -> None:
+        check_inputs(self)
 
     def build(self) -> Caliper:
         """The caliper of these dimensions."""

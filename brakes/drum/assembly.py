@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, not_negative, numbers, positive, together
-from beamdyn.common.checks import refuse
+from beamdyn.common.checks import flag, kind, refuse, set_fields, several
 from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
 
 
@@ -32,6 +32,9 @@ class DrumBrake:
     leading: tuple[bool, ...]
 
     def __post_init__(self) -> None:
+        flags = enumerate(several("leading", self.leading, object))
+        leading = tuple(flag(f"leading[{k}]", each) for k, each in flags)
+        set_fields(self, shoes=several("shoes", self.shoes, Shoe), leading=leading)
         if not self.shoes or len(self.shoes) != len(self.leading):
             raise ValueError(
                 f"{len(self.shoes)} shoes and {len(self.leading)} entries of leading: give one entry a shoe, "
@@ -44,11 +47,15 @@ class DrumBrake:
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
     """Assemble a leading and a trailing shoe; the same shoe twice unless a second is given."""
+    kind("leading", leading, Shoe)
+    kind("trailing", trailing, Shoe | None)
     return DrumBrake((leading, trailing or leading), (True, False))
 
 
 def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
     """Assemble two shoes that lead forward and trail in reverse; the same twice unless a second is given."""
+    kind("first", first, Shoe)
+    kind("second", second, Shoe | None)
     return DrumBrake((first, second or first), (True, True))
 
 
@@ -120,6 +127,8 @@ def brake_torque(
     ValueError
         As for `shoe_torque`.
     """
+    kind("brake", brake, DrumBrake)
+    reverse = flag("reverse", reverse)
     name, value = take_only({"force": force, "peak_pressure": peak_pressure, "torque": torque})
     units = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
     value = positive(name, value, units[name])
@@ -225,7 +234,7 @@ def stop_energy(
         raise ValueError("inertia is given without rolling_radius: give the wheels' radius in m")
     rolling = 1.0 if rolling_radius is None else positive("rolling_radius", rolling_radius, "m")
     kinetic = (m + rotating / rolling**2) * (v1**2 - v2**2) / 2
-    return kinetic + m * g * numbers("descent", descent, "m")
+    return kinetic + m * not_negative("g", g, "m/s2") * numbers("descent", descent, "m")
 
 
 def temperature_rise(

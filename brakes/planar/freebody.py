@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.common.checks import count, kind, one_of
 from brakes.planar.mechanism import Position
+from brakes.planar.points import GROUND
 from brakes.planar.rows import Row
 from brakes.planar.statics import Equilibrium
 
@@ -47,7 +49,10 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     tuple of Action
         Joints, then loads, then friction; forces and moments of all add up to zero.
     """
+    kind("equilibrium", equilibrium, Equilibrium, "solve(mechanism) gives one")
     mechanism = equilibrium.position.mechanism
+    one_of("body", body, (*mechanism.bodies, GROUND))
+    index = count("index", index, most=len(equilibrium.position.batch) - 1, least=0)
     place = Position(mechanism, equilibrium.position.batch[index])
     size = np.atleast_2d(equilibrium.multiplier)[index]
     system = mechanism.system

@@ -9,7 +9,7 @@ import numpy as np
 from brakes.planar.diagnosis import join_names
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
-from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import (
     Balance,
     Equilibrium,
@@ -72,6 +72,7 @@ def solve_with_friction(
     ValueError
         If the mobility is not 1, or equilibrium without friction is not determined.
     """
+    check_mechanism(mechanism, position)
     mechanism.load(driver)
     position = assemble(mechanism) if position is None else position.of(mechanism)
     without = solve(mechanism, position)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import NoneType
 from typing import Annotated, Any, get_args
 
+from beamdyn.common.checks import flag, set_fields, several, text
 from beamdyn.common.described import Described, described_hints, descriptions, kinds_of
 from brakes.planar.points import GROUND, Point, check_point, unit_vector
 
@@ -13,27 +15,27 @@ from brakes.planar.points import GROUND, Point, check_point, unit_vector
 class DescribedPoint(Described):
     """Description of a point."""
 
-    def check(self, name: str, value: Any) -> None:
-        """Refuse what is not two finite coordinates."""
-        check_point(name, value)
+    def check(self, name: str, value: Any) -> Point:
+        """The point; what is not two finite coordinates is refused."""
+        return check_point(name, value)
 
 
 @dataclass(frozen=True)
 class DescribedDirection(Described):
     """Description of a direction."""
 
-    def check(self, name: str, value: Any) -> None:
-        """Refuse what is not two finite components, or has no direction."""
-        unit_vector(name, value)
+    def check(self, name: str, value: Any) -> Point:
+        """The unit vector; what is not two finite components, or has no direction, is refused."""
+        return unit_vector(name, value)
 
 
 def check_inputs(core: object, prefix: str = "") -> None:
-    """Refuse described numbers, points and directions that are not as described.
+    """Refuse described inputs that are not as described, and keep numbers as floats.
 
     Parameters
     ----------
     core : object
-        An instance of a dataclass; None is allowed for each of its inputs.
+        An instance of a frozen dataclass.
     prefix : str
         Put before their names in messages.
 
@@ -44,11 +46,27 @@ def check_inputs(core: object, prefix: str = "") -> None:
     """
     hints = described_hints(type(core))
     for name, described in descriptions(type(core)).items():
-        value, (kind, *_) = getattr(core, name), kinds_of(hints[name])
-        if value is None or (type(described) is Described and kind is not float):
+        value, kinds = getattr(core, name), kinds_of(hints[name])
+        if value is None and NoneType in kinds:
             continue
-        for part in value if is_list(hints[name]) else (value,):
-            described.check(prefix + name, part)
+        if is_list(hints[name]):
+            for k, part in enumerate(several(prefix + name, value, object)):
+                _check(f"{prefix}{name}[{k}]", part, kinds_of(get_args(kinds[0])[0])[0], described)
+        elif (checked := _check(prefix + name, value, kinds[0], described)) is not None:
+            set_fields(core, **{name: checked})
+
+
+def _check(name: str, value: object, kind: Any, described: Described) -> float | None:
+    """Refuse a value that is not as described; a number is returned as a float."""
+    if kind is float:
+        return described.check(name, value)
+    if kind is str:
+        text(name, value)
+    elif kind is bool:
+        flag(name, value)
+    elif type(described) is not Described:
+        described.check(name, value)
+    return None
 
 
 def is_list(hint: Any) -> bool:

@@ -17,7 +17,7 @@ from brakes.planar.diagnosis import (
     moving_bodies,
 )
 from brakes.planar.linear import decompose, times
-from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.system import System
 
 _CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism
@@ -92,6 +92,7 @@ def assemble(mechanism: Mechanism) -> Position:
     AssemblyError
         If they cannot be: by how much, and which joint is furthest apart.
     """
+    check_mechanism(mechanism)
     system = mechanism.system
     m = system.constraints
     y = np.zeros((1, system.size))
@@ -144,6 +145,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     ValueError
         If the mobility is not 1, or the driver does not move.
     """
+    check_mechanism(mechanism)
     if not mechanism.load(driver).has_coordinate:
         raise ValueError(f"driver {driver!r} follows its body and has no coordinate: drive another load")
     system, start, k = _start(mechanism, driver)
@@ -186,6 +188,7 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     -------
     Stroke
     """
+    check_mechanism(mechanism)
     system, start, _ = _start(mechanism, driver)
     s = np.linspace(0.0, positive("length", length, "m") / system.length, count("points", points, 2))
     nodes, chords = [start], 0.0

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamdyn.common.checks import kind, set_fields, several, text
 from brakes.planar.part import Joint, Load, Part
 from brakes.planar.points import GROUND, Point, suggest
 from brakes.planar.rows import FrictionLaw
@@ -43,8 +44,8 @@ class Mechanism:
     def __post_init__(self) -> None:
         if isinstance(self.bodies, str):
             raise ValueError(f"bodies = {self.bodies!r}: give a sequence of names, ({self.bodies!r},)")
-        for key in ("bodies", "joints", "loads"):
-            object.__setattr__(self, key, tuple(getattr(self, key)))
+        for key, wanted in {"bodies": str, "joints": Joint, "loads": Load}.items():
+            set_fields(self, **{key: several(key, getattr(self, key), wanted)})
         if not self.bodies or GROUND in self.bodies:
             raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} is there by itself")
         _unique("body", self.bodies)
@@ -80,10 +81,17 @@ class Mechanism:
 
     def load(self, name: str) -> Load:
         """The load of a name."""
+        text("load", name)
         known = {load.name: load for load in self.loads}
         if name not in known:
             raise ValueError(f"load {name!r} does not exist; {suggest(name, known)}")
         return known[name]
+
+
+def check_mechanism(mechanism: object, position: object = None) -> None:
+    """Refuse what is no mechanism, and what is no position of one, as arguments of an analysis."""
+    kind("mechanism", mechanism, Mechanism)
+    kind("position", position, Position | None, "assemble(mechanism) gives one")
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
+from beamdyn.common.checks import text
 from beamdyn.common.described import Described
 from brakes.planar.inputs import check_inputs
 from brakes.planar.points import GROUND, End, Point
@@ -65,6 +66,7 @@ class Part:
     name: Annotated[str, Described(meaning="name")]
 
     def __post_init__(self) -> None:
+        text("name", self.name)
         check_inputs(self, f"{self.title}: ")
 
     @classmethod

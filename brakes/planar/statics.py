@@ -11,7 +11,7 @@ import numpy as np
 from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_of_moving
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import Decomposition, decompose, times
-from brakes.planar.mechanism import Mechanism, Position
+from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.part import OneWay, Part
 from brakes.planar.system import Rows, System
 
@@ -132,6 +132,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     AssemblyError
         If no position is given and the joints cannot be brought together.
     """
+    check_mechanism(mechanism, position)
     position = assemble(mechanism) if position is None else position.of(mechanism)
     balance = balance_at(mechanism, position)
     forces = decompose(balance.matrix, mechanism.system.rounding)

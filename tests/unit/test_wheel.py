@@ -53,7 +53,8 @@ def test_holds_the_packages_with_their_data_and_nothing_else(source, wheel):
         for path in (source / package).rglob("*")
         if path.is_file()
     }
-    assert {f"{package}/__init__.py" for package in PACKAGES} <= expected
+    for name in ("__init__.py", "py.typed"):  # the second says that the type hints hold
+        assert {f"{package}/{name}" for package in PACKAGES} <= expected
     assert {name for name in files(wheel) if not name.startswith(dist_info(wheel))} == expected
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from io import TextIOWrapper
+from typing import Literal, get_args, get_origin
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnknownOptionError
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -45,7 +47,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     if sys.stdout is None:
         return _complain(name, "the standard output is closed; direct it to a file or a device", BAD_INPUT)
     try:
-        _call(app, given)
+        with _as_sentences(name):
+            _call(app, given)
     except (NoAnswer, ArithmeticError) as error:
         return _complain(name, f"no answer: {error}", NO_ANSWER)
     except MemoryError as error:
@@ -56,6 +59,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
         return _complain(name, f"interrupted: {error}", INTERRUPTED)
     except KeyboardInterrupt as error:
         return _complain(name, f"interrupted: {error}".removesuffix(": "), INTERRUPTED)
+    except UnknownOptionError as error:
+        return _complain(name, f"{_with_meant_option(error, given)} See {name} --help.", BAD_INPUT)
     except CycloptsError as error:
         return _complain(name, f"{error} See {name} --help.", BAD_INPUT)
     except (ValueError, OSError) as error:
@@ -69,6 +74,30 @@ def _call(app: App, arguments: Sequence[str]) -> None:
     if isinstance(sys.stdout, TextIOWrapper):
         spell_output(sys.stdout)
     app(arguments, console=Screen(), exit_on_error=False, print_error=False, result_action="return_value")
+
+
+def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
+    """The message, with the option that takes the word after the unknown one: "ritz" is a discretization."""
+    option = (error.token.keyword or error.token.value).partition("=")[0]
+    words = [word for text in given for word in text.split("=", 1)]
+    value = "".join(words[words.index(option) + 1 :][:1]) if option in words else ""
+    for argument in error.argument_collection:
+        if get_origin(argument.hint) is Literal and value in get_args(argument.hint):
+            return f"Unknown option: {option}. Did you mean {argument.name}?"
+    return f"{error}"
+
+
+@contextmanager
+def _as_sentences(name: str) -> Iterator[None]:
+    """Within it, a warning of the packages is a sentence of the program, without a place in the code."""
+
+    def show(message: Warning | str, *_: object, **__: object) -> None:
+        warn(name, [str(message)])
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", UserWarning)  # whatever filters are set outside
+        warnings.showwarning = show
+        yield
 
 
 def _refused(name: str, error: Exception) -> int:
@@ -85,9 +114,9 @@ def _complain(name: str, sentence: str, code: int) -> int:
     return code
 
 
-def warn(name: str, warnings: Iterable[str]) -> None:
+def warn(name: str, sentences: Iterable[str]) -> None:
     """Print a program's warnings on standard error."""
-    for warning in warnings:
+    for warning in sentences:
         _say(f"{name}: warning: {warning}")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from beamdyn.common.checks import MOST
 from beamdyn.scene.motion.base import Motion
 
 _SAMPLES = 1000  # times at which functions are compared with their derivatives
@@ -71,9 +72,12 @@ def _choose_times(t_end: float, breakpoints: Sequence[float], h: float) -> np.nd
 
 
 def _check_finite(name: str, t: np.ndarray, values: np.ndarray) -> None:
-    bad = ~np.isfinite(values)
+    bad = ~(np.abs(values) <= MOST)
     if bad.any():
-        raise ValueError(f"{name} = {values[bad][0]} at t = {t[bad][0]:.6g} s: it must be finite up to t_end")
+        raise ValueError(
+            f"{name} = {values[bad][0]} at t = {t[bad][0]:.6g} s: it must be finite up to t_end, "
+            f"and at most {MOST:g}"
+        )
 
 
 def _check_derivative(

@@ -9,11 +9,13 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import function, kind, positive, real, set_fields
+from beamdyn.common.checks import function, kind, moderate, positive, real, refuse, set_fields, size
 from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times
 from beamdyn.scene.motion.checks import check_consistent
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
+
+_MOST_WAVES = 1e12  # of the road per turn; with more, the phase of the road has few right digits
 
 
 @dataclass(frozen=True)
@@ -45,17 +47,19 @@ class RoadWave:
     ] = None
 
     def __post_init__(self) -> None:
-        set_fields(self, wavelength=positive("wavelength", self.wavelength, "m"))
+        set_fields(self, wavelength=size("wavelength", self.wavelength, "m"))
         amplitudes = {"velocity_amplitude": (self.velocity_amplitude, "m/s"), "height": (self.height, "m")}
         amplitudes = {name: value for name, value in amplitudes.items() if value[0] is not None}
         if len(amplitudes) != 1:
-            both = " and ".join(f"{name} = {value!r}" for name, (value, _) in amplitudes.items())
+            both = " and ".join(
+                f"{name} = {' '.join(repr(v).split())}" for name, (v, _) in amplitudes.items()
+            )
             raise ValueError(
                 f"{both or 'neither velocity_amplitude nor height'} given: give exactly one, "
                 "velocity_amplitude [m/s] of the wheel or height [m] of the road"
             )
         for name, (value, unit) in amplitudes.items():
-            set_fields(self, **{name: real(name, value, unit)})
+            set_fields(self, **{name: moderate(name, value, unit)})
 
     @property
     def wavenumber(self) -> float:
@@ -110,12 +114,15 @@ class RollingWheel(Motion):
     road: RoadWave | None = None
 
     def __post_init__(self) -> None:
-        set_fields(self, rolling_radius=positive("rolling_radius", self.rolling_radius, "m"))
+        set_fields(self, rolling_radius=size("rolling_radius", self.rolling_radius, "m"))
         if not isinstance(self.speed, Rotation):
             remedy = "or a rotation, such as SpinUp(speed, duration)"
             set_fields(self, speed=SteadyRotation(real("speed", self.speed, "rad/s", remedy)))
         if self.road is not None:
             kind("road", self.road, RoadWave, "road = RoadWave(wavelength=0.3, height=0.001)")
+            bound = "a wheel of this radius would pass more than 1e12 waves a turn"
+            past = self.rolling_radius * self.road.wavenumber > _MOST_WAVES
+            refuse(past, "road.wavelength", self.road.wavelength, "m", bound, "give m")
 
     @property
     def rotation(self) -> Rotation:

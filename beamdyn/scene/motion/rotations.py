@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import function, one_of, positive, real, real_array, refuse, set_fields
+from beamdyn.common.checks import (
+    function,
+    moderate,
+    one_of,
+    real,
+    real_array,
+    refuse,
+    set_fields,
+    size,
+)
 from beamdyn.common.described import Described
 from beamdyn.scene.motion.base import (
     Kinematics,
@@ -52,7 +61,7 @@ class SteadyRotation(Rotation):
     speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
 
     def __post_init__(self) -> None:
-        set_fields(self, speed=real("speed", self.speed, "rad/s"))
+        set_fields(self, speed=moderate("speed", self.speed, "rad/s"))
 
     @property
     def final_speed(self) -> float:
@@ -102,8 +111,8 @@ class SpinUp(Rotation):
     def __post_init__(self) -> None:
         one_of("law", self.law, get_args(Law))
         remedy = "for a constant speed from the start give SteadyRotation(speed)"
-        duration = positive("duration", self.duration, "s", remedy)
-        set_fields(self, speed=real("speed", self.speed, "rad/s"), duration=duration)
+        duration = size("duration", self.duration, "s", remedy)
+        set_fields(self, speed=moderate("speed", self.speed, "rad/s"), duration=duration)
 
     @property
     def final_speed(self) -> float:
@@ -301,7 +310,7 @@ class RotationFunction(Rotation):
     def __post_init__(self) -> None:
         for name in ("angle", "speed", "acceleration"):
             function(name, getattr(self, name), "it takes an array of times [s]")
-        t_end, scale = positive("t_end", self.t_end, "s"), real("scale", self.scale)
+        t_end, scale = size("t_end", self.t_end, "s"), moderate("scale", self.scale)
         set_fields(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
         check_consistent(self, t_end)
 
@@ -330,7 +339,8 @@ class RotationFunction(Rotation):
 def _evaluate(name: str, function: Callable, t: np.ndarray) -> np.ndarray:
     """Evaluate a user's function, which may return a constant, at times t [s]."""
     try:
-        values = np.asarray(function(t), dtype=float)
+        with np.errstate(all="ignore"):  # `check_consistent` refuses what is not finite
+            values = np.asarray(function(t), dtype=float)
     except Exception as error:  # whatever a user's function may raise
         raise ValueError(f"{name}: the function failed on an array of times ({error}); use numpy") from error
     if values.shape not in ((), t.shape):

@@ -1,0 +1,103 @@
+"""Mistakes on the command line: each message names the option or the file, and what to give."""
+
+from pathlib import Path
+
+import pytest
+
+from beamdyn.cli import BAD_INPUT, DONE, main
+
+ROOT = Path(__file__).parents[2]
+BLADE = str(ROOT / "examples" / "blade.toml")
+TYRE = str(ROOT / "examples" / "tyre_harvester.toml")
+
+
+@pytest.fixture
+def run(capsys):
+    def run(*arguments):
+        code = main([str(a) for a in arguments])
+        return code, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def refused(run):
+    """The one line that a command says about bad input."""
+
+    def refused(*arguments):
+        code, out, err = run(*arguments)
+        assert (code, out, err.count("\n")) == (BAD_INPUT, "", 1)
+        return err
+
+    return refused
+
+
+@pytest.mark.parametrize("command", [("modes", BLADE), ("steady", BLADE, "--speeds", "5 rad/s")])
+@pytest.mark.parametrize("count", ["2.5", "2.0", "0x3", "two", "1e1"])
+def test_a_number_of_modes_is_whole(refused, command, count):
+    assert f'"{count}" is not a whole number' in refused(*command, "--modes", count)
+
+
+def test_other_counts_are_whole_too(refused, tmp_path):
+    assert "--order" in refused("resonances", TYRE, "--top-speed", "50 rad/s", "--order", "1.5")
+    sweep = ("sweep", TYRE, "--speeds", "5 rad/s", "--window", "0:1 s")
+    assert "--workers" in refused(*sweep, "--workers", "1.5")
+
+
+def test_the_largest_number_of_modes_is_named(refused):
+    assert "at most 176 modes" in refused("modes", BLADE, "--modes", "500")
+    fem = ("--discretization", "fem")
+    assert "at most 1000 modes" in refused("modes", BLADE, "--modes", "1500", *fem)
+
+
+@pytest.mark.parametrize(
+    "command", [("simulate", "--t-end", "1 s"), ("sweep", "--speeds", "5 rad/s", "--window", "0:1 s")]
+)
+def test_a_missing_motion_is_missing_in_the_file(refused, command):
+    name, *options = command
+    sentence = refused(name, TYRE, *options)
+    assert "tyre_harvester.toml: motion: missing" in sentence and "[motion]" in sentence
+
+
+@pytest.mark.parametrize("option", [("--method", "ritz"), ("--method=fem",)])
+def test_an_unknown_option_is_known_by_its_word(refused, option):
+    assert "Unknown option: --method. Did you mean --discretization?" in refused("modes", BLADE, *option)
+    assert "Did you mean --modes?" in refused("modes", BLADE, "--mode", "3")
+
+
+@pytest.mark.parametrize(
+    ("speeds", "remedy"),
+    [
+        ("50, 0, 100 rad/s", '"0, 50, 100 rad/s"'),
+        ("525, 5e2, 525 rpm", '"5e2, 525 rpm"'),
+    ],
+)
+def test_speeds_that_do_not_ascend_are_given_sorted(refused, speeds, remedy):
+    sentence = refused("locus", BLADE, "--speeds", speeds)
+    assert f'--speeds = "{speeds}": the speeds must ascend' in sentence and f"give {remedy}" in sentence
+
+
+@pytest.mark.parametrize(
+    ("speed", "sentence"),
+    [
+        ("nan rad/s", "not a finite number; give e.g. \"1 rpm\""),
+        ("5 kg", "a unit of mass where angular speed is wanted; give e.g. \"5 rpm\""),
+    ],
+)  # fmt: skip
+def test_a_speed_is_a_quantity(refused, speed, sentence):
+    assert f'--speed = "{speed}": {sentence}' in refused("modes", BLADE, "--speed", speed)
+
+
+def test_a_carrier_that_stands_still_excites_nothing(run):
+    code, out, err = run("steady", TYRE, "--speeds", "0 rad/s")
+    assert (code, out.count("stable")) == (DONE, 1)
+    assert "warning: nothing excites the beam at 0 rad/s" in err
+
+
+def test_doubtful_units_are_a_warning_of_the_program(run, tmp_path):
+    scene = tmp_path / "soft.toml"
+    scene.write_text(Path(BLADE).read_text(encoding="utf-8").replace("70 GPa", "70 kPa"), encoding="utf-8")
+    code, _, err = run("modes", scene, "--speed", "0 rad/s", "--modes", "1")
+    assert code == DONE
+    assert err.startswith("beamdyn: warning: youngs_modulus = 70000 Pa with density = 2700 kg/m3")
+    assert err.count("\n") == 1

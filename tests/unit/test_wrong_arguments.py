@@ -1,0 +1,421 @@
+"""Every argument of every public name refuses values of a wrong kind, in one sentence that names it."""
+
+import inspect
+import math
+from dataclasses import fields
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.common.results import Result
+from brakes import calipers, drum, forklift, planar
+
+WRONG = {
+    "bytes": b"1",
+    "text": "parsnips",
+    "complex": 1j,
+    "numpy's complex": np.complex128(1),
+    "array of complex": np.array([1j, 2.0]),
+    "truth": True,
+    "numpy's truth": np.True_,
+    "list with a truth": [True, 2.0],
+    "nan": math.nan,
+    "Decimal nan": Decimal("sNaN"),
+    "beyond float": 10**400,
+    "masked": np.ma.masked,
+    "date": np.datetime64("2020"),
+    "object": object(),
+    "dictionary": {},
+    "set": {1.0},
+    "nested": [[1.0, 2.0], [3.0, 4.0]],
+    "ragged": [[1.0], [2.0, 3.0]],
+    "empty": [],
+    "empty array": np.array([]),
+    "matrix": np.ones((2, 2)),
+    "class": float,
+}
+
+BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+SCENE = bd.Scene(BEAM, bd.Mount(0.2))
+MOVING = bd.Scene(BEAM, bd.Mount(0.2), bd.RollingWheel(0.3, 20.0, bd.RoadWave(0.3, 0.01)))
+
+
+def tabulated(stations, values):
+    return bd.Beam.rectangular(0.05, bd.Table(stations, values), 0.0002, 200e9, 7850.0)
+
+
+# Each public name of beamdyn, or a way to make it, with valid arguments.
+CALLS = {
+    "Beam": (bd.Beam, {field.name: getattr(BEAM, field.name) for field in fields(bd.Beam)}),
+    "Beam.rectangular": (
+        bd.Beam.rectangular,
+        {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
+        | {"tip": None, "breakpoints": ()},
+    ),
+    "Beam.from_stiffness": (
+        bd.Beam.from_stiffness,
+        {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3, "axial_stiffness": 4e5}
+        | {"outer_fibre": 1e-4, "tip": None, "breakpoints": ()},
+    ),
+    "TipMass": (
+        bd.TipMass,
+        dict.fromkeys(("mass", "offset", "inertia", "transverse_inertia", "axial_inertia"), 1e-9),
+    ),
+    "Mount": (bd.Mount, {"radius": 0.2, "setting_angle": 0.0, "bending_angle": 0.0}),
+    "Scene": (
+        bd.Scene,
+        {"beam": BEAM, "mount": bd.Mount(), "motion": None, "damping_ratio": 0.0, "gravity": 0.0}
+        | {"stretch": False},
+    ),
+    "Table": (tabulated, {"stations": [0, 0.5, 1], "values": [0.01] * 3}),
+    "SteadyRotation": (bd.SteadyRotation, {"speed": 5.0}),
+    "SpinUp": (bd.SpinUp, {"speed": 5.0, "duration": 1.0, "law": "smooth"}),
+    "SampledRotation": (
+        bd.SampledRotation,
+        {"times": [0.0, 1.0, 2.0], "speeds": [0.0, 1.0, 2.0], "interpolation": "cubic"},
+    ),
+    "RotationFunction": (
+        bd.RotationFunction,
+        {"angle": lambda t: 5 * t, "speed": lambda t: 5 + 0 * t, "acceleration": lambda t: 0 * t}
+        | {"t_end": 1.0, "breakpoints": (), "scale": 1.0},
+    ),
+    "RoadWave": (bd.RoadWave, {"wavelength": 0.3, "velocity_amplitude": 0.01, "height": None}),
+    "RollingWheel": (bd.RollingWheel, {"rolling_radius": 0.3, "speed": 5.0, "road": None}),
+    "UserMotion": (bd.UserMotion, {"function": bd.SpinUp(5.0, 1.0).at, "breakpoints": (), "t_end": 1.0}),
+    "Ritz": (bd.Ritz, {"functions": 14, "basis": "legendre"}),
+    "Fem": (bd.Fem, {"elements": 40, "mesh": "graded"}),
+    "natural_modes": (
+        bd.natural_modes,
+        {"scene": SCENE, "speed": 5.0, "modes": 2, "discretization": "ritz", "tolerance": 0.1},
+    ),
+    "frequency_locus": (
+        bd.frequency_locus,
+        {"scene": SCENE, "speeds": [1.0, 2.0], "modes": 2, "discretization": "ritz", "tolerance": 0.1},
+    ),
+    "critical_point": (
+        bd.critical_point,
+        {"scene": SCENE, "discretization": "ritz", "tolerance": 0.1},
+    ),
+    "critical_speed": (
+        bd.critical_speed,
+        {"scene": SCENE, "discretization": "ritz", "tolerance": 0.1},
+    ),
+    "setting_angle_limits": (
+        bd.setting_angle_limits,
+        {"scene": SCENE, "top_speed": 100.0, "discretization": "ritz"},
+    ),
+    "frequency_bounds": (bd.frequency_bounds, {"scene": SCENE, "speed": 5.0, "modes": 2}),
+    "resonance_speeds": (
+        bd.resonance_speeds,
+        {"scene": MOVING, "top_speed": 100.0, "modes": 2, "order": 1, "discretization": "ritz"},
+    ),
+    "steady_response": (
+        bd.steady_response,
+        {"scene": MOVING, "speeds": [5.0, 6.0], "modes": 2, "harmonics": 1, "tolerance": 1e-3}
+        | {"discretization": "ritz"},
+    ),
+    "simulate": (
+        bd.simulate,
+        {"scene": MOVING, "t_end": 0.02, "modes": 2, "tolerance": 1e-3, "method": "auto"}
+        | {"discretization": "ritz", "initial": "rest", "t_eval": None},
+    ),
+    "sweep": (
+        bd.sweep,
+        {"scene": MOVING, "speeds": [5.0], "window": (0.0, 0.02), "t_end": None, "modes": 2}
+        | {"tolerance": 1e-3, "workers": 1, "executor": None, "store": None, "progress": None}
+        | {"discretization": "ritz", "chunk": 40},
+    ),
+    "terms": (bd.terms, {"scene": MOVING}),
+    "tradeoff": (
+        bd.tradeoff,
+        {"scene": SCENE, "speed": 5.0, "modes": 2, "t_end": None, "budget": 1.0, "progress": None},
+    ),
+    "load_scene": (bd.load_scene, {"path": "examples/blade.toml"}),
+}
+SAID_AS = {"driver": "load"}  # in messages
+# What of the wrong values is right after all.
+ALLOWED = {
+    "Scene.stretch": {"truth", "numpy's truth"},
+    "sweep.store": {"text"},
+    "sweep.progress": {"class"},
+    "tradeoff.progress": {"class"},
+    "load_scene.path": {"text"},
+    **{f"{name}.breakpoints": {"empty", "empty array"} for name in CALLS},
+}
+
+
+def refusals_missing(make, good, name, allowed):
+    """The wrong values of an argument that are not refused by one sentence with its name."""
+    missing = {}
+    for kind, value in WRONG.items():
+        if kind in allowed:
+            continue
+        try:
+            make(**(good | {name: value}))
+            missing[kind] = "accepted"
+        except (ValueError, TypeError) as refusal:
+            if SAID_AS.get(name, name) not in str(refusal) or "\n" in str(refusal):
+                missing[kind] = f"{type(refusal).__name__}: {refusal}"
+    return missing
+
+
+@pytest.mark.parametrize(
+    ("call", "name"), [(call, name) for call, (_, good) in CALLS.items() for name in good]
+)
+def test_a_wrong_kind_is_refused_by_name(call, name):
+    make, good = CALLS[call]
+    assert refusals_missing(make, good, name, ALLOWED.get(f"{call}.{name}", ())) == {}
+
+
+def test_the_table_holds_every_public_name_and_argument():
+    made_by_the_package = {
+        name
+        for name in bd.__all__
+        if isinstance(item := getattr(bd, name), type) and issubclass(item, Result | Exception)
+    }
+    covered = {call.partition(".")[0] for call in CALLS}
+    rest = set(bd.__all__) - made_by_the_package - covered
+    made_elsewhere = {"Crossing", "GaussCollocation", "Line", "MotionSample", "Polynomial", "Profile"}
+    assert rest == made_elsewhere | {"Discretization", "Motion", "Rotation"}  # the last are base classes
+    for make, good in CALLS.values():
+        assert {*inspect.signature(make).parameters} - {"options"} == {*good}
+
+
+# brakes -----------------------------------------------------------------------------------------------
+
+SHOE = {"drum_radius": 0.138, "face_width": 0.05, "lining": (0.6, 1.9), "pivot": (0.02, -0.11)}
+SHOE |= {"force_arm": 0.115, "pressure_zero": "axis"}
+BRAKE = drum.simplex(drum.Shoe(**SHOE))
+TRUCK = {"empty_mass": 4000.0, "empty_cg": (0.9, 0.5), "load_mass": 2500.0, "load_cg": (-0.5, 0.8)}
+TRUCK |= {"front_wheel_radius": 0.33, "wheelbase": 1.6}
+ROAD = {"slope": 0.05, "speed": 4.0, "friction": 0.6, "reaction_time": 0.7, "rise_time": 0.1, "gravity": 9.8}
+DUO = {field.name: getattr(forklift.BENDIX_12_5, field.name) for field in fields(forklift.DuoServo)}
+LEVERS = {"drum_radius": 0.15, "a1": 0.1, "a2": 0.1, "b1": 0.1, "b2": 0.1, "alpha1": 1.0, "alpha2": 1.0}
+LEVERS |= {"gamma": 0.3}
+JOINT = {"name": "j", "body": "arm", "other": "ground"}
+ARM = planar.Mechanism(
+    ("arm",), (planar.Pin("pin", "arm", "ground", (0.0, 0.0)),), (planar.Moment("turn", "arm"),)
+)
+
+
+def built(design):
+    return lambda **given: design(**given).build()
+
+
+BRAKES = {
+    "Shoe": (drum.Shoe, SHOE),
+    "DrumBrake": (drum.DrumBrake, {"shoes": (drum.Shoe(**SHOE),), "leading": (True,)}),
+    "simplex": (drum.simplex, {"leading": drum.Shoe(**SHOE), "trailing": None}),
+    "duplex": (drum.duplex, {"first": drum.Shoe(**SHOE), "second": None}),
+    "brake_torque": (drum.brake_torque, {"brake": BRAKE, "friction": 0.3, "force": 1e3, "reverse": False}),
+    "brake_torque peak": (drum.brake_torque, {"brake": BRAKE, "friction": 0.3, "peak_pressure": 1e5}),
+    "brake_torque torque": (drum.brake_torque, {"brake": BRAKE, "friction": 0.3, "torque": 10.0}),
+    "shoe_torque": (
+        drum.shoe_torque,
+        {"shoe": drum.Shoe(**SHOE), "friction": 0.3, "force": 1e3, "leading": True},
+    ),
+    "stop_energy": (
+        drum.stop_energy,
+        {"mass": 1e3, "speed": 20.0, "final_speed": 0.0, "descent": 0.0, "inertia": 1.0}
+        | {"rolling_radius": 0.3, "g": 9.8},
+    ),
+    "temperature_rise": (
+        drum.temperature_rise,
+        {"energy": 1e5, "drum_mass": 5.0, "specific_heat": 500.0, "share": 0.9},
+    ),
+    "wheel_cylinder_force": (drum.wheel_cylinder_force, {"bore": 0.02, "line_pressure": 1e6}),
+    "Truck": (forklift.Truck, TRUCK),
+    "StopConditions": (forklift.StopConditions, ROAD),
+    "forklift.stop": (
+        forklift.stop,
+        {"truck": forklift.Truck(**TRUCK), "conditions": forklift.StopConditions(**ROAD)},
+    ),
+    "DuoServo": (forklift.DuoServo, DUO),
+    "Levers": (forklift.Levers, LEVERS),
+    "follow_shoes": (
+        forklift.follow_shoes,
+        {"geometry": forklift.BENDIX_12_5, "clearance": 3e-4, "positions": 3},
+    ),
+    "internal_forces": (
+        forklift.internal_forces,
+        {"geometry": forklift.BENDIX_12_5, "piston_force": 1e3, "torque": 100.0, "clearance": 3e-4},
+    ),
+    "calipers.stop": (
+        calipers.stop,
+        {"mass": 90.0, "speed": 8.0, "pad_force": 300.0, "friction": 0.5, "wheel_inertia": 0.1}
+        | {"tyre_radius": 0.34, "rim_radius": 0.31},
+    ),
+    "Pin": (planar.Pin, JOINT | {"at": (0.0, 0.0), "at_other": None, "radius": 0.01, "friction": 0.1}),
+    "Bar": (planar.Bar, JOINT | {"at": (0.0, 0.0), "to": (0.1, 0.0), "length": 0.1}),
+    "Slot": (planar.Slot, JOINT | {"at": (0.0, 0.0), "along": (1.0, 0.0), "on": None, "friction": 0.1}),
+    "Contact": (
+        planar.Contact,
+        JOINT | {"at": (0.0, 0.0), "normal": (1.0, 0.0), "on": None, "friction": 0.1},
+    ),
+    "RotationLock": (planar.RotationLock, JOINT | {"ratio": 1.0}),
+    "Cable": (
+        planar.Cable,
+        {"name": "c", "bodies": ("arm", "ground"), "points": ((0.0, 0.0), (0.1, 0.0)), "length": 0.1},
+    ),
+    "CablePair": (planar.CablePair, JOINT | {"at": (0.0, 0.0), "to": (0.1, 0.0), "magnitude": 1.0}),
+    "Force": (
+        planar.Force,
+        {"name": "f", "body": "arm", "at": (0.0, 0.0), "direction": (1.0, 0.0), "magnitude": 1.0}
+        | {"follows": False},
+    ),
+    "Moment": (planar.Moment, JOINT | {"magnitude": 1.0}),
+    "Spring": (
+        planar.Spring,
+        JOINT | {"at": (0.0, 0.0), "to": (0.1, 0.0), "stiffness": 10.0, "free_length": 0.1},
+    ),
+    "TorsionSpring": (planar.TorsionSpring, JOINT | {"stiffness": 10.0, "free_angle": 0.1}),
+    "Mechanism": (planar.Mechanism, {"bodies": ("arm",), "joints": (), "loads": ()}),
+    "solve": (planar.solve, {"mechanism": ARM, "position": None}),
+    "solve_with_friction": (
+        planar.solve_with_friction,
+        {"mechanism": ARM, "driver": "turn", "position": None},
+    ),
+    "assemble": (planar.assemble, {"mechanism": ARM}),
+    "stroke": (planar.stroke, {"mechanism": ARM, "driver": "turn", "values": [0.0, 0.1]}),
+    "trace": (planar.trace, {"mechanism": ARM, "driver": "turn", "length": 0.1, "points": 3}),
+    "free_body": (planar.free_body, {"equilibrium": planar.solve(ARM), "body": "arm", "index": 0}),
+    **{
+        name: (built(design), {field.name: getattr(design(), field.name) for field in fields(design)})
+        for name, design in calipers.NAMED.items()
+    },
+}
+
+
+def right_after_all(call, name):
+    """What of the wrong values an argument of brakes may be: numbers may be arrays, and names are free."""
+    if name in ("name", "body", "other") and call != "free_body":
+        return {"text"}
+    if name in ("reverse", "follows") or (call, name) == ("shoe_torque", "leading"):
+        return {"truth", "numpy's truth"}
+    if call == "Mechanism":
+        return {"empty", "empty array"}
+    return {"nested", "matrix", "ragged"}
+
+
+@pytest.mark.parametrize(
+    ("call", "name"), [(call, name) for call, (_, good) in BRAKES.items() for name in good]
+)
+def test_a_wrong_kind_is_refused_by_name_in_brakes(call, name):
+    make, good = BRAKES[call]
+    assert refusals_missing(make, good, name, right_after_all(call, name)) == {}
+
+
+# What is right ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number", [Decimal("0.2"), Fraction(1, 5), np.float64(0.2), np.array(0.2)])
+def test_whatever_converts_itself_is_a_number(number):
+    mount, tip = bd.Mount(number), bd.TipMass(number)
+    assert (type(mount.radius), mount.radius, type(tip.mass)) == (float, 0.2, float)
+    assert planar.Pin("p", "arm", "ground", (0.0, 0.0), radius=number).radius == 0.2
+    beam = bd.Beam.rectangular(number, 0.01, 0.0002, 200e9, 7850.0)
+    assert np.isfinite(bd.natural_modes(bd.Scene(beam, mount), Decimal(5), np.int64(2)).frequency).all()
+
+
+def test_one_speed_may_be_given_where_many_are():
+    assert bd.frequency_locus(SCENE, speeds=50.0).frequency.shape == (1, 3)
+    assert bd.steady_response(MOVING, speeds=50).speeds.tolist() == [50.0]
+    assert bd.sweep(MOVING, speeds=np.float32(5), window=(0.0, 0.02), modes=2).speeds.tolist() == [5.0]
+
+
+@pytest.mark.parametrize("speed", [1e300, -1e300])
+def test_a_speed_whose_powers_overflow_is_refused_by_name(speed):
+    for call, name in [("natural_modes", "speed"), ("frequency_locus", "speeds"), ("tradeoff", "speed")]:
+        make, good = CALLS[call]
+        with pytest.raises(ValueError, match=f"^{name} = .*give at most 1e\\+50 rad/s"):
+            make(**(good | {name: speed}))
+
+
+@pytest.mark.parametrize(
+    ("call", "name", "value", "sentence"),
+    [
+        ("natural_modes", "modes", 10**9, "modes = 1000000000: Ritz(functions=200, "),
+        ("resonance_speeds", "order", 1e300, "order = 1e+300: give a whole number from 1 to 20"),
+        ("steady_response", "harmonics", 10**6, "harmonics = 1000000: give a whole number from 0 to 20"),
+        ("natural_modes", "scene", BEAM, "give a Scene; Scene(beam, mount) makes one of a beam"),
+        ("simulate", "modes", "all", "modes = 'all': give a whole number of 1 or more; or \"auto\""),
+    ],
+)  # fmt: skip
+def test_sentence(call, name, value, sentence):
+    make, good = CALLS[call]
+    with pytest.raises(ValueError) as refusal:
+        make(**(good | {name: value}))
+    assert sentence in str(refusal.value)
+
+
+def test_a_road_of_too_short_waves_is_refused():
+    with pytest.raises(ValueError, match=r"wavelength = 1e-30 m: .*1e12 waves a turn"):
+        bd.RollingWheel(0.3, 5.0, bd.RoadWave(1e-30, 0.01))
+    with pytest.raises(ValueError, match="1e12 waves a turn"):
+        bd.RollingWheel(1e20, 5.0, bd.RoadWave(1e-20, 0.01))
+
+
+@pytest.mark.parametrize("size", [5e-324, 1e-300, 1e-60, 1e60, 1e300, 1.7e308])
+def test_a_size_beyond_all_use_is_refused_before_it_overflows(size):
+    for call in ("Beam.rectangular", "Beam.from_stiffness"):
+        make, good = CALLS[call]
+        for name in set(good) - {"tip", "breakpoints"}:
+            varying = (bd.Table([0, 1], [size, size]), lambda xi, size=size: size * (1 + xi))
+            for value in (size, *varying) if name not in ("length", "youngs_modulus", "density") else (size,):
+                with pytest.raises(ValueError, match=name):
+                    make(**(good | {name: value}))
+    for call, name in [
+        ("SpinUp", "duration"),
+        ("RollingWheel", "rolling_radius"),
+        ("RoadWave", "wavelength"),
+    ]:
+        make, good = CALLS[call]
+        with pytest.raises(ValueError, match=name):
+            make(**(good | {name: size}))
+
+
+# Doubtful units ---------------------------------------------------------------------------------------
+
+STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
+SECTION = {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3}
+SECTION |= {"axial_stiffness": 4e5, "outer_fibre": 1e-4}
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: bd.Mount(0.2, 5), r"setting_angle = 5 rad.*286.5 degrees.*math.radians\(5\)"),
+        (lambda: bd.Mount(0.2, 0.0, -4.5), "bending_angle = -4.5 rad"),
+        (lambda: bd.Beam.rectangular(**(STRIP | {"youngs_modulus": 200})), "= 200 Pa.*0.16 m/s"),
+        (lambda: bd.Beam.rectangular(**(STRIP | {"density": 7.85e-9})), "density = 7.85e-09 kg/m3"),
+        (
+            lambda: bd.Beam.from_stiffness(**(SECTION | {"bending_stiffness": 1.3e3})),
+            "bending_stiffness = 1300 N m2.*0.057 m, more than outer_fibre = 0.0001 m",
+        ),
+        (
+            lambda: bd.Beam.from_stiffness(**(SECTION | {"bending_stiffness": 1.3e3, "outer_fibre": None})),
+            r"0.057 m, more than length / sqrt\(12\) = 0.0144 m",
+        ),
+        (
+            lambda: bd.Beam.from_stiffness(**(SECTION | {"mass_per_length": 1.57e-8})),
+            "mass_per_length = 1.57e-08 kg/m.*5.05e\\+06 m/s",
+        ),
+        (lambda: bd.Beam.from_stiffness(0.05, 1.57e-9, 1.3e-3), "stiffness = 0.0013 N m2 with length"),
+    ],
+)  # fmt: skip
+def test_doubtful_units_are_warned_of_where_they_are_given(make, sentence):
+    with pytest.warns(UserWarning, match=sentence) as caught:
+        make()
+    assert [warning.filename for warning in caught] == [__file__]
+
+
+def test_usual_units_are_not_warned_of():
+    for angle in (math.pi, 1.5 * math.pi, math.radians(270), -math.radians(359), 3.0, 2 * math.pi):
+        bd.Mount(0.2, angle)
+    for modulus, density in ((16e9, 11340.0), (10e6, 950.0), (303e9, 1844.0), (1220e9, 3510.0)):
+        bd.Beam.rectangular(**(STRIP | {"youngs_modulus": modulus, "density": density}))  # lead to diamond
+    bd.Beam.from_stiffness(1.0, 1.0, 1.0, 4900.0)  # without dimension
+    bd.Beam.from_stiffness(1.0, 1.0, 1.0)
