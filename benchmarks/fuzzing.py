@@ -138,9 +138,7 @@ def _time_limit(seconds: float) -> Iterator[None]:
 def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -> Outcome:
     """The outcome of a case: what it returns, or how it fails."""
     start = time.process_time()
-    with warnings.catch_warnings(record=True) as warned:
-        warnings.simplefilter("always")
-        warnings.simplefilter("ignore", DeprecationWarning)
+    with _foreign_warnings() as warned:
         try:
             with _time_limit(limit):
                 verdict, detail = run()
@@ -152,10 +150,25 @@ def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -
         except (Exception, SystemExit) as error:
             verdict, detail = "traceback", _where(error)
     if warned and verdict in ("answered", "refused"):
-        first = warned[0]
-        place = f"{Path(first.filename).name}:{first.lineno}"
-        verdict, detail = "warning", f"{first.category.__name__}: {first.message} ({place})"
+        verdict, detail = "warning", warned[0]
     return Outcome(case, verdict, detail, time.process_time() - start)
+
+
+@contextmanager
+def _foreign_warnings() -> Iterator[list[str]]:
+    """Collect warnings but those that a statement of ours gives to the user."""
+    warned: list[str] = []
+
+    def note(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
+        giver = sys._getframe(2).f_code.co_filename  # the frame between is the module `warnings`
+        if category is not UserWarning or not giver.startswith(_OURS):
+            warned.append(f"{category.__name__}: {message} ({Path(filename).name}:{lineno})")
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        warnings.simplefilter("ignore", DeprecationWarning)
+        warnings.showwarning = note
+        yield warned
 
 
 def _is_ours(error: BaseException) -> bool:

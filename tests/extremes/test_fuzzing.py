@@ -63,6 +63,14 @@ def endless(*_):
         pass
 
 
+def warn_as(place):
+    """A function in a file of that name which warns."""
+    text = "import warnings\ndef run():\n    warnings.warn('look')\n    return 'answered', ''"
+    names = {}
+    exec(compile(text, str(fuzzing.ROOT / place), "exec"), names)
+    return names["run"]
+
+
 @pytest.mark.parametrize(
     ("run", "verdict"),
     [
@@ -74,6 +82,8 @@ def endless(*_):
         (foreign, "foreign message"),
         (careless, "warning"),
         (endless, "too long"),
+        (warn_as("beamdyn/scene/beam.py"), "answered"),
+        (warn_as("matplotlib/axes.py"), "warning"),
         (lambda: fuzzing._run(lambda _: 3, []), "exit code 3"),
         (lambda: fuzzing._run(lambda _: 2, []), "exit code 2"),
         (lambda: fuzzing._run(lambda _: warnings.warn("x", stacklevel=1) or 0, []), "warning"),
