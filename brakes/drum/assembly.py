@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, not_negative, numbers, positive, together
-from beamdyn.common.checks import kind, refuse
+from beamdyn.common.checks import refuse
 from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
 
 
@@ -37,8 +37,6 @@ class DrumBrake:
                 f"{len(self.shoes)} shoes and {len(self.leading)} entries of leading: give one entry a shoe, "
                 "at least one shoe"
             )
-        for place, shoe in enumerate(self.shoes):
-            kind(f"shoes[{place}]", shoe, Shoe)
         radii = [shoe.drum_radius for shoe in self.shoes]
         if any(not np.all(np.asarray(radius) == radii[0]) for radius in radii):
             raise ValueError("drum_radius differs between the shoes: they share one drum; give one radius")
@@ -46,12 +44,12 @@ class DrumBrake:
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
     """Assemble a leading and a trailing shoe; the same shoe twice unless a second is given."""
-    return DrumBrake((leading, leading if trailing is None else trailing), (True, False))
+    return DrumBrake((leading, trailing or leading), (True, False))
 
 
 def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
     """Assemble two shoes that lead forward and trail in reverse; the same twice unless a second is given."""
-    return DrumBrake((first, first if second is None else second), (True, True))
+    return DrumBrake((first, second or first), (True, True))
 
 
 @dataclass(frozen=True)
@@ -122,8 +120,6 @@ def brake_torque(
     ValueError
         As for `shoe_torque`.
     """
-    kind("brake", brake, DrumBrake)
-    kind("reverse", reverse, bool)
     name, value = take_only({"force": force, "peak_pressure": peak_pressure, "torque": torque})
     units = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
     value = positive(name, value, units[name])

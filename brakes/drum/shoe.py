@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, keep_checked, not_negative, positive, together
-from beamdyn.common.checks import kind, one_of, refuse
+from beamdyn.common.checks import one_of, refuse
 from beamdyn.common.described import Described
 from beamdyn.common.results import Result
 
@@ -282,8 +282,6 @@ def shoe_torque(
     sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
     d = r K - b S - c C; torque = mu A p0 r K.
     """
-    kind("shoe", shoe, Shoe)
-    kind("leading", leading, bool)
     mu = not_negative("friction", friction)
     given = {"force": force, "peak_pressure": peak_pressure, "torque": torque}
     name, value = take_only(given)

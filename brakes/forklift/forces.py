@@ -25,7 +25,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, positive, together
-from beamdyn.common.checks import InvalidValue, refuse
+from beamdyn.common.checks import refuse
 from beamdyn.common.results import Result
 from brakes.forklift.levers import Levers
 
@@ -157,8 +157,6 @@ def internal_forces(
     """
     if torque is None and friction is None:
         raise ValueError("give torque, or friction, or both to compare them")
-    if not callable(getattr(geometry, "find_levers", None)):
-        raise InvalidValue("geometry", geometry, "give a DuoServo or Levers")
     levers = geometry.find_levers(clearance)
     P_T = positive("piston_force", piston_force, "N")
     T = None if torque is None else positive("torque", torque, "N m")

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.checks import count, kind, positive
+from beamdyn.common.checks import count, positive
 from beamdyn.common.results import Result, plain
 from brakes.forklift.duo_servo import DuoServo
 from brakes.planar import (
@@ -145,7 +145,6 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     ValueError
         If the clearance is not positive, or larger than the drum allows.
     """
-    kind("geometry", geometry, DuoServo)
     c, n = positive("clearance", clearance, "m"), count("positions", positions, 2)
     interference = geometry.move_shoes(c).interference
     right, left = (_follow_seating(geometry, c, side, n) for side in ("right", "left"))

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers
-from beamdyn.common.checks import kind
 from beamdyn.common.results import Result
 from brakes.forklift.duo_servo import ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
@@ -72,7 +71,6 @@ def brake_procedure(
     ValueError
         As for `stop` and `internal_forces`.
     """
-    kind("motion", motion, ShoeMotion)
     stopped = stop(truck, conditions)
     forces = internal_forces(
         motion.levers, piston_force=piston_force, torque=stopped.torque_per_brake, friction=lining_friction

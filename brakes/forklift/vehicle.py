@@ -22,7 +22,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, keep_checked, together
-from beamdyn.common.checks import kind, refuse
+from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
 from beamdyn.common.results import Result
 
@@ -245,8 +245,6 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     ValueError
         If the truck would overturn at rest on the slope, or the shapes do not broadcast.
     """
-    kind("truck", truck, Truck)
-    kind("conditions", conditions, StopConditions)
     _refuse_overturning(truck, conditions.slope)
     one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase  # shape of its cases
     together(truck=one_case, **vars(conditions))

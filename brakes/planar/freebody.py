@@ -6,9 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind
 from brakes.planar.mechanism import Position
-from brakes.planar.points import GROUND, suggest
 from brakes.planar.rows import Row
 from brakes.planar.statics import Equilibrium
 
@@ -48,18 +46,8 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     -------
     tuple of Action
         Joints, then loads, then friction; forces and moments of all add up to zero.
-
-    Raises
-    ------
-    ValueError
-        If there is no such body or position.
     """
-    kind("equilibrium", equilibrium, Equilibrium)
-    mechanism, positions = equilibrium.position.mechanism, len(equilibrium.position.batch)
-    if not isinstance(body, str) or body not in (*mechanism.bodies, GROUND):
-        raise InvalidValue("body", body, "there is no such body", suggest(body, (*mechanism.bodies, GROUND)))
-    if not isinstance(index, int | np.integer) or not -positions <= index < positions:
-        raise InvalidValue("index", index, f"give a whole number from 0 to {positions - 1}")
+    mechanism = equilibrium.position.mechanism
     place = Position(mechanism, equilibrium.position.batch[index])
     size = np.atleast_2d(equilibrium.multiplier)[index]
     system = mechanism.system

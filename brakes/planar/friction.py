@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brakes.planar.kinematics import locate
+from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, forces_on_bodies, solve
@@ -63,8 +63,8 @@ def solve_with_friction(
     ValueError
         If the mobility is not 1, or equilibrium without friction is not determined.
     """
-    position = locate(mechanism, position)
     mechanism.load(driver)
+    position = assemble(mechanism) if position is None else position.of(mechanism)
     without = solve(mechanism, position)
     if without.status != "determined" or (without.mobility != 1).any():
         raise ValueError(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamdyn.common.checks import count, kind, positive, real_array
+from beamdyn.common.checks import count, positive, real_array
 from brakes.planar.curve import Node, find_zero, follow, node_at, solve_at_arc_lengths, solve_at_values
 from brakes.planar.diagnosis import (
     AssemblyError,
@@ -92,7 +92,6 @@ def assemble(mechanism: Mechanism) -> Position:
     AssemblyError
         If they cannot be: by how much, and which joint is furthest apart.
     """
-    kind("mechanism", mechanism, Mechanism)
     system = mechanism.system
     m = system.constraints
     y = np.zeros((1, system.size))
@@ -114,15 +113,6 @@ def assemble(mechanism: Mechanism) -> Position:
     if np.abs(rows.value[:, :m]).max(initial=0.0) > max(_CLOSED, 100 * system.rounding):
         raise AssemblyError(_gaps(system, rows.value[0]))
     return Position(mechanism, y[0])
-
-
-def locate(mechanism: Mechanism, position: Position | None) -> Position:
-    """The position given, as one of this mechanism; the assembled one if none is given."""
-    kind("mechanism", mechanism, Mechanism)
-    if position is None:
-        return assemble(mechanism)
-    kind("position", position, Position)
-    return position.of(mechanism)
 
 
 def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarray) -> Stroke:
@@ -154,7 +144,6 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     ValueError
         If the mobility is not 1, or the driver does not move.
     """
-    kind("mechanism", mechanism, Mechanism)
     if not mechanism.load(driver).has_coordinate:
         raise ValueError(f"driver {driver!r} follows its body and has no coordinate: drive another load")
     system, start, k = _start(mechanism, driver)
@@ -197,7 +186,6 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     -------
     Stroke
     """
-    kind("mechanism", mechanism, Mechanism)
     system, start, _ = _start(mechanism, driver)
     s = np.linspace(0.0, positive("length", length, "m") / system.length, count("points", points, 2))
     nodes, chords = [start], 0.0

@@ -6,11 +6,9 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind
 from brakes.planar.part import Joint, Load, Part
 from brakes.planar.points import GROUND, Point, suggest
 from brakes.planar.rows import FrictionLaw
@@ -45,8 +43,8 @@ class Mechanism:
     def __post_init__(self) -> None:
         if isinstance(self.bodies, str):
             raise ValueError(f"bodies = {self.bodies!r}: give a sequence of names, ({self.bodies!r},)")
-        for key, wanted in (("bodies", str), ("joints", Joint), ("loads", Load)):
-            object.__setattr__(self, key, _all_of(key, getattr(self, key), wanted))
+        for key in ("bodies", "joints", "loads"):
+            object.__setattr__(self, key, tuple(getattr(self, key)))
         if not self.bodies or GROUND in self.bodies:
             raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} is there by itself")
         _unique("body", self.bodies)
@@ -83,19 +81,9 @@ class Mechanism:
     def load(self, name: str) -> Load:
         """The load of a name."""
         known = {load.name: load for load in self.loads}
-        if not isinstance(name, str) or name not in known:
+        if name not in known:
             raise ValueError(f"load {name!r} does not exist; {suggest(name, known)}")
         return known[name]
-
-
-def _all_of(name: str, values: object, wanted: type) -> tuple[Any, ...]:
-    """The values as a tuple, if all are of the wanted class."""
-    if not isinstance(values, Iterable):
-        raise InvalidValue(name, values, f"give a sequence, each a {wanted.__name__}")
-    values = tuple(values)
-    for place, value in enumerate(values):
-        kind(f"{name}[{place}]", value, wanted)
-    return values
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_of_moving
-from brakes.planar.kinematics import locate
+from brakes.planar.kinematics import assemble
 from brakes.planar.linear import Decomposition, decompose, times
 from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.system import Rows, System
@@ -120,7 +120,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     AssemblyError
         If no position is given and the joints cannot be brought together.
     """
-    position = locate(mechanism, position)
+    position = assemble(mechanism) if position is None else position.of(mechanism)
     balance = balance_at(mechanism, position)
     forces = decompose(balance.matrix, mechanism.system.rounding)
     multiplier = balance.given.copy()
