@@ -147,6 +147,8 @@ def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -
         except _REFUSALS as error:
             ours = str(error) and _is_ours(error)
             verdict, detail = "refused" if ours else "foreign message", _where(error)
+        except Warning as error:
+            verdict, detail = "warning", _where(error)
         except (Exception, SystemExit) as error:
             verdict, detail = "traceback", _where(error)
     if warned and verdict in ("answered", "refused"):
@@ -156,7 +158,7 @@ def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -
 
 @contextmanager
 def _foreign_warnings() -> Iterator[list[str]]:
-    """Collect warnings but those that a statement of ours gives to the user."""
+    """Raise warnings, and collect those for the user but for ours: in a command they would be its sentences."""
     warned: list[str] = []
 
     def note(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
@@ -165,7 +167,8 @@ def _foreign_warnings() -> Iterator[list[str]]:
             warned.append(f"{category.__name__}: {message} ({Path(filename).name}:{lineno})")
 
     with warnings.catch_warnings():
-        warnings.simplefilter("always")
+        warnings.simplefilter("error")
+        warnings.simplefilter("always", UserWarning)
         warnings.simplefilter("ignore", DeprecationWarning)
         warnings.showwarning = note
         yield warned
