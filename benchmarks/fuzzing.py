@@ -158,7 +158,7 @@ def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -
 
 @contextmanager
 def _foreign_warnings() -> Iterator[list[str]]:
-    """Raise warnings, and collect those for the user but for ours: in a command they would be its sentences."""
+    """Raise warnings, such as those of numpy, and collect those for the user that are not ours."""
     warned: list[str] = []
 
     def note(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
