@@ -89,7 +89,16 @@ TYPES = (
 def wrong_values() -> list[Any]:
     """Wrong values: magnitudes, numbers that are not finite, other types, and objects of our own."""
     beam, mount, scene = _beam(), bd.Mount(0.2), _scene()
-    own = (beam, mount, scene, bd.Table([0, 1], [1, 2]), bd.SpinUp(50.0, 1.0), bd.Ritz(8), _shoe(), _clamp())
+    own = (
+        beam,
+        mount,
+        scene,
+        bd.Table([0, 1], [1, 2]),
+        bd.SpinUp(50.0, 1.0),
+        bd.Ritz(8),
+        make_shoe(),
+        make_clamp(),
+    )
     return [*MAGNITUDES, *NOT_FINITE, *TYPES, *own, bd.Beam, planar.solve]
 
 
@@ -108,11 +117,11 @@ def _rolling() -> bd.Scene:
     return _scene(bd.RollingWheel(0.3, bd.SpinUp(55.0, 0.2), bd.RoadWave(0.3, velocity_amplitude=0.01)))
 
 
-def _shoe() -> drum.Shoe:
+def make_shoe() -> drum.Shoe:
     return drum.Shoe(**SHOE)
 
 
-def _clamp() -> planar.Mechanism:
+def make_clamp() -> planar.Mechanism:
     """A lever on a pin, pressed on a spring."""
     lever = planar.Pin("pin", "lever", "ground", (0.0, 0.0))
     hand = planar.Force("hand", "lever", (0.2, 0.0), (0.0, -1.0))
@@ -141,7 +150,7 @@ ROAD = {"slope": 0.3019, "speed": 5.5, "friction": 0.7, "reaction_time": 0.5, "r
 
 def right_calls() -> list[Call]:
     """Every public function that computes or describes, with arguments that are right."""
-    scene, rolling, clamp, caliper = _scene(), _rolling(), _clamp(), calipers.SinglePivot().build()
+    scene, rolling, clamp, caliper = _scene(), _rolling(), make_clamp(), calipers.SinglePivot().build()
     truck, road = forklift.Truck(**TRUCK), forklift.StopConditions(**ROAD)
     slow = {"modes": 2, "tolerance": 1e-3}
     return [
@@ -201,16 +210,16 @@ def right_calls() -> list[Call]:
             {"scene": rolling, "speeds": (40.0, 50.0), "window": (0.0, 0.1), "chunk": 4, **slow},
         ),
         Call("drum.Shoe", drum.Shoe, SHOE),
-        Call("drum.simplex", drum.simplex, {"leading": _shoe(), "trailing": _shoe()}),
+        Call("drum.simplex", drum.simplex, {"leading": make_shoe(), "trailing": make_shoe()}),
         Call(
             "drum.shoe_torque",
             drum.shoe_torque,
-            {"shoe": _shoe(), "friction": 0.3, "force": 1e3, "leading": True},
+            {"shoe": make_shoe(), "friction": 0.3, "force": 1e3, "leading": True},
         ),
         Call(
             "drum.brake_torque",
             drum.brake_torque,
-            {"brake": drum.simplex(_shoe()), "friction": 0.3, "force": 1e3},
+            {"brake": drum.simplex(make_shoe()), "friction": 0.3, "force": 1e3},
         ),
         Call("drum.wheel_cylinder_force", drum.wheel_cylinder_force, {"bore": 0.02, "line_pressure": 5e6}),
         Call("drum.stop_energy", drum.stop_energy, {"mass": 1000.0, "speed": 20.0, "descent": 1.0}),

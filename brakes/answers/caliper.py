@@ -176,7 +176,7 @@ class CaliperAnswer(PlanarAnswer):
         run = self.run
         lengths = (run.cable[k], run.finger[k], *run.pad_travel[k])
         ratios = (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])
-        return [f"{np.round(1e3 * v, 4) + 0.0:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios]
+        return [f"{round(float(1e3 * v), 4) + 0.0:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios]
 
     def _sentences(self) -> Iterator[str]:
         run = self.run

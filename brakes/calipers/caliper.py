@@ -9,7 +9,7 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.checks import count, not_negative, one_of, positive, real_array
+from beamdyn.common.checks import count, not_negative, one_of, positive, real, real_array
 from beamdyn.common.described import Described
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
 from brakes.planar import (
@@ -165,7 +165,10 @@ class Caliper:
             If the mechanism does not have one motion.
         """
         travel = self.contact if travel is None else travel
-        values = np.linspace(0.0, travel, count("points", points, 2)) if np.ndim(travel) == 0 else travel
+        if np.ndim(travel) == 0:
+            values = np.linspace(0.0, real("travel", travel, "m"), count("points", points, 2))
+        else:
+            values = travel
         motion = stroke(self.free, self.cable, real_array("travel", values))  # pyright: ignore[reportArgumentType]
         tension = self.lever_ratio * positive("finger", finger, "N")
         forces = self._forces(motion.position, tension)

@@ -1,6 +1,5 @@
 """Mutated files and wrong calls are answered, or refused in a sentence; the check of it sees what fails."""
 
-import time
 import tomllib
 import warnings
 from random import Random
@@ -61,7 +60,15 @@ def careless(*_):
 
 def endless(*_):
     while True:
-        time.sleep(0.01)
+        pass
+
+
+def warn_as(place):
+    """A function in a file of that name which warns."""
+    text = "import warnings\ndef run():\n    warnings.warn('look')\n    return 'answered', ''"
+    names = {}
+    exec(compile(text, str(fuzzing.ROOT / place), "exec"), names)
+    return names["run"]
 
 
 @pytest.mark.parametrize(
@@ -75,6 +82,8 @@ def endless(*_):
         (foreign, "foreign message"),
         (careless, "warning"),
         (endless, "too long"),
+        (warn_as("beamdyn/scene/beam.py"), "answered"),
+        (warn_as("matplotlib/axes.py"), "warning"),
         (lambda: fuzzing._run(lambda _: 3, []), "exit code 3"),
         (lambda: fuzzing._run(lambda _: 2, []), "exit code 2"),
         (lambda: fuzzing._run(lambda _: warnings.warn("x", stacklevel=1) or 0, []), "warning"),

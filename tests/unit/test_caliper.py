@@ -50,6 +50,7 @@ def test_bad_calipers_are_refused(change, words):
     [
         (lambda c: c.stroke(finger=0.0), "finger = 0 N"),
         (lambda c: c.stroke(points=1), "points = 1"),
+        (lambda c: c.stroke(object()), "travel = <object object at .*>: give a finite number in m"),
         (lambda c: c.stroke([np.nan]), "every value must be finite"),
         (lambda c: c.worn(-1e-3), "lost = -0.001 m"),
         (lambda c: c.friction(-0.1), "friction = -0.1"),
