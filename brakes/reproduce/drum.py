@@ -91,8 +91,8 @@ def _on_pressure(right: BrakeResult) -> str:
     more = max(float(np.max(axis.c_star / turning.c_star)) for axis, turning in pairs) - 1
     return (
         "The right numbers here keep the paper's pressure (2), which vanishes on the axis. That of a shoe "
-        "which turns about its pin vanishes on the line to the pin. The axis overstates the C* of a shoe by up "
-        f"to {100 * more:.1f} %; the total at 80 deg is {pivot.torque[-1]:.4g} in place of "
+        "which turns about its pin vanishes on the line to the pin. The axis overstates the C* of a shoe by "
+        f"up to {100 * more:.1f} %; the total at 80 deg is {pivot.torque[-1]:.4g} in place of "
         f"{right.torque[-1]:.4g} N m. `brakes drum` takes the pin unless the file says otherwise."
     )
 

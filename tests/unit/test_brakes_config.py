@@ -238,6 +238,8 @@ def test_each_stage_alone() -> None:
         ),
         ({"truck": None}, ["[forces]", "give torque or lining_friction"]),
         ({"truck": None, "brake": None}, ["no stage is complete"]),
+        ({"stop__friction": 70}, ["stop.friction = 70", "at most 2", "70 % is 0.7"]),
+        ({"forces__lining_friction": 40}, ["forces.lining_friction = 40", "at most 10"]),
     ],
 )
 def test_one_mistake_in_a_forklift(keys: dict[str, Any], parts: list[str]) -> None:
