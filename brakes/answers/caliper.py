@@ -15,7 +15,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Slider
 from beamdyn.common.described import descriptions
-from beamdyn.common.edge.config import ConfigError, parse, read
+from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
 from beamdyn.common.edge.input_sweep import Output, numbers
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
@@ -265,9 +265,11 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         """Tables and text of a file, or of the caliper of a name."""
         if name in NAMED:
             return {"caliper": name}, named_text(name)
-        if not name or ("." not in name and not Path(name).exists()):
-            known = f"give a TOML file or one of {', '.join(NAMED)}"
-            raise ConfigError(name or "no mechanism", [f"there is no such caliper; {known}"])
+        known = f"give a TOML file, or the name of a caliper: {', '.join(NAMED)}"
+        if not name:
+            raise MissingValue("MECHANISM", None, f"{known}; brakes caliper --list shows their dimensions")
+        if "." not in name and not Path(name).exists():
+            raise ConfigError(name, [f"there is no such caliper; {known}"])
         text = read(name)
         return parse(text, name), text
 

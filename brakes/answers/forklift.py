@@ -148,23 +148,10 @@ class ForkliftAnswer(Answer):
 
     @property
     def error(self) -> Any:
-        """Largest of the stages' errors; without one case the kinematics, a closed form, has none."""
-        stop = np.nan if self.stop is None else self.stop.residual
-        forces = np.nan if self.forces is None else self.forces.residual
-        motion = np.nan if self.motion is None or np.ndim(self.motion.drum_turn) else self._turn_error()
-        return np.fmax(np.fmax(stop, forces), motion)
-
-    def _turn_error(self) -> float:
-        """Difference of the turns in closed form and of the mechanism followed position by position."""
-        assert self.kinematics is not None and self.motion is not None
-        turns = (
-            (self.kinematics.right.turn[-1], self.motion.seating_turn),
-            (
-                self.kinematics.drum.turn[-1],
-                self.motion.drum_turn,
-            ),
-        )
-        return max(abs(float(followed / closed) - 1) for followed, closed in turns)
+        """Largest of the stages' residuals."""
+        stages = (self.stop, self.motion, self.forces)
+        residuals = [stage.residual for stage in stages if stage is not None]
+        return np.fmax.reduce(np.broadcast_arrays(*residuals))
 
     def tables(self) -> list[RenderableType]:
         """A table of the vehicle, two of the kinematics, one of the forces, as far as they are there."""
@@ -338,8 +325,8 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
     method = "closed forms of the stop and of the shoes' motion; forces by a root of one equation a shoe"
     error_from = (
-        "largest of: residual of the truck's moments, turns against the mechanism followed position by "
-        "position, residual of the brake's equations; each relative"
+        "largest of: residual moment on the truck, distance of lining and piston from where they should end, "
+        "residual of the brake's equations; each relative"
     )
     model = ForkliftInput
     sections = needs = ("truck", "stop", "brake", "levers", "forces")

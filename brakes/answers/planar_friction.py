@@ -15,6 +15,10 @@ from brakes.answers.planar_tables import format_force, largest_error
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Stroke, solve_with_friction
 from brakes.planar.rows import Row
 
+_ROUNDING = (
+    1e-9  # a load of this part of the largest is shown as 0, such as a brake's torque without friction
+)
+
 
 @dataclass(frozen=True)
 class MechanismFriction(Result):
@@ -78,7 +82,7 @@ class MechanismFriction(Result):
             for name, (_, law) in mechanism.friction.items()
         ]
         heads = ("size of", "without friction", "squeezing", "releasing", "unit")
-        title = f"With friction, as drawn: squeezing, {self.driver} moves along; releasing, it moves back"
+        title = f"With friction, as drawn; squeezing: motion along {self.driver}, releasing: against it"
         return table(title, heads, [*rows, (), *rubbing], (0, 4))
 
     def columns(self) -> dict[str, np.ndarray]:
@@ -103,7 +107,8 @@ class MechanismFriction(Result):
         """The unknown load in three numbers, at one of the positions."""
         sentences = []
         for load in unknown_loads(self.drawn.without.position.mechanism):
-            sizes = [np.ravel(way.amplitudes[load.name])[index] for way in _ways(self.last)]
+            sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in _ways(self.last)])
+            sizes[np.abs(sizes) < _ROUNDING * np.nanmax(np.abs(sizes), initial=0.0)] = 0.0
             without, squeezing, releasing = (_shown(size, load.unit) for size in sizes)
             sentences.append(
                 f"{load.name}: {without} without friction, {squeezing} squeezing, {releasing} releasing"

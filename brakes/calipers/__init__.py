@@ -12,6 +12,7 @@ from brakes.calipers.designs import (
     VBrake,
 )
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
+from brakes.calipers.stance import Stance
 from brakes.calipers.stopping import StoppingDistance, stop
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "PadWear",
     "PivotFriction",
     "SinglePivot",
+    "Stance",
     "StoppingDistance",
     "VBrake",
     "stop",

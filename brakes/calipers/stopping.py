@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamdyn.common.checks import not_negative, positive
 from beamdyn.common.results import Result
+from brakes.calipers.stance import GRAVITY, Stance
 
 _RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
+UNKNOWN = Stance()
 
 
 @dataclass(frozen=True)
@@ -25,15 +28,26 @@ class StoppingDistance(Result):
         Energy that the pads take up [J].
     deceleration : float
         Mean deceleration over the distance [m/s2].
+    grip_limit, pitch_limit : float
+        Decelerations at which the braked tyre slips and at which the rear wheel lifts [m/s2]; inf if it never
+        does, nan if not given.
+    pad_limit : float
+        Force on each pad at the lower of the two limits [N], which is not exceeded; inf if there is none.
+    limited_by : {"brake", "grip", "pitching over"}
+        What limits the deceleration.
     status : {"stops", "does not stop"}
         Whether it stops.
     message : str
-        The status as a sentence.
+        The status as a sentence, with what limits the stop and which limits were not given.
     """
 
     distance: float
     energy: float
     deceleration: float
+    grip_limit: float
+    pitch_limit: float
+    pad_limit: float
+    limited_by: str
     status: str
     message: str
 
@@ -46,11 +60,13 @@ def stop(
     wheel_inertia: float = 0.0,
     tyre_radius: float | None = None,
     rim_radius: float | None = None,
+    stance: Stance = UNKNOWN,
 ) -> StoppingDistance:
-    """Stop on level ground by the pads of one rim alone, without slip of the tyre.
+    """Stop on level ground by the pads of one rim alone, with no more than grip and balance allow.
 
     With the force F on each of two pads, E = (M + J / R^2) v^2 / 2 = integral of 2 mu F (r / R) ds over the
     stopping distance; constant F, no inertia and r = R give M v^2 = 4 mu F L (the eeBrake paper's form).
+    The rider does not squeeze harder than at the limit of the stance.
 
     Parameters
     ----------
@@ -68,6 +84,9 @@ def stop(
         Rolling radius R of the wheels [m]; needed with the inertia of the wheels.
     rim_radius : float, optional
         Radius r at which the pads press [m]; that of the tyre if not given, as in the paper.
+    stance : Stance
+        The braked wheel, its grip, and where the centre of gravity is; a limit that is not given is named in
+        the message.
 
     Returns
     -------
@@ -78,15 +97,57 @@ def stop(
     ValueError
         If a value is out of its bounds, or the tyre's radius is missing.
     """
-    inertia = _equivalent_mass(wheel_inertia, tyre_radius)
-    lever = _radius_ratio(rim_radius, tyre_radius)
-    energy = (positive("mass", mass, "kg") + inertia) * not_negative("speed", speed, "m/s") ** 2 / 2
-    factor = 2 * positive("friction", friction) * lever
-    distance = _integrated(energy, factor, pad_force) if callable(pad_force) else None
-    if distance is None:
-        force = not_negative("pad_force", pad_force, "N")  # pyright: ignore[reportArgumentType]
-        distance = energy / (factor * force) if force else np.inf
-    return _result(distance, energy, speed)
+    inertia = positive("mass", mass, "kg") + _equivalent_mass(wheel_inertia, tyre_radius)
+    energy = inertia * not_negative("speed", speed, "m/s") ** 2 / 2
+    factor = 2 * positive("friction", friction) * _radius_ratio(rim_radius, tyre_radius)
+    height = math.inf if stance.cg_height is None else stance.cg_height
+    lift = 1 + (inertia / mass - 1) * (tyre_radius or 0.0) / height
+    grip, pitch = stance.grip_limit(lift, inertia / mass), stance.pitch_limit(lift)
+    most = float(np.fmin(grip, pitch)) * inertia / factor
+    most = math.inf if math.isnan(most) else most
+    distance, capped = _distance(energy, factor, pad_force, most)
+    limited_by = "brake" if not capped else "grip" if grip < pitch else "pitching over"
+    stops = distance < math.inf
+    deceleration = speed**2 / (2 * distance) if stops and distance else 0.0
+    words = f"stops in {distance:.6g} m" if stops else "does not stop: the pads do not press long enough"
+    return StoppingDistance(
+        distance,
+        energy,
+        deceleration,
+        grip,
+        pitch,
+        most,
+        limited_by,
+        "stops" if stops else "does not stop",
+        "; ".join((words, *_explain(stance, limited_by, grip, pitch, most))),
+    )
+
+
+def _explain(stance: Stance, limited_by: str, grip: float, pitch: float, most: float) -> Iterator[str]:
+    """What limits the stop, and the limits that were not given."""
+    limit = f"{min(grip, pitch) / GRAVITY:.3g} g, {most:.4g} N on each pad"
+    if limited_by == "grip":
+        yield f"limited by grip: the {stance.braked_wheel} tyre slips at {limit}"
+    elif limited_by == "pitching over":
+        yield f"limited by pitching over: the rear wheel lifts at {limit}"
+    if math.isnan(grip):
+        yield "grip is not checked: give tyre_friction, wheelbase, cg_height and cg_behind_front"
+    if math.isnan(pitch):
+        yield "pitching over is not checked: give cg_height and cg_behind_front"
+
+
+def _distance(
+    energy: float, factor: float, pad_force: float | Callable[[float], float], most: float
+) -> tuple[float, bool]:
+    """Stopping distance [m], and whether the greatest useful force is reached."""
+    if not callable(pad_force):
+        force = not_negative("pad_force", pad_force, "N")
+        return (energy / (factor * min(force, most)) if force else math.inf), force > most
+    if not energy:
+        return 0.0, False
+    given = pad_force
+    path = _integrated(energy, factor, lambda s: min(given(s), most))
+    return float(path[-1]), any(given(s) > most for s in path if s < math.inf)
 
 
 def _equivalent_mass(inertia: float, tyre_radius: float | None) -> float:
@@ -108,12 +169,10 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
     return ratio
 
 
-def _integrated(energy: float, factor: float, force: Callable[[float], float]) -> float:
-    """Distance s at which ds/dE = 1 / (factor F(s)) has used the energy up; inf if F vanishes before."""
+def _integrated(energy: float, factor: float, force: Callable[[float], float]) -> np.ndarray:
+    """Distances s at which ds/dE = 1 / (factor F(s)) uses the energy up; the last is inf if F vanishes."""
     from scipy.integrate import solve_ivp
 
-    if not energy:
-        return 0.0
     if not force(0.0) > 0:
         raise ValueError(f"pad_force at s = 0 is {force(0.0):g} N: begin where the pads begin to press")
 
@@ -122,13 +181,4 @@ def _integrated(energy: float, factor: float, force: Callable[[float], float]) -
         return np.array([1 / (factor * pressing) if pressing > 0 else np.nan])
 
     solution = solve_ivp(rate, (0.0, energy), np.zeros(1), method="DOP853", rtol=_RTOL, atol=_ATOL)
-    return float(solution.y[0, -1]) if solution.success else np.inf
-
-
-def _result(distance: float, energy: float, speed: float) -> StoppingDistance:
-    if distance == np.inf:
-        return StoppingDistance(
-            distance, energy, 0.0, "does not stop", "the pads do not press long enough: no stop"
-        )
-    deceleration = speed**2 / (2 * distance) if distance else 0.0
-    return StoppingDistance(distance, energy, deceleration, "stops", f"stops in {distance:.6g} m")
+    return solution.y[0] if solution.success else np.append(solution.y[0], np.inf)

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from brakes.answers.base import Answer, BrakeType
 
 BrakeFile = Annotated[Path, Parameter(name="BRAKE.toml")]
-SweptInputs = Annotated[tuple[str, ...], Parameter(name="--sweep", negative="", consume_multiple=False)]
+SweptInputs = Annotated[
+    tuple[str, ...],
+    Parameter(name="--sweep", negative="", consume_multiple=False, show_default=False),
+]
 SweepResults = Annotated[str | None, Parameter(name="--result")]
 Files = Mapping[str, tuple[Path | None, Callable[["Answer", Path], object]]]
 
@@ -51,7 +54,7 @@ def add_command(app: App, name: str, help: str) -> None:
         Parameters
         ----------
         file
-            The brake.
+            The TOML file that describes the brake.
         sweep
             An input and its values: KEY=start:stop:count unit, e.g. "friction=0.1:0.6:11" or
             "shoe.lining_end=50:120:15 deg"; twice for two inputs.

@@ -12,9 +12,9 @@ from brakes.cli.answering import SweepResults, SweptInputs, run_command
 from brakes.cli.program import app
 
 
-@app.command
+@app.command(usage="Usage: brakes caliper [OPTIONS] MECHANISM")
 def caliper(
-    mechanism: str = "",
+    mechanism: Annotated[str, Parameter(name="MECHANISM", show_default=False)] = "",
     /,
     *,
     free_bodies: Path | None = None,
@@ -26,12 +26,14 @@ def caliper(
 ) -> None:
     """Forces, travels and mechanical advantage of a caliper, or of any planar mechanism.
 
-    Says which bodies are loose and which reactions statics does not determine, and then ends with code 1.
+    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
+    statics does not determine and which contacts open, and then ends with code 1.
 
     Parameters
     ----------
     mechanism
-        A TOML file, or the name of a caliper with its usual dimensions.
+        A TOML file, or a caliper with its usual dimensions: eebrake, single-pivot, dual-pivot, centre-pull,
+        cantilever or v-brake.
     free_bodies
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
@@ -43,7 +45,7 @@ def caliper(
         Results of a sweep, separated by commas, such as "finger_travel,right_advantage"; a wrong name
         lists all.
     list_
-        List the named calipers and their dimensions instead.
+        List the named calipers and their dimensions; needs no MECHANISM.
     outputs
         Files to write.
     """

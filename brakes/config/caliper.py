@@ -5,15 +5,15 @@ from __future__ import annotations
 import dataclasses
 import math
 from functools import cache, cached_property
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
-from beamdyn.common.edge.config import validated
+from beamdyn.common.edge.config import CoreSection, validated
 from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
-from beamdyn.common.edge.sections import MadeSection, section_of
+from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
-from brakes.calipers import NAMED, Caliper, StoppingDistance, stop
+from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
 from brakes.planar.inputs import DescribedDirection, DescribedPoint
 from brakes.planar.points import Point as Coordinates
 
@@ -88,19 +88,33 @@ class RunInput(Section):
     wear: Annotated[list[_Loss], Field(max_length=100)] = []  # noqa: RUF012
 
 
-class CaliperStopInput(Section):
-    """[stop]: the vehicle that this brake alone stops."""
+class _StopInput(CoreSection):
+    """[stop]: the vehicle that this brake alone stops; `Stance` adds its balance and grip."""
 
     mass: Annotated[float, Quantity("kg", "M", "mass, wheels included", above=0)]
     speed: Annotated[float, Quantity("m/s", "v", "speed", least=0)]
-    friction: Annotated[float, Quantity("", "mu", "friction of pads and rim", above=0)]
+    friction: Annotated[float, Quantity("", "mu", "friction of pads and rim", above=0, most=2)]
     wheel_inertia: Annotated[float, Quantity("kg m2", "J", "moment of inertia of all wheels", least=0)] = 0.0
     tyre_radius: Annotated[float | None, Quantity("m", "R", "rolling radius", above=0)] = None
     rim_radius: Annotated[float | None, Quantity("m", "r", "radius at the pads", above=0)] = None
 
+    @cached_property
+    def core(self) -> Stance:
+        """Balance and grip."""
+        return Stance(**{key: getattr(self, key) for key in _STANCE})
+
     def with_force(self, pad_force: float) -> StoppingDistance:
         """The stopping distance with a force on each pad [N]."""
-        return stop(pad_force=pad_force, **dict(self))
+        rest = {key: getattr(self, key) for key in _StopInput.model_fields}
+        return stop(pad_force=pad_force, stance=self.core, **rest)
+
+
+_STANCE = fields_of(Stance)
+
+if TYPE_CHECKING:
+    CaliperStopInput = _StopInput
+else:
+    CaliperStopInput = create_model("CaliperStopInput", __base__=_StopInput, __module__=__name__, **_STANCE)
 
 
 # A named caliper ----------------------------------------------------------------------------------

@@ -113,6 +113,8 @@ class ForcesInput(Section):
             "mu_l",
             "friction of the linings: compared with what the torque needs, or gives the torque",
             above=0,
+            most=10,
+            remedy="40 % is 0.4",
         ),
     ] = None
 

@@ -8,7 +8,13 @@ import numpy as np
 
 from brakes.calipers import Caliper, CaliperStroke
 from brakes.drawings.mechanism import draw_open_and_closed, draw_rim, force_scale
-from brakes.drawings.mechanism_stroke import plot_advantage, plot_pad_ratio, plot_reactions
+from brakes.drawings.mechanism_stroke import (
+    merged,
+    plot_advantage,
+    plot_couples,
+    plot_pad_ratio,
+    plot_reactions,
+)
 from brakes.planar import Equilibrium, Position
 
 if TYPE_CHECKING:
@@ -67,21 +73,28 @@ def caliper_figure(
 
     place = 1e3 * float(run.cable[-1] if cable is None else cable)
     figure = Figure(figsize=(11.5, 7.6))  # laid out by hand: a layout engine takes twice as long
+    sizes = [(joint.is_couple, joint.name, run.magnitudes[joint.name]) for joint in caliper.mechanism.joints]
+    forces, couples = (
+        {name: size for kind, name, size in sizes if kind is is_couple} for is_couple in (False, True)
+    )
+    heights = (1, 1, 1.6, 0.8) if merged(couples) else (1, 1, 1.6)
     cells = figure.add_gridspec(
-        3, 2, width_ratios=(1.25, 1), height_ratios=(1, 1, 1.6), wspace=0.2, hspace=0.08,
+        len(heights), 2, width_ratios=(1.25, 1), height_ratios=heights, wspace=0.2, hspace=0.08,
         left=0.065, right=0.985, bottom=0.075, top=0.94,
     )  # fmt: skip
     ax = draw_caliper(caliper, closed, figure.add_subplot(cells[:, 0]))
     force = f"{run.finger_force:g} N on the lever"
     title = f"{caliper.name}: {place:.3g} mm of cable, {force}; grey: open"
     ax.set_title("\n".join(filter(None, (title, caption))), fontsize=9 if caption else 11)
-    curves = [figure.add_subplot(cells[row, 1]) for row in range(3)]
+    curves = [figure.add_subplot(cells[row, 1]) for row in range(len(heights))]
     plot_advantage(run.cable, run.advantage, curves[0])
     plot_pad_ratio(run.cable, run.pad_ratio, curves[1])
-    plot_reactions(run.cable, run.magnitudes, curves[2])
+    plot_reactions(run.cable, forces, curves[2])
+    if len(curves) > 3:
+        plot_couples(run.cable, couples, curves[3])
     for axes in curves:
         axes.axvline(place, color="0.4", linewidth=1, linestyle=":")
-    for axes in curves[:2]:
+    for axes in curves[:-1]:
         axes.set_xlabel("")
         axes.tick_params(labelbottom=False)
     return figure

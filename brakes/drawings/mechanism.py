@@ -272,7 +272,8 @@ def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) 
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
         inwards = towards and action.name not in pulling  # a push comes from outside, a cable pulls away
         colour = LOAD if action.name in loads else REACTION
-        _draw_arrow(ax, action.at, action.force, scale, colour, action.name, inwards)
+        words = action.name.replace("friction of ", "friction of\n")  # narrow: the arrow lies in a face
+        _draw_arrow(ax, action.at, action.force, scale, colour, words, inwards)
         ax.plot(*(action.at * _MM), "o", color="white", markeredgecolor="0.1", markersize=5, zorder=6)
     ax.set_title("\n".join((body, *filter(None, couples))), fontsize="medium")
     _frame(ax)

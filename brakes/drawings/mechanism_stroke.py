@@ -100,10 +100,15 @@ def plot_pad_ratio(cable: np.ndarray, ratio: np.ndarray, ax: Axes) -> Axes:
 
 def plot_reactions(cable: np.ndarray, magnitudes: Mapping[str, np.ndarray], ax: Axes) -> Axes:
     """Plot the joints' forces (S,) [N] over the travel of the cable (S,) [m]; equal ones as one curve."""
-    return plot_curves(1e3 * cable, _merged(magnitudes), ax, "cable travel [mm]", "force of the joint [N]")
+    return plot_curves(1e3 * cable, merged(magnitudes), ax, "cable travel [mm]", "force of the joint [N]")
 
 
-def _merged(curves: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def plot_couples(cable: np.ndarray, magnitudes: Mapping[str, np.ndarray], ax: Axes) -> Axes:
+    """Plot the joints' couples (S,) [N m] over the travel of the cable (S,) [m]; equal ones as one curve."""
+    return plot_curves(1e3 * cable, merged(magnitudes), ax, "cable travel [mm]", "couple of the joint [N m]")
+
+
+def merged(curves: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Drop curves that are zero, and merge equal ones under their joined names."""
     noise = 1e-9 * max((float(np.nanmax(np.abs(y), initial=0.0)) for y in curves.values()), default=0.0)
     groups: list[tuple[list[str], np.ndarray]] = []

@@ -1,9 +1,9 @@
 """Forces on a pivoted long shoe, from its actuating force, its peak pressure or its torque.
 
-The pressure is proportional to the radial displacement of the lining, p = p0 sin(alpha - delta). It vanishes
-either on the -y axis (delta = 0), as the paper assumes, or on the line from the centre to the pin
-(delta = atan(b/c)), as it does for a rigid shoe that turns about its pin and in textbooks (Shigley, whose
-theta is alpha - delta). In axes turned by delta the same formulas hold for both.
+The pressure is proportional to the radial displacement of the lining, p = p0 sin(alpha - delta). On a
+rigid shoe that turns about its pin it vanishes on the line from the centre to the pin, delta = atan(b/c),
+as in textbooks (Shigley, whose theta is alpha - delta). Vardanyan et al. (2019) let it vanish on the -y axis
+instead (delta = 0), which is right for b = 0 only. In axes turned by delta the same formulas hold for both.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ _END = "end of the lining, from straight down"
 _OFFSET = "distance of the pin from the brake's line of symmetry, to its shoe"
 _DEPTH = "depth of the pin below the drum's centre"
 _FORCE_ARM = "height of the actuating force above the drum's centre"
-_PRESSURE_ZERO = "line where the pressure vanishes: straight down (axis), or through the pin (pivot)"
+_PRESSURE_ZERO = (
+    "line where the pressure vanishes: through the pin (pivot), about which the shoe turns; straight down "
+    "(axis) is an assumption of Vardanyan et al. (2019), for comparison with them"
+)
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 
 
@@ -44,9 +47,9 @@ class Shoe:
         drum's radius the moment of the friction about it may change sign: then the trailing shoe can lock.
     force_arm : float or ndarray
         Height a of the actuating force above the drum's centre [m].
-    pressure_zero : {"axis", "pivot"}
-        Line on which the pressure vanishes: the -y axis (the paper's assumption), or the line from the
-        centre to the pin (the textbooks').
+    pressure_zero : {"pivot", "axis"}
+        Line on which the pressure vanishes: from the centre to the pin, about which a rigid shoe turns, or
+        the -y axis, the assumption of Vardanyan et al. (2019): for comparison with them.
 
     Raises
     ------
@@ -68,10 +71,10 @@ class Shoe:
     force_arm: Annotated[
         Numbers, Described("m", "a", "height of the actuating force above the drum's centre")
     ]
-    pressure_zero: Annotated[Literal["axis", "pivot"], Described(meaning=_PRESSURE_ZERO)] = "axis"
+    pressure_zero: Annotated[Literal["pivot", "axis"], Described(meaning=_PRESSURE_ZERO)] = "pivot"
 
     def __post_init__(self) -> None:
-        one_of("pressure_zero", self.pressure_zero, ("axis", "pivot"))
+        one_of("pressure_zero", self.pressure_zero, ("pivot", "axis"))
         keep_checked(self)
         (a1, a2), (b, y) = self.lining, self.pivot
         together(drum_radius=self.drum_radius, face_width=self.face_width, force_arm=self.force_arm,

@@ -263,6 +263,16 @@ class ShoeMotion(Result):
     levers: Levers
 
     @property
+    def residual(self) -> Numbers:
+        """Distance at the end of the contact point from the drum, or the piston from its bottom, over r."""
+        brake, r = self.geometry, self.geometry.drum_radius
+        x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
+        seated = np.hypot(*brake._after_seating(np.asarray(self.seating_turn), x, y)) - r
+        bottom = brake.piston_position(*brake.tip) - brake.piston_bottom
+        pushed = brake.piston_position(self.right_tip[..., 0], self.right_tip[..., 1]) - bottom
+        return np.fmax(np.abs(seated), np.abs(pushed)) / r
+
+    @property
     def interference(self) -> tuple[str, ...]:
         """Parts that collide, a sentence each; of many cases the worst."""
         sentences = []

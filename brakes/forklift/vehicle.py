@@ -143,7 +143,9 @@ class StopConditions:
 
     slope: Annotated[Numbers, Described("rad", "beta", "slope, downhill as it travels", **ACUTE)]
     speed: Annotated[Numbers, Described("m/s", "V", "speed before the stop", above=0)]
-    friction: Annotated[Numbers, Described("", "mu", "friction of tyres on the ground", above=0)]
+    friction: Annotated[
+        Numbers, Described("", "mu", "friction of tyres on the ground", above=0, most=2, remedy="70 % is 0.7")
+    ]
     reaction_time: Annotated[Numbers, Described("s", "t1", "time before the brakes act", least=0)]
     rise_time: Annotated[Numbers, Described("s", "t2", "time in which the brake force rises", least=0)]
     gravity: Annotated[Numbers, Described("m/s2", "g", "gravity", above=0)] = STANDARD_GRAVITY

@@ -81,6 +81,20 @@ def summary() -> Iterator[str]:
         f"{float(right.shoes[0].locking_friction[-1]):.3g}; the paper's condition for that, (18), has "
         "no root."
     )
+    yield _on_pressure(right)
+
+
+def _on_pressure(right: BrakeResult) -> str:
+    """What the paper's assumption on the pressure adds."""
+    pivot = as_printed.corrected(as_printed.table_1().arc, "pivot")
+    pairs = zip(right.shoes, pivot.shoes, strict=True)
+    more = max(float(np.max(axis.c_star / turning.c_star)) for axis, turning in pairs) - 1
+    return (
+        "The right numbers here keep the paper's pressure (2), which vanishes on the axis. That of a shoe "
+        "which turns about its pin vanishes on the line to the pin. The axis overstates the C* of a shoe by "
+        f"up to {100 * more:.1f} %; the total at 80 deg is {pivot.torque[-1]:.4g} in place of "
+        f"{right.torque[-1]:.4g} N m. `brakes drum` takes the pin unless the file says otherwise."
+    )
 
 
 def notes() -> Iterator[str]:
@@ -109,7 +123,8 @@ def _corrected_table() -> Group:
     formats = ("{:.0f}", "{:.3f}", "{:.3f}", "{:.3f}", "{:.3f}", "{:.3f}", "{:.3f}")
     lines = ([f.format(x) for f, x in zip(formats, row, strict=True)] for row in zip(*columns, strict=True))
     heads = ("arc [deg]", "rho", "leading", "trailing", "total", "printed total", "printed / right")
-    return table("The same brake by the corrected mechanics: rho [mm], torques [N m]", heads, lines, ())
+    title = "The same brake by the corrected mechanics, with the paper's pressure: rho [mm], torques [N m]"
+    return table(title, heads, lines, ())
 
 
 def pictures() -> dict[str, Figure]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -20,6 +21,8 @@ _INPUT = {name: entry["value"] for name, entry in load("vardanyan_2019")["input"
 _MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining_start"])  # -, N, rad
 _R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))  # m
 _B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # m
+PressureZero = Literal["axis", "pivot"]
+_AXIS: PressureZero = _INPUT["pressure_zero"]  # of the pressure in (2)
 _WIDTH = 0.05  # [m] the paper gives none; only the pressure depends on it
 _LONGEST = np.radians(80.0)
 
@@ -80,16 +83,21 @@ def errata() -> tuple[Erratum, ...]:
     )
 
 
-def corrected(arc: np.ndarray | float) -> BrakeResult:
-    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad]."""
-    return brake_torque(simplex(_shoe(_B1, arc), _shoe(_B2, arc)), friction=_MU, force=_P)
+def corrected(arc: np.ndarray | float, pressure_zero: PressureZero = _AXIS) -> BrakeResult:
+    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad].
+
+    The pressure is the paper's (2), which vanishes on the axis, or with "pivot" that of a shoe that turns
+    about its pin.
+    """
+    first, second = (_shoe(b, arc, pressure_zero) for b in (_B1, _B2))
+    return brake_torque(simplex(first, second), friction=_MU, force=_P)
 
 
 # Consequences ---------------------------------------------------------------------------------------
 
 
-def _shoe(b: float, arc: np.ndarray | float = _LONGEST) -> Shoe:
-    return Shoe(_R, _WIDTH, (_START, _START + arc), (b, -_C), _A)
+def _shoe(b: float, arc: np.ndarray | float = _LONGEST, pressure_zero: PressureZero = _AXIS) -> Shoe:
+    return Shoe(_R, _WIDTH, (_START, _START + arc), (b, -_C), _A, pressure_zero)
 
 
 def _integrals(arc: float = _LONGEST) -> tuple[float, float, float]:

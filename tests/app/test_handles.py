@@ -344,7 +344,7 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
 
 def test_held_point_stays_when_the_brake_locks(simulate, fields):
     async def body(page, handles):
-        page.enter("brake.friction", "1.0")
+        page.enter("brake.friction", "0.985")
         label = "end of the lining"
         held = handles.element(label)
         x, y = handles.place(label)

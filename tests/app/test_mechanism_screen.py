@@ -54,6 +54,21 @@ def test_screen_shows_what_the_command_prints(capsys):
     assert not missing
 
 
+def test_screen_shows_forces_without_friction_squeezing_and_releasing():
+    text = FILES["toggle-clamp"]
+    for line in ('at = "A"  ', 'at = "B"\n'):
+        text = text.replace(line, f'radius = "8 mm"\n{line}')
+    work = opened(text.replace("[run]", "[run]\nfriction = 0.5"))
+    found = answer(work)
+    shown = html(SCREEN.tables(found))
+    assert all(f">{number}<" in shown for number in ("364.27", "241.44", "723.52"))
+    assert "241.4 N squeezing, 723.5 N releasing" in SCREEN.draw(found, 0.0).axes[0].get_title()
+    work.put("run.driver", "")
+    work.put("run.travel", "")
+    assert not work.solve(SCREEN)
+    assert "run.driver" in work.mistakes[SCREEN.name]
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_each_file_opens_on_one_screen(name):
     accepted = []

@@ -22,7 +22,7 @@ def test_readme(capsys) -> None:
     printed = capsys.readouterr().out
     for number in ("61.96301", "159.8183326", "0.0019424", "53.0858418", "69.802403", "0.000261"):
         assert number in printed
-    for number in ("eebrake       5.9811", "v-brake       9.7663", "179.0541", "13.4249", "117207"):
+    for number in ("eebrake       5.9811", "v-brake       9.7663", "176.7287", "13.4249", "117207"):
         assert number in printed
 
 

@@ -176,7 +176,7 @@ def test_textbook_total_is_lower_by_half_a_per_cent_to_two():
 def test_sum_of_equal_shoes():
     """2 mu P (a + c) r K n / (n^2 - mu^2 d^2), the closed form of the paper's (17), by its own sums."""
     a1, a2, r, b, c, a, mu = 0.5, 2.0, 0.138, 0.02, 0.11, 0.115, 0.35
-    shoe = drum.Shoe(r, 0.05, (a1, a2), (b, -c), a)
+    shoe = drum.Shoe(r, 0.05, (a1, a2), (b, -c), a, "axis")
     K, S = np.cos(a1) - np.cos(a2), (a2 - a1) / 2 - (np.sin(2 * a2) - np.sin(2 * a1)) / 4
     C = (np.sin(a2) ** 2 - np.sin(a1) ** 2) / 2
     n, d = c * S - b * C, r * K - b * S - c * C

@@ -66,10 +66,13 @@ def test_equation_12_is_not_what_the_table_holds() -> None:
 def test_corrected_table(arc: float, rho: float, first: float, second: float) -> None:
     lining = tuple(np.radians((30, 30 + arc)))
     leading = drum.shoe_torque(
-        drum.Shoe(0.138, 0.05, lining, (0.020, -0.110), 0.115), force=1e3, friction=0.35
+        drum.Shoe(0.138, 0.05, lining, (0.020, -0.110), 0.115, "axis"), force=1e3, friction=0.35
     )
     trailing = drum.shoe_torque(
-        drum.Shoe(0.138, 0.05, lining, (0.025, -0.110), 0.115), force=1e3, friction=0.35, leading=False
+        drum.Shoe(0.138, 0.05, lining, (0.025, -0.110), 0.115, "axis"),
+        force=1e3,
+        friction=0.35,
+        leading=False,
     )
     found = [1e3 * leading.effective_arm, leading.torque, trailing.torque]
     np.testing.assert_allclose(found, [rho, first, second], rtol=5e-12)  # twelve digits
@@ -102,7 +105,34 @@ def from_pin_line(case: dict, scale: float, tilt: float = 0.0) -> drum.Shoe:
     arm = case["moment_arm"]["value"] * scale if "moment_arm" in case else 2 * far * np.cos(tilt)
     lining = tuple(np.radians(case["theta"]["value"]) + tilt)
     sizes = case["drum_radius"]["value"] * scale, case["face_width"]["value"] * scale
-    return drum.Shoe(*sizes, lining, pivot, arm + pivot[1], "pivot")
+    return drum.Shoe(*sizes, lining, pivot, arm + pivot[1])
+
+
+def shigley(b: float, friction: float, arc: tuple[float, float], leading: bool) -> float:
+    """Torque [N m] at 1 kN on a shoe of the paper, by Shigley's integrals from the line centre-pin."""
+    r, far, arm = 0.138, float(np.hypot(b, 0.110)), 0.115 + 0.110
+    t1, t2 = np.radians(arc) - np.arctan2(b, 0.110)
+    normal = far * ((t2 - t1) / 2 - (np.sin(2 * t2) - np.sin(2 * t1)) / 4)
+    rubbing = r * (np.cos(t1) - np.cos(t2)) - far * (np.sin(t2) ** 2 - np.sin(t1) ** 2) / 2
+    pressure = 1e3 * arm / (normal + (-1 if leading else 1) * friction * rubbing)
+    return friction * pressure * r * (np.cos(t1) - np.cos(t2))
+
+
+@pytest.mark.parametrize("arc", [(30.0, 50.0), (30.0, 110.0), (20.0, 140.0)])
+def test_a_shoe_turns_about_its_pin_unless_told_otherwise(arc: tuple[float, float]) -> None:
+    """Its pressure vanishes on the line to the pin; the axis of the paper promises more torque."""
+    for b, leading in ((0.020, True), (0.025, False)):
+        sizes = 0.138, 0.05, tuple(np.radians(arc)), (b, -0.110), 0.115
+        found = drum.shoe_torque(drum.Shoe(*sizes), force=1e3, friction=0.35, leading=leading)
+        assert found.torque == pytest.approx(shigley(b, 0.35, arc, leading), rel=1e-12)
+        paper = drum.shoe_torque(drum.Shoe(*sizes, "axis"), force=1e3, friction=0.35, leading=leading)
+        assert 1.002 < paper.c_star / found.c_star < 1.08
+
+
+def test_the_axis_is_the_papers_own_assumption() -> None:
+    """(2), P = Pmax sin alpha with alpha from the axis, is named with the paper's inputs."""
+    assert PAPER["input"]["pressure_zero"]["value"] == "axis"
+    assert all(result.shoe.pressure_zero == "axis" for result in as_printed.corrected(1.0).shoes)
 
 
 def test_shigley_example_16_2() -> None:

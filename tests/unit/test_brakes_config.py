@@ -72,10 +72,13 @@ def shoe(b: float) -> drum.Shoe:
 
 
 def test_the_example_is_the_brake_of_the_paper() -> None:
-    found = load_drum(EXAMPLES / "drum.toml").solve()
+    example = load_drum(EXAMPLES / "drum.toml")
+    found = example.solve()
     by_hand = drum.brake_torque(drum.simplex(shoe(0.020), shoe(0.025)), friction=0.35, force=1000.0)
     assert found.torque == pytest.approx(by_hand.torque, rel=1e-14)
-    assert found.torque == pytest.approx(268.285616128, rel=1e-11)  # the facts' corrected table
+    assert example.shoe.pressure_zero == "pivot"  # the paper has "axis"
+    paper = drum_from_dict(changed(DRUM, shoe__pressure_zero="axis")).solve()
+    assert paper.torque == pytest.approx(268.285616128, rel=1e-11)  # the facts' corrected table
 
 
 def test_the_second_shoe_has_the_rest_from_the_first() -> None:
@@ -235,6 +238,8 @@ def test_each_stage_alone() -> None:
         ),
         ({"truck": None}, ["[forces]", "give torque or lining_friction"]),
         ({"truck": None, "brake": None}, ["no stage is complete"]),
+        ({"stop__friction": 70}, ["stop.friction = 70", "at most 2", "70 % is 0.7"]),
+        ({"forces__lining_friction": 40}, ["forces.lining_friction = 40", "at most 10"]),
     ],
 )
 def test_one_mistake_in_a_forklift(keys: dict[str, Any], parts: list[str]) -> None:

@@ -422,7 +422,7 @@ def test_past_the_toggle_position_the_command_says_so(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ([], "no mechanism: there is no such caliper"),
+        ([], "MECHANISM: missing; give a TOML file, or the name of a caliper: eebrake, single-pivot"),
         (["eebrak"], "eebrak: there is no such caliper"),
         (["none.toml"], "there is no such file"),
         (["v-brake", "--plot", "x.bmp"], "unknown suffix"),

@@ -12,6 +12,7 @@ import pytest
 
 from beamdyn._version import __version__
 from brakes.answers.caliper import MECHANISM
+from brakes.calipers import NAMED
 from brakes.cli import main
 from brakes.config.mechanism import load_mechanism, parse_mechanism
 
@@ -257,6 +258,18 @@ def test_newtons_and_newton_metres_have_axes_of_their_own(tmp_path):
     assert [ax.get_xlabel() for ax in figure.axes[1:]] == ["", "travel of torque [deg]"]
 
 
+def test_a_couple_in_a_caliper_is_not_drawn_among_its_forces():
+    """Kept in step by a lock that is there all along, and a cable on one side: the lock carries a couple."""
+    text = SIDE_PULL.replace('centring = ["springs"]', "centring = []").replace(
+        'at = "right_pad"', 'at = ["10 mm", "-40 mm"]'
+    )
+    figure = MECHANISM.solve(parse_mechanism(text.replace("friction = 0.15", ""))).figure()
+    labels = [ax.get_ylabel() for ax in figure.axes[3:]]
+    assert labels == ["force of the joint [N]", "couple of the joint [N m]"]
+    forces, couples = ({line.get_label() for line in ax.get_lines()} for ax in figure.axes[3:])
+    assert "springs" in couples and "springs" not in forces
+
+
 def test_each_row_of_forces_has_its_unit(capsys, tmp_path):
     path = tmp_path / "t.csv"
     _, out, _ = run(capsys, write(tmp_path, BLOCK_BRAKE), "--csv", path)
@@ -270,12 +283,23 @@ def test_each_row_of_forces_has_its_unit(capsys, tmp_path):
     assert float(block[3]) == pytest.approx(500 * 0.6 / 0.25, rel=1e-14)
 
 
+# Help ---------------------------------------------------------------------------------------------
+
+
+def test_help_names_the_argument_and_the_calipers(capsys):
+    code, out, _ = run(capsys, "--help")
+    assert code == 0 and "Usage: brakes caliper [OPTIONS] MECHANISM" in out
+    assert "[ARGS]" not in out and "()" not in out
+    assert all(name in out.replace("\n", " ") for name in NAMED)
+
+
 # JSON ---------------------------------------------------------------------------------------------
 
 
 COMMANDS = {
     "mechanism": ["caliper", EXAMPLES / "toggle-clamp.toml"],
     "caliper": ["caliper", "v-brake"],
+    "friction": ["caliper", "examples/block_brake.toml"],
     "drum": ["drum", "examples/drum.toml"],
     "forklift": ["forklift", "examples/forklift.toml"],
     "vehicle": ["forklift", "examples/forklift.toml", "--stage", "vehicle"],
