@@ -24,7 +24,9 @@ _MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides thos
 _BATCH = 256  # pieces that are solved at once
 
 
-def estimate_record_error(system: ModalSystem, segment: RecordSegment) -> TimeError:
+def estimate_record_error(
+    system: ModalSystem, segment: RecordSegment, output: np.ndarray | None = None
+) -> TimeError:
     """Estimate the time-integration error of the tip deflection, as `estimate_time_error` does.
 
     The checked steps are solved again from sample to sample, with two more stages.  Some are spread over the
@@ -36,21 +38,24 @@ def estimate_record_error(system: ModalSystem, segment: RecordSegment) -> TimeEr
         The equations.
     segment : RecordSegment
         The run.
+    output : ndarray, shape (n,), optional
+        As for `estimate_time_error`.
 
     Returns
     -------
     TimeError
     """
+    output = system.tip if output is None else output
     count, total, interpolation = len(segment.steps), np.zeros(system.size), 0.0
     unresolved = np.zeros(system.size, dtype=bool)
     most = max(_FEWEST_CHECKED, _PIECES_CHECKED // int(segment.steps.counts.mean()))
     spread, worst = choose_checked_steps(count, most), _find_worst(system, segment.steps)
     for chosen, represented in ((spread, count), (worst, len(worst))):
-        local, delta, between = _check(system, segment, chosen)
+        local, delta, between = _check(system, segment, chosen, output)
         total += total_of_local_errors(local, delta, represented)
         unresolved |= delta > UNRESOLVED_PHASE
         interpolation = max(interpolation, between)
-    return TimeError(total * np.abs(system.tip), interpolation, unresolved)
+    return TimeError(total * np.abs(output), interpolation, unresolved)
 
 
 def _find_worst(system: ModalSystem, steps: RecordSteps) -> np.ndarray:
@@ -63,18 +68,18 @@ def _find_worst(system: ModalSystem, steps: RecordSteps) -> np.ndarray:
 
 
 def _check(
-    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray
+    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, output: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Mean local error and largest phase error of each coordinate, and largest error between ends [m]."""
+    """Mean local error and largest phase error of each coordinate, and largest error of the output."""
     batches = np.array_split(chosen, -(-int(segment.steps.counts[chosen].sum()) // _BATCH))
     local, delta, between = zip(
-        *(_check_batch(system, segment, batch) for batch in batches if len(batch)), strict=True
+        *(_check_batch(system, segment, batch, output) for batch in batches if len(batch)), strict=True
     )
     return np.concatenate(local).mean(axis=0), np.max(delta, axis=0), max(between)
 
 
 def _check_batch(
-    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray
+    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, output: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Local error of each chosen step, largest phase error and error between ends, against their pieces."""
     steps, state = segment.steps.select(chosen), segment.state[chosen]
@@ -84,7 +89,7 @@ def _check_batch(
     a = (pieces.acceleration @ at_pieces[:, None, :, None])[..., 0]
     q, _ = interpolate(steps.piece_width[:, None, None], at_pieces, a, _POINTS)
     t = steps.piece_start[:, None] + steps.piece_width[:, None] * _POINTS
-    between = np.abs((segment.at(t.ravel())[0] - q.reshape(t.size, -1)) @ system.tip).max()
+    between = np.abs((segment.at(t.ravel())[0] - q.reshape(t.size, -1)) @ output).max()
     local = local_errors(system, step, fine, state, segment.state[chosen + 1, 1:])
     return local, phase_errors(system, fine - step), float(between)
 

@@ -9,6 +9,9 @@ import numpy as np
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment
 from beamdyn.scene.scene import Scene
+from beamdyn.transient.gauss import Segment
+from beamdyn.transient.record_error import estimate_record_error
+from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import CheckedSteps, estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
@@ -54,9 +57,12 @@ class RootStrain:
         """
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip
-        checks = [CheckedSteps.of_segment(segment) for segment in path.segments]
-        t = np.linspace(path.start, path.end, _TIMES_CHECKED)
-        return estimate_time_error(self.system, checks, self._largest_per_coordinate(t)).total
+        output = self._largest_per_coordinate(np.linspace(path.start, path.end, _TIMES_CHECKED))
+        checks = [CheckedSteps.of_segment(s) for s in path.segments if isinstance(s, Segment)]
+        of_records = (s for s in path.segments if isinstance(s, RecordSegment))
+        errors = [estimate_time_error(self.system, checks, output)]
+        errors += [estimate_record_error(self.system, segment, output) for segment in of_records]
+        return sum(error.total for error in errors)
 
     def _largest_per_coordinate(self, t: np.ndarray) -> np.ndarray:
         """Strain per unit of each coordinate (n,), at that of the times t [s] at which it is largest."""
