@@ -90,10 +90,10 @@ def test_report_has_inputs_results_drawings_and_version_in_one_file(name, tmp_pa
 
 
 def test_report_holds_all_rows_that_are_printed(tmp_path, capsys):
-    """The forces of a drum brake by its facts: 268.29 = 179.05 + 89.231 N m."""
+    """The forces of a drum brake by Shigley's integrals: 262.96 = 176.73 + 86.233 N m."""
     path = tmp_path / "report.html"
     assert brakes.cli.main(["drum", str(DRUM), "--report", str(path)]) == DONE
-    assert {"268.29", "179.05", "89.231"} <= cells(path.read_text(encoding="utf-8"))
+    assert {"262.96", "176.73", "86.233"} <= cells(path.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -172,7 +172,7 @@ def test_force_overwrites_and_each_file_is_its_own(tmp_path, capsys):
     path = tmp_path / "old.html"
     path.write_text("mine")
     assert brakes.cli.main(["drum", str(DRUM), "--report", str(path), "--force"]) == DONE
-    assert "268.29" in path.read_text(encoding="utf-8")
+    assert "262.96" in path.read_text(encoding="utf-8")
     both = ["--report", str(path), "--csv", str(path), "--force"]
     assert brakes.cli.main(["drum", str(DRUM), *both]) == BAD_INPUT
     assert "give each its own file" in capsys.readouterr().err
