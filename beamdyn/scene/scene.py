@@ -45,8 +45,8 @@ class Scene:
     def __post_init__(self) -> None:
         kind("beam", self.beam, Beam, "Beam.rectangular and Beam.from_stiffness make one")
         kind("mount", self.mount, Mount, "mount = Mount(radius=0.2) sets a radius of 0.2 m")
-        if self.motion is not None:
-            kind("motion", self.motion, Motion, "such as SteadyRotation(speed)")
+        if isinstance(self.motion, type) or not (self.motion is None or hasattr(self.motion, "at")):
+            raise InvalidValue("motion", self.motion, "give a Motion, such as SteadyRotation(speed)")
         ratio = not_negative("damping_ratio", self.damping_ratio)
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)

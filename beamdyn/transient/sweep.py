@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, ascending, count, function, positive, real_array, within
+from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, function, positive, within
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
@@ -196,9 +196,11 @@ def _check_request(
         raise InvalidValue(
             "scene.motion", None, "a sweep needs a motion", "such as SpinUp(50.0, duration=10.0)"
         )
-    if len(ends := real_array("window", window).tolist()) != 2:
-        raise InvalidValue("window", window, "give its beginning and its end [s], such as (20.0, 30.0)")
-    start, end = ends
+    ends = as_floats(window)
+    if ends is None or ends.shape != (2,):
+        bound = "give its beginning and its end [s], two finite numbers such as (20.0, 30.0)"
+        raise InvalidValue("window", window, bound)
+    start, end = ends.tolist()
     last = end if t_end is None else positive("t_end", t_end, "s")
     if not 0 <= start < end <= last:
         raise ValueError(

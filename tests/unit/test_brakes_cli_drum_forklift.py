@@ -80,7 +80,7 @@ def test_a_brake_that_locks_is_an_answer_of_its_own(run, edited) -> None:
 @pytest.mark.parametrize(
     "old, new, parts",
     [
-        ("110 deg", "20 deg", ["lining_end = 20 deg", "empty"]),
+        ("110 deg", "20 deg", ['lining_end = "20 deg"', "empty"]),
         ("1000 N", "1000 m", ["load.force", "length"]),
         ('force = "1000 N"', 'torque = "0 N m"', ["load.torque", "greater than 0"]),
         ("[shoe]", "[shoo]", ["shoo", "did you mean shoe?", "shoe: missing"]),

@@ -342,7 +342,7 @@ def test_bad_budgets_are_refused(budget):
 
 
 def test_a_transient_needs_a_motion():
-    with pytest.raises(ValueError, match=r"t_end = 2\.0: the scene has no motion"):
+    with pytest.raises(ValueError, match=r"t_end = 2: the scene has no motion"):
         bd.tradeoff(HARVESTER, t_end=2.0)
 
 
