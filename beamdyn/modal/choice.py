@@ -97,7 +97,7 @@ def choose_model(
         If the discretization is unknown or has too few functions for the modes, or the beam has too many
         segments.
     """
-    _check_kind(discretization)
+    check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
     model = None
@@ -206,7 +206,7 @@ def _too_few_functions(discretization: Discretization, modes: int, segments: int
     return InvalidValue("modes", modes, bound, "ask for fewer")
 
 
-def _check_kind(discretization: object) -> None:
+def check_discretization(discretization: object) -> None:
     """Refuse what is neither the name of a discretization nor one."""
     named = isinstance(discretization, str) and discretization in _FIRST_CANDIDATE
     if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):

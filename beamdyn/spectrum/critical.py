@@ -20,6 +20,7 @@ from beamdyn.modal.choice import (
     DEFAULT_TARGET,
     TOLERANCES,
     DiscretizationChoice,
+    check_discretization,
     choose_model,
     least_target,
     list_models,
@@ -121,6 +122,7 @@ def critical_point(
     start = perf_counter()
     check_scene(scene)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    check_discretization(discretization)
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)

@@ -22,6 +22,7 @@ from brakes.planar import (
     stroke,
 )
 from brakes.planar.inputs import check_inputs
+from brakes.planar.kinematics import MOST_POSITIONS
 from brakes.planar.part import OneWay
 from brakes.planar.statics import find_wrong_way, one_way_parts, tolerance
 
@@ -166,7 +167,7 @@ class Caliper:
         """
         travel = self.contact if travel is None else travel
         if np.ndim(travel) == 0:
-            values = np.linspace(0.0, real("travel", travel, "m"), count("points", points, 2))
+            values = np.linspace(0.0, real("travel", travel, "m"), count("points", points, 2, MOST_POSITIONS))
         else:
             values = travel
         motion = stroke(self.free, self.cable, real_array("travel", values))  # pyright: ignore[reportArgumentType]

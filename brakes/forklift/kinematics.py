@@ -34,6 +34,7 @@ from brakes.planar import (
     Slot,
     stroke,
 )
+from brakes.planar.kinematics import MOST_POSITIONS
 
 _RANK_TOLERANCE = 1e-9  # singular values below this fraction of the largest count as zero
 _ORIGIN = (0.0, 0.0)
@@ -146,7 +147,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
         If the clearance is not positive, or larger than the drum allows.
     """
     kind("geometry", geometry, DuoServo)
-    c, n = positive("clearance", clearance, "m"), count("positions", positions, 2)
+    c, n = positive("clearance", clearance, "m"), count("positions", positions, 2, MOST_POSITIONS)
     interference = geometry.move_shoes(c).interference
     right, left = (_follow_seating(geometry, c, side, n) for side in ("right", "left"))
     tips = tuple(_seated_tip(geometry, stage, side) for stage, side in ((right, "right"), (left, "left")))

@@ -20,6 +20,7 @@ from brakes.planar.linear import decompose, times
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.system import System
 
+MOST_POSITIONS = 100_000  # of a stroke: some seconds for the smallest mechanisms
 _CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism
 
 
@@ -190,7 +191,9 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     """
     check_mechanism(mechanism)
     system, start, _ = _start(mechanism, driver)
-    s = np.linspace(0.0, positive("length", length, "m") / system.length, count("points", points, 2))
+    s = np.linspace(
+        0.0, positive("length", length, "m") / system.length, count("points", points, 2, MOST_POSITIONS)
+    )
     nodes, chords = [start], 0.0
     for node in follow(system, start):
         chords += float(np.linalg.norm(node.y - nodes[-1].y))

@@ -150,7 +150,7 @@ BAD = {
     "wrong unit": (("modes", SCENE, "--speed", "50 kg"), ("--speed", '"50 kg"', "give")),
     "hertz": (("modes", SCENE, "--speed", "5 Hz"), ("--speed", "300 rpm")),
     "no modes": (("modes", SCENE, "--modes", "0"), ("modes = 0", "1 or more")),
-    "too many modes": (("modes", SCENE, "--modes", "500"), ('"500" for --modes', "at most 100")),
+    "too many modes": (("modes", SCENE, "--modes", "500"), ("--modes", "at most 100")),
     "modes not a number": (("modes", SCENE, "--modes", "x"), ("--modes", '"x"', "whole number")),
     "method": (("modes", SCENE, "--discretization", "bem"), ("--discretization", "bem", "ritz")),
     "option": (("modes", SCENE, "--sped", "5"), ("--sped", "--speed")),
