@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter, Token
 
-from beamdyn.common.checks import InvalidValue
 
 if TYPE_CHECKING:
     import numpy as np
@@ -78,6 +77,7 @@ def parse_positive(option: str, text: str, unit: str) -> float:
 @contextmanager
 def naming_option(field: str, option: str, text: str) -> Iterator[None]:
     """Within it, a refusal of an argument of the core names the option and shows its value as given."""
+    from beamdyn.common.checks import InvalidValue
     from beamdyn.common.edge.units import InvalidInput
 
     try:

@@ -31,6 +31,9 @@ STRETCH = (1, 2)
 FIELDS = ("bending",) * len(BENDING) + ("stretch",) * len(STRETCH)
 RTOL = 1e-12
 
+# The numbers of the cases are random and those of no material.
+pytestmark = pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")
+
 # Symbols ------------------------------------------------------------------------------------------
 
 COUNT = len(FIELDS)

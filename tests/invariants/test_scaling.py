@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,6 +41,7 @@ def test_leading_and_trailing_and_turning_back_are_alike(setting: float, speed: 
         np.testing.assert_allclose(one, other, rtol=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # any units
 @given(st.floats(1e-5, 100), st.floats(-9, 12), st.floats(-3, 4))
 def test_similar_beams(length: float, log_stiffness: float, log_mass: float) -> None:
     """Frequency times tau = sqrt(rho A L^4 / EI) depends on speed times tau and radius / L alone."""

@@ -19,12 +19,13 @@ TYPES = re.compile(r"^\w[\w, ]* : (.*)$", re.MULTILINE)  # of numpydoc's paramet
 ELSEWHERE = {"Axes", "Executor", "Path", "OdeSolver", "ParaView", "Callable"}  # of other people
 ELSEWHERE |= {
     "Provenance",
+    "Result",
     "Entry",
     "Diagram",
     "LinearSystem",
     "ModalSystem",
 }  # parts of results, made by nobody
-ELSEWHERE |= {"Described", "SampledScene"}  # for who extends the package
+ELSEWHERE |= {"Described", "FieldsOnly", "SampledScene"}  # for who extends the package
 ELSEWHERE |= {"Re", "RecurDyn", "with_speed"}  # no advice: a formula, a paper's program, a method at fault
 
 
