@@ -110,7 +110,7 @@ def test_dragged_until_the_brake_locks_and_back(page):
     """A locked brake is not drawn: its handle is away, but still held."""
     go(page, "Drum brake")
     friction = field(page, "brake.friction")
-    friction.fill("1.0")
+    friction.fill("0.9")
     page.wait_for_timeout(1000)
     found = handle(page, "end of the lining")
     x, y = pull(page, found, -90, -90)
