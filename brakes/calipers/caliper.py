@@ -171,7 +171,8 @@ class Caliper:
         else:
             values = travel
         motion = stroke(self.free, self.cable, real_array("travel", values))  # pyright: ignore[reportArgumentType]
-        tension = self.lever_ratio * positive("finger", finger, "N")
+        finger = positive("finger", finger, "N")
+        tension = self.lever_ratio * finger
         forces = self._forces(motion.position, tension)
         toggles = [toggle.message for toggle in motion.toggles]
         return CaliperStroke(
@@ -236,6 +237,7 @@ class Caliper:
         The coefficient is that of all pivots that have none of their own; slots and contacts have their own.
         The pads keep the forces that they have without friction; the tension is what friction changes.
         """
+        coefficient = not_negative("coefficient", coefficient)
         travel = self.contact if travel is None else travel
         motion = stroke(self.free, self.cable, [travel])
         tension = self.lever_ratio * positive("finger", finger, "N")
