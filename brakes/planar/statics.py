@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_of_moving
 from brakes.planar.kinematics import assemble
@@ -92,6 +93,11 @@ class Equilibrium:
     def is_determined(self) -> bool:
         """Whether statics gives every force, though a contact may have to pull or a cable to push."""
         return not (self.undetermined or self.loose or np.isnan(self.multiplier).any())
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether the forces are those of the mechanism; see `is_answer`."""
+        return self.is_determined and is_answer(self.status, self.multiplier)
 
 
 class Balance(NamedTuple):
@@ -217,6 +223,21 @@ def collect_result(
     )
 
 
+def is_answer(status: str, forces: ArrayLike) -> bool:
+    """Whether forces are those of the mechanism: none is nan, and no part would have to act the other way.
+
+    A mechanism that locks itself moves by the forces that are given, so that they are an answer.
+
+    Parameters
+    ----------
+    status : str
+        As in `Equilibrium`.
+    forces : array_like
+        What equilibrium gives [N, N m].
+    """
+    return status in ("determined", "self-locking") and bool(np.isfinite(forces).all())
+
+
 def tolerance(system: System) -> float:
     """Force that counts as zero, over the largest: the rounding of a drawing grows with its distance."""
     return max(_BALANCED, 1e3 * system.rounding)
@@ -247,11 +268,15 @@ def find_wrong_way(
     for name, way in ways.items():
         size = np.ravel(sizes[name])
         if (wrong := size < -least).any():
-            where = f" at {wrong.sum()} of {len(size)} positions" if len(size) > 1 else ""
-            force = f"{-np.nanmin(size):.6g} N{where}"
+            force = f"{-np.nanmin(size):.6g} N{tell_where(wrong)}"
             sentence = f"{way.noun} {name!r} would have to {way.cannot} with {force}: {way.remedy}"
             found[name] = WrongWay(way.status, sentence)
     return found
+
+
+def tell_where(positions: np.ndarray) -> str:
+    """At how many of the positions (S,), such as " at 2 of 9 positions"; empty if there is but one."""
+    return f" at {positions.sum()} of {len(positions)} positions" if len(positions) > 1 else ""
 
 
 def one_way_parts(parts: Iterable[Part]) -> dict[str, OneWay]:
@@ -274,7 +299,11 @@ def _verdict(
     if loose.shape[1]:
         how = describe_loose(system, y, loose)
         found.append(("loose", f"the loads are in balance, but nothing keeps them so: {how}"))
-    found += wrong_way.values()
+    return combine([*found, *wrong_way.values()])
+
+
+def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
+    """Status and message of what was found, each with a status and a sentence, the worst first."""
     if not found:
         return "determined", "every reaction and amplitude is determined"
     return found[0][0], "; ".join(sentence for _, sentence in found)

@@ -62,6 +62,21 @@ def test_bad_questions_are_refused(call, words):
         call(calipers.VBrake().build())
 
 
+@pytest.mark.parametrize(
+    ("status", "answered"),
+    [("determined", True), ("self-locking", True), ("contact opens", False), ("cable slackens", False)],
+)
+def test_with_friction_what_would_have_to_act_the_other_way_is_no_answer(status, answered):
+    """The rule of a caliper is that of a mechanism: only locking leaves forces that are its own."""
+    caliper = calipers.VBrake().build()
+    found = dataclasses.replace(caliper.friction(0.2), status=status)
+    assert found.has_answer == answered
+    jammed = dataclasses.replace(found, releasing_tension=math.nan)
+    assert not jammed.has_answer
+    way = dataclasses.replace(caliper.equilibrium(), status=status)
+    assert way.has_answer == answered
+
+
 def test_any_number_of_python_is_one():
     """Decimal numbers give what floats give, and results hold floats."""
     caliper = calipers.VBrake().build()
