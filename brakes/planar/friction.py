@@ -112,7 +112,7 @@ def _branch(
     reversed_ = _reversed(system, load, start, multiplier) & ~jammed
     multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = collect_result(mechanism, position, balance, forces, multiplier, jammed)
+    result = collect_result(position, balance, forces, multiplier, jammed)
     name = mechanism.loads[load - system.constraints].name
     words = _explain(name, list(mechanism.friction), jammed, reversed_)
     if not words:
