@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import NoneType
 from typing import Any, Literal, get_origin
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, as_floats, in_unit, refuse
-from beamdyn.common.described import Described, described_hints, description, kinds_of
+from beamdyn.common.checks import InvalidValue, as_floats, in_unit, refuse, set_fields
+from beamdyn.common.described import described_hints, description, kinds_of
 
 Numbers = Any  # a float, or an array of floats: one value a case
 
@@ -54,18 +53,18 @@ def keep_checked(core: object) -> None:
     Raises
     ------
     InvalidValue
-        If one is not finite, is negative, or is 0 where its description excludes that.
+        If one is not finite, or out of the bounds of its description; the numbers of a pair have none.
     """
     for name, hint in described_hints(type(core)).items():
         value, (kind, *others), described = getattr(core, name), kinds_of(hint), description(hint)
         if described is None or get_origin(kind) is Literal or (value is None and NoneType in others):
             continue
-        checked = pair if get_origin(kind) is tuple else _check_of(described)
-        object.__setattr__(core, name, checked(name, value, described.unit))
-
-
-def _check_of(described: Described) -> Callable[[str, Any, str], Any]:
-    return positive if described.above == 0 else not_negative if described.least == 0 else numbers
+        if get_origin(kind) is tuple:
+            checked = pair(name, value, described.unit)
+        else:
+            checked = numbers(name, value, described.unit)
+            described.refuse_out_of_bounds(name, checked)
+        set_fields(core, **{name: checked})
 
 
 def together(**values: Any) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import operator
+from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass
 from functools import cache
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
-from beamdyn.common.checks import not_negative, positive, real
+from beamdyn.common.checks import real, refuse
 
 
 @dataclass(frozen=True)
@@ -57,24 +58,46 @@ class Described:
 
     def bounds_as(self, convert: Callable[[float], float]) -> str:
         """Bounds in words, with each number converted to another unit."""
-        words = {
-            "greater than": self.above,
-            "at least": self.least,
-            "below": self.below,
-            "at most": self.most,
-        }
-        return ", ".join(f"{word} {convert(bound):g}" for word, bound in words.items() if bound is not None)
+        return ", ".join(f"{words} {convert(bound):g}" for words, bound, _ in self._limits())
+
+    def _limits(self) -> Iterator[tuple[str, float, Callable[[Any, float], Any]]]:
+        """Each bound in words, its number [unit], and which values it refuses."""
+        for words, bound, refuses in (
+            ("greater than", self.above, operator.le),
+            ("at least", self.least, operator.lt),
+            ("below", self.below, operator.ge),
+            ("at most", self.most, operator.gt),
+        ):
+            if bound is not None:
+                yield words, bound, refuses
+
+    def is_within_bounds(self, value: float) -> bool:
+        """Whether a value [unit] keeps all bounds."""
+        return not any(refuses(value, bound) for _, bound, refuses in self._limits())
+
+    def refuse_out_of_bounds(self, name: str, values: Any) -> None:
+        """Refuse a number or an array of numbers [unit] of which any is out of bounds.
+
+        Raises
+        ------
+        InvalidValue
+            With the name, and the first bound that is not kept.
+        """
+        for words, bound, refuses in self._limits():
+            said = f"it must be {words} {{limit}}"
+            refuse(refuses(values, bound), name, values, self.unit, said, self.remedy, limit=bound)
 
     def check(self, name: str, value: Any) -> Any:
-        """Return the value as a float; refuse what is not finite, negative, or 0 where the bounds exclude it.
+        """Return the value as a float; refuse what is not finite, or out of bounds.
 
         Raises
         ------
         InvalidValue
             With the name.
         """
-        bounded = positive if self.above == 0 else not_negative if self.least == 0 else real
-        return bounded(name, value, self.unit, self.remedy)
+        number = real(name, value, self.unit, self.remedy)
+        self.refuse_out_of_bounds(name, number)
+        return number
 
 
 def description(hint: Any) -> Described | None:

@@ -26,6 +26,7 @@ from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import PlanarAnswer
 from brakes.answers.planar_tables import (
     describe_statics,
+    format_size,
     joint_outputs,
     largest_error,
     reactions_table,
@@ -210,7 +211,7 @@ class CaliperAnswer(PlanarAnswer):
     def _tensions(friction: PivotFriction) -> str:
         """The tension of the cable in three numbers."""
         both = (friction.squeezing_tension, friction.releasing_tension)
-        squeezing, releasing = ("none" if np.isnan(size) else f"{size:.5g} N" for size in both)
+        squeezing, releasing = (format_size(size, "N") for size in both)
         return (
             f"cable {friction.tension:.5g} N without friction, {squeezing} squeezing, {releasing} releasing"
         )

@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results import Result, plain
-from brakes.answers.planar_tables import format_force, largest_error
+from brakes.answers.planar_tables import format_force, format_size, largest_error
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Stroke, solve_with_friction
 from brakes.planar.rows import Row
 
@@ -53,13 +53,13 @@ class MechanismFriction(Result):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Which way no force moves the mechanism, or a contact opens."""
-        return [sentence for way, sentence in self._locking() if not _has_answer(way)]
+        """Which way no force moves the mechanism, a contact opens, or a cable slackens."""
+        return [sentence for way, sentence in self._locking() if not way.has_answer]
 
     @property
     def warnings(self) -> Sequence[str]:
         """Which way the mechanism locks itself, so that the load has to be turned round."""
-        return [sentence for way, sentence in self._locking() if _has_answer(way)]
+        return [sentence for way, sentence in self._locking() if way.has_answer]
 
     def _locking(self) -> list[tuple[Equilibrium, str]]:
         ways = {"squeezing": self.last.squeeze, "releasing": self.last.release}
@@ -109,7 +109,7 @@ class MechanismFriction(Result):
         for load in unknown_loads(self.drawn.without.position.mechanism):
             sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in _ways(self.last)])
             sizes[np.abs(sizes) < _ROUNDING * np.nanmax(np.abs(sizes), initial=0.0)] = 0.0
-            without, squeezing, releasing = (_shown(size, load.unit) for size in sizes)
+            without, squeezing, releasing = (format_size(size, load.unit, 4) for size in sizes)
             sentences.append(
                 f"{load.name}: {without} without friction, {squeezing} squeezing, {releasing} releasing"
             )
@@ -133,17 +133,9 @@ def _ways(found: FrictionalEquilibrium) -> tuple[Equilibrium, Equilibrium, Equil
     return found.without, found.squeeze, found.release
 
 
-def _has_answer(way: Equilibrium) -> bool:
-    return way.status == "self-locking" and way.is_determined
-
-
 def _row(name: str, sizes: Sequence[Any], unit: str) -> Sequence[str]:
-    return (name, *("none" if np.isnan(np.ravel(size)[0]) else format_force(size) for size in sizes), unit)
+    return (name, *map(format_force, sizes), unit)
 
 
 def _unit(row: Row) -> str:
     return "N m" if row.is_couple else "N"
-
-
-def _shown(size: float, unit: str) -> str:
-    return "none" if np.isnan(size) else f"{size:.4g} {unit}"

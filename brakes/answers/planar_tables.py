@@ -76,11 +76,16 @@ def _member_rows(equilibrium: Equilibrium) -> Iterable[Sequence[str]]:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """A force as text; not a number is what statics does not determine."""
+    """A force as text; not a number is what statics does not determine, and any force where friction jams."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"
     return f"{0.0 if abs(number) < 1e-9 else number:.{digits}g}"
+
+
+def format_size(value: Any, unit: str, digits: int = 5) -> str:
+    """A force or moment with its unit; as `format_force` where it is not a number."""
+    return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
 
 
 def largest_error(equilibrium: Equilibrium) -> float:

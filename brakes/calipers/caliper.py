@@ -24,7 +24,7 @@ from brakes.planar import (
 from brakes.planar.inputs import check_inputs
 from brakes.planar.kinematics import MOST_POSITIONS
 from brakes.planar.part import OneWay
-from brakes.planar.statics import find_wrong_way, one_way_parts, tolerance
+from brakes.planar.statics import combine, find_wrong_way, one_way_parts, tolerance
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # N, a firm squeeze
@@ -171,7 +171,8 @@ class Caliper:
         else:
             values = travel
         motion = stroke(self.free, self.cable, real_array("travel", values))  # pyright: ignore[reportArgumentType]
-        tension = self.lever_ratio * positive("finger", finger, "N")
+        finger = positive("finger", finger, "N")
+        tension = self.lever_ratio * finger
         forces = self._forces(motion.position, tension)
         toggles = [toggle.message for toggle in motion.toggles]
         return CaliperStroke(
@@ -236,6 +237,7 @@ class Caliper:
         The coefficient is that of all pivots that have none of their own; slots and contacts have their own.
         The pads keep the forces that they have without friction; the tension is what friction changes.
         """
+        coefficient = not_negative("coefficient", coefficient)
         travel = self.contact if travel is None else travel
         motion = stroke(self.free, self.cable, [travel])
         tension = self.lever_ratio * positive("finger", finger, "N")
@@ -245,7 +247,7 @@ class Caliper:
         mechanism = _with_magnitudes(replace(self.free, joints=joints), magnitudes)
         band = solve_with_friction(mechanism, self.cable, motion.position.of(mechanism))
         squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (band.squeeze, band.release))
-        status, message = _friction_verdict({"squeeze": band.squeeze, "release": band.release})
+        status, message = _friction_verdict({"squeezing": band.squeeze, "releasing": band.release})
         return PivotFriction(
             coefficient=coefficient,
             cable=float(travel),
@@ -334,7 +336,4 @@ def _verdict(
     mechanism = parts[0].position.mechanism
     least = tolerance(mechanism.system) * np.abs(multiplier / mechanism.system.unit).max(axis=1)
     ways = dict.fromkeys(pads, _PAD) | one_way_parts(mechanism.joints)
-    wrong_way = [*find_wrong_way(ways, sizes | pads, least).values()]
-    if not wrong_way:
-        return "determined", "every reaction and amplitude is determined"
-    return wrong_way[0].status, "; ".join(each.sentence for each in wrong_way)
+    return combine([*find_wrong_way(ways, sizes | pads, least).values()])

@@ -9,6 +9,7 @@ import numpy as np
 
 from beamdyn.common.results import Result, plain
 from brakes.planar import Position, Stroke
+from brakes.planar.statics import is_answer
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ class PivotFriction(Result):
     release : float
         While it is let go: tension with friction over that without; 0 where friction holds the brake closed.
     status, message : str
-        "determined"; "self-locking" or "contact opens", and in which direction.
+        "determined"; "self-locking", "contact opens" or "cable slackens", and in which direction.
     """
 
     coefficient: float
@@ -135,10 +136,8 @@ class PivotFriction(Result):
 
     @property
     def has_answer(self) -> bool:
-        """Whether a tension moves the brake either way, and no contact opens."""
-        return self.status != "contact opens" and bool(
-            np.isfinite((self.squeezing_tension, self.releasing_tension)).all()
-        )
+        """Whether a tension moves the brake either way, and no contact opens and no cable slackens."""
+        return is_answer(self.status, (self.squeezing_tension, self.releasing_tension))
 
 
 @dataclass(frozen=True)

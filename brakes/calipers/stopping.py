@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.checks import not_negative, positive
+from beamdyn.common.checks import kind, not_negative, positive
 from beamdyn.common.results import Result
 from brakes.calipers.stance import GRAVITY, Stance
 
 _RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
-UNKNOWN = Stance()
+_NO_LIMITS = Stance()  # neither grip nor pitching over is known
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def stop(
     wheel_inertia: float = 0.0,
     tyre_radius: float | None = None,
     rim_radius: float | None = None,
-    stance: Stance = UNKNOWN,
+    stance: Stance = _NO_LIMITS,
 ) -> StoppingDistance:
     """Stop on level ground by the pads of one rim alone, with no more than grip and balance allow.
 
@@ -97,11 +97,14 @@ def stop(
     ValueError
         If a value is out of its bounds, or the tyre's radius is missing.
     """
-    inertia = positive("mass", mass, "kg") + _equivalent_mass(wheel_inertia, tyre_radius)
-    energy = inertia * not_negative("speed", speed, "m/s") ** 2 / 2
-    factor = 2 * positive("friction", friction) * _radius_ratio(rim_radius, tyre_radius)
+    kind("stance", stance, Stance)
+    mass, speed = positive("mass", mass, "kg"), not_negative("speed", speed, "m/s")
+    tyre = None if tyre_radius is None else positive("tyre_radius", tyre_radius, "m")
+    inertia = mass + _equivalent_mass(not_negative("wheel_inertia", wheel_inertia, "kg m2"), tyre)
+    energy = inertia * speed**2 / 2
+    factor = 2 * positive("friction", friction) * _radius_ratio(rim_radius, tyre)
     height = math.inf if stance.cg_height is None else stance.cg_height
-    lift = 1 + (inertia / mass - 1) * (tyre_radius or 0.0) / height
+    lift = 1 + (inertia / mass - 1) * (tyre or 0.0) / height
     grip, pitch = stance.grip_limit(lift, inertia / mass), stance.pitch_limit(lift)
     most = float(np.fmin(grip, pitch)) * inertia / factor
     most = math.inf if math.isnan(most) else most
@@ -146,16 +149,16 @@ def _distance(
     if not energy:
         return 0.0, False
     given = pad_force
-    path = _integrated(energy, factor, lambda s: min(given(s), most))
+    path = _integrated(energy, factor, lambda s: min(float(given(s)), most))
     return float(path[-1]), any(given(s) > most for s in path if s < math.inf)
 
 
 def _equivalent_mass(inertia: float, tyre_radius: float | None) -> float:
-    if not not_negative("wheel_inertia", inertia, "kg m2"):
+    if not inertia:
         return 0.0
     if tyre_radius is None:
         raise ValueError("wheel_inertia needs tyre_radius, the rolling radius of the wheels in m")
-    return inertia / positive("tyre_radius", tyre_radius, "m") ** 2
+    return inertia / tyre_radius**2
 
 
 def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
@@ -163,10 +166,10 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
         return 1.0
     if tyre_radius is None:
         raise ValueError("rim_radius needs tyre_radius, the rolling radius of the wheels in m")
-    ratio = positive("rim_radius", rim_radius, "m") / positive("tyre_radius", tyre_radius, "m")
-    if ratio > 1:
-        raise ValueError(f"rim_radius = {rim_radius:g} m: it must not exceed tyre_radius = {tyre_radius:g} m")
-    return ratio
+    rim = positive("rim_radius", rim_radius, "m")
+    if rim > tyre_radius:
+        raise ValueError(f"rim_radius = {rim:g} m: it must not exceed tyre_radius = {tyre_radius:g} m")
+    return rim / tyre_radius
 
 
 def _integrated(energy: float, factor: float, force: Callable[[float], float]) -> np.ndarray:

@@ -74,9 +74,6 @@ class DuoServo:
     def __post_init__(self) -> None:
         keep_checked(self)
         self._check_pins()
-        for name in ("face_tilt", "contact_angle"):
-            bad = np.abs(np.asarray(getattr(self, name))) >= np.pi / 2
-            refuse(bad, name, getattr(self, name), "rad", "it must be less than a right angle", "give {unit}")
 
     def _check_pins(self) -> None:
         (x, y), (ax, ay) = self.tip, self.adjuster

@@ -152,8 +152,6 @@ class StopConditions:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        bound = "it must be less than a right angle; give rad"
-        refuse(np.abs(self.slope) >= np.pi / 2, "slope", self.slope, "rad", bound)
         together(**vars(self))
 
 

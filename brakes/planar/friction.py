@@ -17,6 +17,7 @@ from brakes.planar.statics import (
     collect_result,
     forces_on_bodies,
     solve,
+    tell_where,
     tolerance,
 )
 from brakes.planar.system import System
@@ -111,7 +112,7 @@ def _branch(
     reversed_ = _reversed(system, load, start, multiplier) & ~jammed
     multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = collect_result(mechanism, position, balance, forces, multiplier, jammed)
+    result = collect_result(position, balance, forces, multiplier, jammed)
     name = mechanism.loads[load - system.constraints].name
     words = _explain(name, list(mechanism.friction), jammed, reversed_)
     if not words:
@@ -133,20 +134,15 @@ def _explain(load: str, rubbing: list[str], jammed: np.ndarray, reversed_: np.nd
     words, names = [], join_names(map(repr, rubbing)) if rubbing else ""
     if jammed.any():
         words.append(
-            f"self-locking{_where(jammed)}: with the friction of {names} no size of {load!r} moves the "
+            f"self-locking{tell_where(jammed)}: with the friction of {names} no size of {load!r} moves the "
             "mechanism this way; reduce friction or the radius of the pivots"
         )
     if reversed_.any():
         words.append(
-            f"self-locking{_where(reversed_)}: the friction of {names} holds the mechanism, and {load!r} has "
-            "to act the other way to move it this way"
+            f"self-locking{tell_where(reversed_)}: the friction of {names} holds the mechanism, and {load!r} "
+            "has to act the other way to move it this way"
         )
     return "; ".join(words)
-
-
-def _where(positions: np.ndarray) -> str:
-    """At how many of the positions, if there are several."""
-    return f" at {positions.sum()} of {len(positions)} positions" if len(positions) > 1 else ""
 
 
 def _newton(

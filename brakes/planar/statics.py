@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_of_moving
 from brakes.planar.kinematics import assemble
@@ -93,6 +94,11 @@ class Equilibrium:
         """Whether statics gives every force, though a contact may have to pull or a cable to push."""
         return not (self.undetermined or self.loose or np.isnan(self.multiplier).any())
 
+    @property
+    def has_answer(self) -> bool:
+        """Whether the forces are those of the mechanism; see `is_answer`."""
+        return self.is_determined and is_answer(self.status, self.multiplier)
+
 
 class Balance(NamedTuple):
     """Terms of equilibrium at S positions, in scaled units.
@@ -138,7 +144,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     forces = decompose(balance.matrix, mechanism.system.rounding)
     multiplier = balance.given.copy()
     multiplier[:, balance.unknown] = forces.solve(-forces_on_bodies(balance, balance.given))
-    return collect_result(mechanism, position, balance, forces, multiplier)
+    return collect_result(position, balance, forces, multiplier)
 
 
 def balance_at(mechanism: Mechanism, position: Position) -> Balance:
@@ -163,58 +169,81 @@ def forces_on_bodies(balance: Balance, multiplier: np.ndarray) -> np.ndarray:
 
 
 def collect_result(
-    mechanism: Mechanism,
     position: Position,
     balance: Balance,
     forces: Decomposition,
     multiplier: np.ndarray,
-    locked: np.ndarray | bool = False,
+    jammed: np.ndarray | bool = False,
 ) -> Equilibrium:
-    """Collect the result from the scaled multipliers (S, R) of all rows; nan at `locked` positions (S,)."""
-    system = mechanism.system
+    """Collect the result from the scaled multipliers (S, R) of all rows; nan at `jammed` positions (S,)."""
+    system = position.mechanism.system
     constraints = decompose(balance.rows.gradient[:, : system.constraints], system.rounding)
     scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
     residual = np.abs(forces_on_bodies(balance, multiplier)).max(axis=1) / scale
-    unbalanced = (residual > tolerance(system)) & ~np.asarray(locked)
-    stressed = np.zeros(multiplier.shape, bool)
-    stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
-    shown = np.where(stressed | (unbalanced | locked)[:, None], np.nan, multiplier)
+    unbalanced = (residual > tolerance(system)) & ~np.asarray(jammed)
+    stressed = _in_self_stress(balance, forces)
+    shown = np.where(stressed | (unbalanced | jammed)[:, None], np.nan, multiplier)
     undetermined = _names(system, np.any(stressed[~unbalanced], axis=0))
-    worst = int(unbalanced.argmax()) if unbalanced.any() else int(forces.rank.argmin())
-    loose = forces.left_null(worst)
-    reactions, magnitudes, amplitudes, friction = _forces(mechanism, balance.rows, shown)
-    wrong_way = find_wrong_way(
-        one_way_parts(mechanism.parts), magnitudes | amplitudes, tolerance(system) * scale
-    )
-    status, message = _verdict(
-        system, position.batch[worst], loose, undetermined, wrong_way, bool(unbalanced.any())
-    )
-
-    def shaped(array: np.ndarray) -> np.ndarray:
-        return array.reshape((*position.coordinates.shape[:-1], *array.shape[1:]))
-
+    reactions, magnitudes, amplitudes, friction = _forces(position, balance.rows, shown)
+    ways = one_way_parts(position.mechanism.parts)
+    wrong_way = find_wrong_way(ways, magnitudes | amplitudes, tolerance(system) * scale)
+    virtual_work = _virtual_work(system, balance, constraints, multiplier) / scale
     return Equilibrium(
         position=position,
-        status=status,
-        message=message,
-        reactions={name: shaped(force) for name, force in reactions.items()},
-        magnitudes={name: shaped(size) for name, size in magnitudes.items()},
-        amplitudes={name: shaped(size) for name, size in amplitudes.items()},
-        friction={name: shaped(size) for name, size in friction.items()},
-        mobility=shaped(system.size - constraints.rank),
-        indeterminacy=shaped(len(balance.unknown) - forces.rank),
-        uncontrolled=shaped(system.size - forces.rank),
-        movable=names_of_moving(system, constraints.null(int(constraints.rank.argmin()))),
-        loose=names_of_moving(system, loose),
+        reactions=reactions,
+        magnitudes=magnitudes,
+        amplitudes=amplitudes,
+        friction=friction,
         undetermined=undetermined,
         open_or_slack=tuple(wrong_way),
-        virtual_work=shaped(_virtual_work(system, balance, constraints, multiplier) / scale),
-        residual=shaped(residual),
-        kept=shaped(forces.kept),
-        dropped=shaped(forces.dropped),
-        warnings=_warnings(forces),
-        multiplier=shaped(shown * system.unit),
+        virtual_work=_shaped(position, virtual_work),
+        residual=_shaped(position, residual),
+        multiplier=_shaped(position, shown * system.unit),
+        **_verdict(position, forces, unbalanced, undetermined, wrong_way),
+        **_ranks(position, constraints, forces),
     )
+
+
+def _shaped(position: Position, array: np.ndarray) -> np.ndarray:
+    """An array (S, ...) of positions; without its first axis where there is one position alone."""
+    return array.reshape((*position.coordinates.shape[:-1], *array.shape[1:]))
+
+
+def _in_self_stress(balance: Balance, forces: Decomposition) -> np.ndarray:
+    """Which multipliers (S, R) take part in a self-stress, so that equilibrium does not determine them."""
+    stressed = np.zeros(balance.given.shape, bool)
+    stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
+    return stressed
+
+
+def _ranks(position: Position, constraints: Decomposition, forces: Decomposition) -> dict[str, Any]:
+    """Attributes of an `Equilibrium` that follow from ranks: of the joints, and of all unknown forces."""
+    system = position.mechanism.system
+    unknowns = forces.vt.shape[-1]
+    return {
+        "mobility": _shaped(position, system.size - constraints.rank),
+        "indeterminacy": _shaped(position, unknowns - forces.rank),
+        "uncontrolled": _shaped(position, system.size - forces.rank),
+        "movable": names_of_moving(system, constraints.null(int(constraints.rank.argmin()))),
+        "kept": _shaped(position, forces.kept),
+        "dropped": _shaped(position, forces.dropped),
+        "warnings": _warnings(forces),
+    }
+
+
+def is_answer(status: str, forces: ArrayLike) -> bool:
+    """Whether forces are those of the mechanism: none is nan, and no part would have to act the other way.
+
+    A mechanism that locks itself moves by the forces that are given, so that they are an answer.
+
+    Parameters
+    ----------
+    status : str
+        As in `Equilibrium`.
+    forces : array_like
+        What equilibrium gives [N, N m].
+    """
+    return status in ("determined", "self-locking") and bool(np.isfinite(forces).all())
 
 
 def tolerance(system: System) -> float:
@@ -247,11 +276,15 @@ def find_wrong_way(
     for name, way in ways.items():
         size = np.ravel(sizes[name])
         if (wrong := size < -least).any():
-            where = f" at {wrong.sum()} of {len(size)} positions" if len(size) > 1 else ""
-            force = f"{-np.nanmin(size):.6g} N{where}"
+            force = f"{-np.nanmin(size):.6g} N{tell_where(wrong)}"
             sentence = f"{way.noun} {name!r} would have to {way.cannot} with {force}: {way.remedy}"
             found[name] = WrongWay(way.status, sentence)
     return found
+
+
+def tell_where(positions: np.ndarray) -> str:
+    """At how many of the positions (S,), such as " at 2 of 9 positions"; empty if there is but one."""
+    return f" at {positions.sum()} of {len(positions)} positions" if len(positions) > 1 else ""
 
 
 def one_way_parts(parts: Iterable[Part]) -> dict[str, OneWay]:
@@ -260,21 +293,32 @@ def one_way_parts(parts: Iterable[Part]) -> dict[str, OneWay]:
 
 
 def _verdict(
-    system: System,
-    y: np.ndarray,
-    loose: np.ndarray,
+    position: Position,
+    forces: Decomposition,
+    unbalanced: np.ndarray,
     undetermined: tuple[str, ...],
     wrong_way: Mapping[str, WrongWay],
-    unbalanced: bool,
-) -> tuple[str, str]:
-    """Status and message."""
-    if unbalanced:
-        return "no equilibrium", f"the loads are not in balance: {describe_loose(system, y, loose)}"
-    found = [("undetermined", describe_self_stress(undetermined))] if undetermined else []
-    if loose.shape[1]:
-        how = describe_loose(system, y, loose)
-        found.append(("loose", f"the loads are in balance, but nothing keeps them so: {how}"))
-    found += wrong_way.values()
+) -> dict[str, Any]:
+    """Status, message and loose bodies, as attributes of an `Equilibrium`: those of the worst position."""
+    system = position.mechanism.system
+    worst = int(unbalanced.argmax()) if unbalanced.any() else int(forces.rank.argmin())
+    loose = forces.left_null(worst)
+    how = describe_loose(system, position.batch[worst], loose) if unbalanced.any() or loose.shape[1] else ""
+    found: list[tuple[str, str]] = []
+    if unbalanced.any():
+        found.append(("no equilibrium", f"the loads are not in balance: {how}"))
+    else:
+        if undetermined:
+            found.append(("undetermined", describe_self_stress(undetermined)))
+        if loose.shape[1]:
+            found.append(("loose", f"the loads are in balance, but nothing keeps them so: {how}"))
+        found += wrong_way.values()
+    status, message = combine(found)
+    return {"status": status, "message": message, "loose": names_of_moving(system, loose)}
+
+
+def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
+    """Status and message of what was found, each with a status and a sentence, the worst first."""
     if not found:
         return "determined", "every reaction and amplitude is determined"
     return found[0][0], "; ".join(sentence for _, sentence in found)
@@ -297,11 +341,11 @@ def _virtual_work(
     return np.where(constraints.rank == system.size, received.max(axis=0), work)
 
 
-def _forces(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> tuple[dict[str, np.ndarray], ...]:
+def _forces(position: Position, rows: Rows, multiplier: np.ndarray) -> tuple[dict[str, np.ndarray], ...]:
     """Reactions, their magnitudes, amplitudes and friction, by name."""
-    system, reactions, magnitudes = mechanism.system, {}, {}
+    system, reactions, magnitudes = position.mechanism.system, {}, {}
     physical = multiplier * system.unit
-    for joint in mechanism.joints:
+    for joint in position.mechanism.joints:
         own = system.joints[joint.name]
         magnitudes[joint.name] = joint.size(physical[:, own])
         if not joint.is_couple:
@@ -310,7 +354,10 @@ def _forces(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> tuple[d
             reactions[joint.name] = np.stack((force.real, force.imag), axis=-1)
     amplitudes = {name: physical[:, row] for name, row in system.loads.items()}
     friction = {name: physical[:, row] for name, row in system.friction.items()}
-    return reactions, magnitudes, amplitudes, friction
+    return tuple(
+        {name: _shaped(position, values) for name, values in each.items()}
+        for each in (reactions, magnitudes, amplitudes, friction)
+    )
 
 
 def _warnings(forces: Decomposition) -> tuple[str, ...]:

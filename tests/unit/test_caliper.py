@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import tomllib
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -53,12 +54,37 @@ def test_bad_calipers_are_refused(change, words):
         (lambda c: c.stroke(object()), "travel = <object object at .*>: give a finite number in m"),
         (lambda c: c.stroke([np.nan]), "every value must be finite"),
         (lambda c: c.worn(-1e-3), "lost = -0.001 m"),
-        (lambda c: c.friction(-0.1), "friction = -0.1"),
+        (lambda c: c.friction(-0.1), "coefficient = -0.1"),
     ],
 )
 def test_bad_questions_are_refused(call, words):
     with pytest.raises(ValueError, match=words):
         call(calipers.VBrake().build())
+
+
+@pytest.mark.parametrize(
+    ("status", "answered"),
+    [("determined", True), ("self-locking", True), ("contact opens", False), ("cable slackens", False)],
+)
+def test_with_friction_what_would_have_to_act_the_other_way_is_no_answer(status, answered):
+    """The rule of a caliper is that of a mechanism: only locking leaves forces that are its own."""
+    caliper = calipers.VBrake().build()
+    found = dataclasses.replace(caliper.friction(0.2), status=status)
+    assert found.has_answer == answered
+    jammed = dataclasses.replace(found, releasing_tension=math.nan)
+    assert not jammed.has_answer
+    way = dataclasses.replace(caliper.equilibrium(), status=status)
+    assert way.has_answer == answered
+
+
+def test_any_number_of_python_is_one():
+    """Decimal numbers give what floats give, and results hold floats."""
+    caliper = calipers.VBrake().build()
+    pressed = caliper.stroke(finger=Decimal(40), points=2)
+    assert np.array_equal(pressed.advantage, caliper.stroke(points=2).advantage)
+    assert type(pressed.finger_force) is float
+    rubbing = caliper.friction(Decimal("0.25"), finger=Decimal(40))
+    assert rubbing == caliper.friction(0.25) and type(rubbing.coefficient) is float
 
 
 def test_a_cable_that_opens_the_pads_is_refused():
@@ -134,6 +160,15 @@ def test_rotating_mass_and_rim_radius():
     assert inner / plain == pytest.approx(0.34 / 0.311, rel=1e-14)
 
 
+@pytest.mark.parametrize("force", [200, lambda s: Decimal(200)])
+def test_a_stop_takes_decimal_numbers(force):
+    decimals = {"mass": 80, "speed": 8, "wheel_inertia": 0.25, "tyre_radius": 0.5, "rim_radius": 0.25}
+    floats = stop(pad_force=200.0 if force == 200 else lambda s: 200.0, friction=0.5, **decimals)
+    exact = {name: Decimal(value) for name, value in decimals.items()}
+    given = Decimal(force) if force == 200 else force
+    assert repr(stop(pad_force=given, friction=Decimal("0.5"), **exact)) == repr(floats)  # limits are nan
+
+
 @pytest.mark.parametrize("force", [0.0, lambda s: 100.0 * (1 - s / 2)])
 def test_pads_that_let_go_do_not_stop(force):
     found = stop(pad_force=force, **RIDER)
@@ -154,6 +189,7 @@ def test_at_rest_the_distance_is_nothing():
         ({"wheel_inertia": 0.1}, "needs tyre_radius"),
         ({"rim_radius": 0.3}, "needs tyre_radius"),
         ({"rim_radius": 0.4, "tyre_radius": 0.34}, "must not exceed tyre_radius"),
+        ({"stance": 3}, "stance = 3: give a Stance"),
     ],
 )
 def test_bad_stops_are_refused(change, words):

@@ -46,7 +46,7 @@ P, Q = (0.0, 0.0), (1.0, 0.0)
         (lambda: Spring("coil", "arm", GROUND, Q, Q, 1, 1), "spring 'coil' has zero length"),
         (
             lambda: Spring("coil", "arm", GROUND, P, Q, -1, 1),
-            "spring 'coil': stiffness = -1 N/m: it must be 0 or more",
+            "spring 'coil': stiffness = -1 N/m: it must be at least 0 N/m",
         ),
         (lambda: TorsionSpring("coil", "arm", -1, 0), "torsion spring 'coil': stiffness = -1 N m/rad"),
         (

@@ -82,7 +82,7 @@ def test_a_drawer_jams():
 def test_it_is_drawn_and_its_inputs_are_checked():
     ax = draw_mechanism(drawer(0.1, 0.5).drawing, Figure().subplots())
     assert sum(line.get_linewidth() == 1.6 for line in ax.lines) == 2  # faces
-    with pytest.raises(ValueError, match="guide 'rail': friction = -1: it must be 0 or more"):
+    with pytest.raises(ValueError, match="guide 'rail': friction = -1: it must be at least 0"):
         drawer(-1.0, 0.5)
 
 

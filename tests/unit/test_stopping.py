@@ -109,6 +109,7 @@ def test_limits_that_are_not_given_are_named() -> None:
         ({"cg_height": 1.1, "cg_behind_front": 1.2, "wheelbase": 1.0}, ["cg_behind_front = 1.2 m", "1 m"]),
         ({"braked_wheel": "left"}, ["'front'", "'rear'"]),
         ({"cg_height": 0.0, "cg_behind_front": 0.5}, ["cg_height = 0 m"]),
+        (dataclasses.asdict(TOURER) | {"tyre_friction": 50.0}, ["tyre_friction = 50: it must be at most 2"]),
     ],
 )
 def test_incomplete_stances_are_refused(given, words) -> None:

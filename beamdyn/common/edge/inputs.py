@@ -45,12 +45,7 @@ class Quantity(Described):
 
     def within_bounds(self, given: object, value: float) -> float:
         """Refuse a value out of bounds."""
-        if (
-            (self.above is not None and value <= self.above)
-            or (self.below is not None and value >= self.below)
-            or (self.least is not None and value < self.least)
-            or (self.most is not None and value > self.most)
-        ):
+        if not self.is_within_bounds(value):
             unit, convert = unit_as_written(given, self.unit)
             raise InvalidInput(
                 "", given, f"it must be {self.bounds_as(convert)} {unit}".rstrip(), self.remedy
