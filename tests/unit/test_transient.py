@@ -11,6 +11,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.modal.model import Model
 from beamdyn.transient.batch import integrate_batch
+from beamdyn.transient.step_size import TooManySteps, check_number_of_steps
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import largest_deflection
 from benchmarks.cases.scenes import HARVESTER, ROLLING
@@ -182,6 +183,20 @@ def test_windows_and_times_outside_the_run(short: bd.Transient) -> None:
             short.peak(*window)
     with pytest.raises(ValueError, match="run"):
         short.at([2.5])
+
+
+@pytest.mark.parametrize("times", ["x", 1j, [True], [True, 0.5], None, [[0.1, 0.2]], [0.1, math.nan]])
+@pytest.mark.parametrize("ask", ["at", "deflection", "energy", "root_strain"])
+def test_times_that_are_none_are_refused_by_name(short: bd.Transient, ask: str, times) -> None:
+    with pytest.raises(ValueError, match=r"^t(\[|:| =)") as caught:
+        getattr(short, ask)(times)
+    assert "give a" in str(caught.value) or "must be finite" in str(caught.value)
+
+
+def test_a_run_beyond_memory_names_two_numbers_that_differ() -> None:
+    with pytest.raises(TooManySteps) as caught:
+        check_number_of_steps(3_100_000, 2, 30.0)
+    assert "3.1e+06 steps" in str(caught.value) and "3e+06 of 2 coordinates" in str(caught.value)
 
 
 @pytest.mark.parametrize("modes", [1, 3, 5])
