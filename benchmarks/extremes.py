@@ -150,7 +150,7 @@ def check_critical_by_bounds(rng: np.random.Generator) -> Outcome:
     point = bd.critical_point(scene, str(discretization), draw_tolerance(rng))
     prover = Prover(scene)
     if np.isinf(point.error) or np.isinf(point.speed):
-        top = min(point.searched, _FASTEST_GAMMA / time_unit(scene.beam))
+        top = min(point.none_below, _FASTEST_GAMMA / time_unit(scene.beam))
         speeds = top * np.append(1 - _NEAR, 10 ** rng.uniform(-6, 0, 3))
         fits, known = not any(prover.is_stable(speed) is False for speed in speeds), np.nan
     else:

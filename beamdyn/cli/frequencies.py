@@ -227,9 +227,9 @@ def _describe_critical(result: CriticalPoint) -> str:
     if not isinf(result.speed):
         value = supported(result.speed, result.error * result.speed, 12)
         return f"critical speed: {value} rad/s; above it the beam buckles: {result.reason}"
-    if isinf(result.searched):
+    if isinf(result.none_below):
         return f"no critical speed: {result.reason}"
-    return f"no critical speed found; there is certainly none below {result.searched:.4g} rad/s"
+    return f"no critical speed found; there is certainly none below {result.none_below:.4g} rad/s"
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:

@@ -23,11 +23,11 @@ import scipy.linalg
 
 from beamdyn.equations.discretization import Discretization, Space, Spaces
 from beamdyn.equations.equations_of_motion import Equations, assemble_over
+from beamdyn.equations.fields.bending import HELD
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.profile import FRACTION, Profile
 from beamdyn.scene.scene import Scene
 
-_CLAMPED = 2  # conditions at the root of the functions among which the rotation stands
 _ROTATION = (FRACTION, Profile((0.0, 1.0), ((1.0,),)), Profile((0.0, 1.0), ((0.0,),)))  # x/L, derivatives
 
 
@@ -115,19 +115,19 @@ def _add_rotation(mass: np.ndarray, shapes: np.ndarray) -> np.ndarray:
 class _SpacesWithRotation:
     """Function spaces with the rigid rotation x/L as the first function of a clamped deflection."""
 
-    clamped: Spaces
+    spaces: Spaces
 
     def functions(self, held: int) -> Space:
         """Trial functions, with the rotation before the clamped ones."""
-        space = self.clamped.functions(held)
-        return _SpaceWithRotation(space) if held == _CLAMPED else space
+        space = self.spaces.functions(held)
+        return _SpaceWithRotation(space) if held == HELD else space
 
     def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
         """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
-        matrix, moment = self.clamped.product(weight, rows, columns), weight * FRACTION
-        if columns == _CLAMPED:
-            matrix = np.column_stack([self.clamped.functions(rows).load(moment), matrix])
-        if rows == _CLAMPED:
+        matrix, moment = self.spaces.product(weight, rows, columns), weight * FRACTION
+        if columns == HELD:
+            matrix = np.column_stack([self.spaces.functions(rows).load(moment), matrix])
+        if rows == HELD:
             matrix = np.vstack([self.functions(columns).load(moment), matrix])
         return matrix
 

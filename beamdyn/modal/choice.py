@@ -136,7 +136,7 @@ def list_models(
     if isinstance(discretization, str):
         model = Model(scene, _find_first(discretization, segments, modes, target, cheapest))
     else:
-        model = Model(scene, _check_size(discretization, modes))
+        model = Model(scene, _check_size(discretization, modes, segments))
     return _list_from(model, isinstance(discretization, str))
 
 
@@ -157,12 +157,9 @@ def _refine(model: Model) -> Model | None:
 def _find_first(name: str, segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Find the smallest sensible discretization of one kind."""
     first = _FIRST_CANDIDATE[name](segments, modes, target, cheapest)
-    on_segment = -(-modes // segments) if isinstance(first, Ritz) else modes
-    while not first.fits(on_segment) and (finer := first.finer()) is not None:
+    while not _fits(first, modes, segments) and (finer := first.finer()) is not None:
         first = finer
-    if not first.fits(on_segment):
-        raise _too_few_functions(first, modes, segments if isinstance(first, Ritz) else 1)
-    return first
+    return _check_size(first, modes, segments)
 
 
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
@@ -185,25 +182,26 @@ _FIRST_CANDIDATE: dict[str, Callable[[int, int, float, bool], Discretization]] =
 }
 
 
-def ensure_size(discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
-    """Replace a discretization that has too few functions for the modes by "ritz"."""
-    fits = isinstance(discretization, str) or discretization.fits(modes)
+def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
+    """Replace a discretization that has too few functions for the modes of a scene by "ritz"."""
+    segments = len(scene.beam.breakpoints) - 1
+    fits = isinstance(discretization, str) or _fits(discretization, modes, segments)
     return discretization if fits else "ritz"
 
 
-def _check_size(discretization: Discretization, modes: int) -> Discretization:
-    """Raise a ValueError if the discretization has too few functions for the modes."""
-    if not discretization.fits(modes):
-        raise _too_few_functions(discretization, modes)
-    return discretization
+def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
+    """Whether a beam of some segments has functions enough: those of a Ritz basis stand on each segment."""
+    return discretization.fits(-(-modes // segments) if isinstance(discretization, Ritz) else modes)
 
 
-def _too_few_functions(discretization: Discretization, modes: int, segments: int = 1) -> InvalidValue:
-    """Say how many modes a discretization gives, with its functions on a number of segments."""
+def _check_size(discretization: Discretization, modes: int, segments: int) -> Discretization:
+    """Raise a ValueError that names the most modes, if there are too few functions for those asked for."""
+    if _fits(discretization, modes, segments):
+        return discretization
     fewer = range(1, min(modes, _MANY))
-    most = bisect_left(fewer, True, key=lambda n: not discretization.fits(-(-n // segments)))
+    most = bisect_left(fewer, True, key=lambda n: not _fits(discretization, n, segments))
     bound = f"{discretization} gives at most {most} modes with an estimate of their error"
-    return InvalidValue("modes", modes, bound, "ask for fewer")
+    raise InvalidValue("modes", modes, bound, "ask for fewer")
 
 
 def check_discretization(discretization: object) -> None:

@@ -92,12 +92,14 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
 
 
 def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.ndarray:
-    """Relative truncation error of Ritz eigenvalues s (S, k), by the distance of s^2 from a smaller basis's.
+    """Relative truncation error of Ritz eigenvalues, by the distance of their squares from a smaller basis's.
 
-    Usually further functions change s by less than the last ones did.  Exceptions are modes that only every
-    other function changes, and modes whose distance is small by accident: where convergence is slow, a margin
-    measured on random scenes is added, for the distances of all modes, relative to the higher mode of two.
-    Where s vanishes, the scale of s^2 is the lowest squared frequency at rest.
+    Squares and distances have shape (S, k), as has the error.
+    Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are modes that
+    only every other function changes, and modes whose distance is small by accident: where convergence is
+    slow, a margin measured on random scenes is added, for the distances of all modes, relative to the higher
+    mode of two.
+    Where an eigenvalue vanishes, the scale of its square is the lowest squared frequency at rest.
     """
     half, size = np.abs(distance) / 2, np.abs(squared)
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), model.solver.lowest_at_rest)

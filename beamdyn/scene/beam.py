@@ -57,9 +57,10 @@ class TipMass:
     def __post_init__(self) -> None:
         mass, offset = not_negative("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
         set_fields(self, mass=mass, offset=offset)
-        for name in ("inertia", "transverse_inertia", "axial_inertia"):
-            if name != "transverse_inertia" or self.transverse_inertia is not None:
-                set_fields(self, **{name: not_negative(f"tip.{name}", getattr(self, name), "kg m2")})
+        required = ("inertia", "axial_inertia")
+        given = () if self.transverse_inertia is None else ("transverse_inertia",)
+        for name in (*required, *given):
+            set_fields(self, **{name: not_negative(f"tip.{name}", getattr(self, name), "kg m2")})
         self._check_inertias()
 
     def _check_inertias(self) -> None:
@@ -111,10 +112,11 @@ class Beam:
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
-        for name in ("mass_per_length", "bending_stiffness", "axial_stiffness", "outer_fibre"):
-            if getattr(self, name) is not None or name in ("mass_per_length", "bending_stiffness"):
-                kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
-                check_positive(name, getattr(self, name))
+        required = ("mass_per_length", "bending_stiffness")
+        optional = ("axial_stiffness", "outer_fibre")
+        for name in (*required, *(name for name in optional if getattr(self, name) is not None)):
+            kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
+            check_positive(name, getattr(self, name))
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
         if self.tip is not None and self.length + self.tip.offset < 0:

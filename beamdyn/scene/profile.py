@@ -162,11 +162,19 @@ def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     return profile
 
 
+_SIZES = f"give sizes from {1 / MOST:g} to {{limit}} in SI units"
+
+
 def _check_sizes(name: str, values: np.ndarray) -> None:
     """Refuse values so large or small that powers and products of them overflow."""
+    _check_largest(name, values)
     sizes = np.abs(values)
-    bad = (sizes > MOST) | ((sizes < 1 / MOST) & (sizes > 0))
-    refuse(bad, name, values, "", f"give sizes from {1 / MOST:g} to {{limit}} in SI units", limit=MOST)
+    refuse((sizes < 1 / MOST) & (sizes > 0), name, values, "", _SIZES, limit=MOST)
+
+
+def _check_largest(name: str, values: np.ndarray) -> None:
+    """Refuse values so large that powers and products of them overflow."""
+    refuse(np.abs(values) > MOST, name, values, "", _SIZES, limit=MOST)
 
 
 def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
@@ -188,7 +196,7 @@ def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
         raise ValueError(
             f"{name}: the polynomial {polynomial} has coefficients that are complex or not finite"
         )
-    _check_sizes(name, np.where(np.abs(polynomial.coef) < 1 / MOST, 0.0, polynomial.coef))
+    _check_largest(name, polynomial.coef)  # a small one may stand beside others
     t, w = legendre.leggauss(polynomial.degree() + 1)
     return Profile((0.0, 1.0), (_project(polynomial, 0.0, 1.0, t, w),))
 

@@ -67,9 +67,9 @@ _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a t
 _NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
 _MOST_STEPS = 12  # of the search for z from a Ritz value
 _LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
-# Functions on all segments with which a bound of the critical speed is sought; the part of the squared Ritz
-# value at which it is close enough; and the parts that are tried.
-_PROOF_SIZES, _CLOSE = (24, 48, 96), 1 - 1e-6
+_PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of the critical speed is sought
+_CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
+# The parts of the squared Ritz value that are tried as such a bound.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
 _FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility over 1/EI: aimed at, and accepted

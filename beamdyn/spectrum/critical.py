@@ -49,12 +49,12 @@ class CriticalPoint(Result):
     Parameters
     ----------
     speed : float
-        Critical speed [rad/s]; inf if there is none, or if none was found: `searched` says which.
+        Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which.
     error : float
         Its estimated relative error; 0 if there is none, inf if it is unresolved.
-    searched : float
-        `speed` where it is found within a finite error.  Else the speed below which there is certainly
-        none [rad/s]: inf by `reason`, or what guaranteed bounds prove, which may be 0.
+    none_below : float
+        No critical speed lies below this [rad/s]: `speed` itself where it was found, a guaranteed bound
+        where not, inf if there is none.
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
@@ -65,7 +65,7 @@ class CriticalPoint(Result):
 
     speed: float
     error: float
-    searched: float
+    none_below: float
     reason: str
     warnings: tuple[str, ...]
     provenance: Provenance
@@ -132,32 +132,41 @@ def critical_point(
     found, reason = _search(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = _search(models(scene, "ritz"), target)
-    searched = found.speed
     if scene.stretch:
-        stiff = replace(scene, stretch=False)
-        bending = None if buckling.exists is False else _search(models(stiff, discretization), target)
-        found, reason = _choose_lower(found, bending, reason)
-        searched = found.speed if np.isfinite(found.error) else 0.0
-    elif np.isinf(found.error):
-        searched = bound_critical_speed(scene)
+        without_stretch = models(replace(scene, stretch=False), discretization)
+        found, reason = _compare_with_bending(found, without_stretch, buckling, target)
+    none_below = _none_below(scene, found)
     names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
         error=found.error,
-        searched=searched,
+        none_below=none_below,
         reason=reason,
-        warnings=tuple(_critical_warnings(found, buckling, searched, discretization, tolerance)),
+        warnings=tuple(_critical_warnings(found, buckling, none_below, discretization, tolerance)),
         provenance=Provenance(__version__, *names, perf_counter() - start),
     )
 
 
-def _choose_lower(both: _Found, bending: _Found | None, why_bending: str) -> tuple[_Found, str]:
-    """Choose the lower of two critical speeds, as a basis that resolves the stretch may not see bending."""
-    if bending is not None and np.isfinite(bending.speed):
+def _compare_with_bending(
+    both: _Found, without_stretch: Iterator[Model], buckling: Buckling, target: float
+) -> tuple[_Found, str]:
+    """Choose the lower of the critical speeds of bending and stretch, and of bending alone; say why it is.
+
+    A basis that resolves the stretch may not see that of bending.
+    """
+    if buckling.exists is not False:
+        bending = _search(without_stretch, target)
         same = min(bending.error + both.error, UNRESOLVED)
-        if bending.speed <= both.speed * (1 + same):
-            return bending, why_bending
+        if np.isfinite(bending.speed) and bending.speed <= both.speed * (1 + same):
+            return bending, buckling.why
     return both, "the rotation softens the stretch by more than the axial stiffness"
+
+
+def _none_below(scene: Scene, found: _Found) -> float:
+    """Speed below which there is no critical one [rad/s]; it can be bounded for bending alone only."""
+    if np.isfinite(found.error):
+        return found.speed
+    return 0.0 if scene.stretch else bound_critical_speed(scene)
 
 
 def _list_models(
@@ -222,7 +231,7 @@ def _halve(model: Model) -> Model:
 def _critical_warnings(
     found: _Found,
     buckling: Buckling,
-    searched: float,
+    none_below: float,
     discretization: DiscretizationChoice,
     tolerance: float | None,
 ) -> Iterator[str]:
@@ -234,7 +243,7 @@ def _critical_warnings(
         )
         yield (
             f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
-            f"there is certainly none below {searched:.4g} rad/s"
+            f"there is certainly none below {none_below:.4g} rad/s"
         )
     elif tolerance is not None:
         yield from warn_of_missed_tolerance(found.error, tolerance)

@@ -173,20 +173,20 @@ def resonance_speeds(
     model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     locus = _Loci(model, min(top, critical), modes)
-    lines = [_excitation_lines(model.equations, scene.motion, top, n) for n in (order, order + 1)]
-    sought, more = (_list_resonances(*lines[k], modes, order + k) for k in (0, 1))
+    here, next_order = (_excitation_lines(model.equations, scene.motion, top, n) for n in (order, order + 1))
+    sought = dict.fromkeys(_list_resonances(*here, modes, order))  # a set that keeps their order
     crossings = [c for resonance in sought for c in locus.crossings(*resonance)]
-    further = [resonance for resonance in more if resonance not in sought]
+    further = [each for each in _list_resonances(*next_order, modes, order + 1) if each not in sought]
     left_out = sum(locus.count_crossings(line, indices) for _, line, indices in further)
     names = str(model.discretization), str(model.coarser.discretization)
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
-        lines=tuple(lines[0][0]),
+        lines=tuple(here[0]),
         speeds=locus.speeds,
         frequency=np.take_along_axis(locus.values, locus.order, axis=1) / (2 * np.pi),
         order=order,
         left_out=left_out,
-        warnings=tuple(_warnings(scene, lines[0], len(crossings), order, top, critical)),
+        warnings=tuple(_warnings(scene, here, len(crossings), order, top, critical)),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
     )
@@ -276,15 +276,17 @@ class _Loci:
         def detuning(speed: float) -> float:
             return float(self.frequencies(np.array([speed]))[0, indices].sum()) - line.multiple * speed
 
-        detunings = self.values[:, indices].sum(axis=1) - line.multiple * self.speeds
-        for a, b in _bracket(detuning, self.speeds, detunings):
+        for a, b in _bracket(detuning, self.speeds, self._detunings(line, indices)):
             speed = brentq(detuning, a, b, xtol=_ROUNDING * b, rtol=_ROUNDING)  # pyright: ignore[reportArgumentType]
             yield self._crossing(kind, line, indices, float(speed), (detuning(b) - detuning(a)) / (b - a))
 
     def count_crossings(self, line: Line, indices: tuple[int, ...]) -> int:
         """Count the crossings of a line by the changes of sign over the speeds of the locus."""
-        detunings = self.values[:, indices].sum(axis=1) - line.multiple * self.speeds
-        return int(np.count_nonzero(np.diff(detunings > 0)))
+        return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
+
+    def _detunings(self, line: Line, indices: tuple[int, ...]) -> np.ndarray:
+        """Distance of a frequency, or of the sum of two, from a line [rad/s], at the speeds of the locus."""
+        return self.values[:, indices].sum(axis=1) - line.multiple * self.speeds
 
     def _crossing(
         self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float

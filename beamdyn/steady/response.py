@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.results import Provenance, Result, plain
+from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
@@ -59,7 +60,8 @@ class SteadyResponse(Result):
     growth_rate : ndarray, shape (S,)
         Largest growth rate of free vibration [1/s].
     growth_rate_error : ndarray, shape (S,)
-        Estimated error of the growth rate [1/s] by the harmonics left out.
+        Estimated error [1/s]: for resonant modes by the harmonics left out and between the phases tried; for
+        others the second-order shift by the periodic coefficients.
     error : ndarray, shape (S,)
         Estimated truncation error of the harmonics, relative to the bound.
     lines : tuple of Line, length l
@@ -194,7 +196,7 @@ def steady_response(
 
 
 @dataclass(frozen=True)
-class ResponseRequest:
+class ResponseRequest(FieldsOnly):
     """Checked arguments of `steady_response`, with the modal basis in place of the number of modes."""
 
     scene: Scene
@@ -207,7 +209,7 @@ class ResponseRequest:
     def run(self) -> SteadyResponse:
         """Solve with the modal basis of the request."""
         start = perf_counter()
-        scene, speeds, model = self.scene, self.speeds, self._model
+        scene, speeds, model = self.scene, self.speeds, self.model
         equations = model.modal_equations(self.basis)
         system = periodic_system(equations, scene.motion, speeds)
         rate, rate_error = growth_rate(system)
@@ -248,11 +250,12 @@ class ResponseRequest:
         basis = self.basis.refined()
         if basis is None or basis.modes is None:
             return None
-        return replace(self, basis=basis, discretization=ensure_size(self.discretization, basis.modes)).run()
+        discretization = ensure_size(self.scene, self.discretization, basis.modes)
+        return replace(self, basis=basis, discretization=discretization).run()
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""
-        speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self._model.solver.critical_speed)
+        speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
         ends = tuple(np.unique([speed.min(), speed.max()]).tolist())
         response = replace(self, basis=ModalBasis(FEWEST_MODES, ends)).run()
         while (response.mode_error > self.tolerance).any():
@@ -261,8 +264,9 @@ class ResponseRequest:
             response = response.refined
         return response
 
-    @property
-    def _model(self) -> Model:
+    @cached_property
+    def model(self) -> Model:
+        """The discretized scene, chosen for the number of modes and the speeds."""
         return choose_model(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
 
 

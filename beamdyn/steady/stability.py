@@ -55,9 +55,11 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     rate, error : ndarray, shape (S,)
-        The error of modes that resonate is the change by the last interaction whose harmonics are kept.
-        The rate of others is that of the mean equations, and its error the shift by the periodic
-        coefficients in second order; 0 without damping.  It is infinite where the mean equations are
+        The error of modes that resonate is the change by the last interaction whose harmonics are kept,
+        and where the rates are commensurate a tenth of the differences over the phases tried.  The rate of
+        other modes is that of the mean equations, and its error the shift by the periodic coefficients in
+        second order.  Where the mean equations neither grow nor decay, as without damping, that shift is
+        taken to leave the growth rate 0, without error.  The error is infinite where the mean equations are
         singular.
     """
     A, periodic = _first_order(system)

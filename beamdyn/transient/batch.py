@@ -20,6 +20,7 @@ from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.step_size import StepSize, check_number_of_steps, split_at_breakpoints
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import (
+    ERROR_ORDER,
     STAGES,
     CheckedSteps,
     TimeError,
@@ -81,7 +82,7 @@ def integrate_batch(systems: Sequence[ModalSystem], t_end: float, tolerance: flo
         stalled = last / 2 < total < _ITERATION_ERROR / tolerance * bound
         if total <= bound or stalled or step_size.is_finest:
             return TipHistories(tuple(tips), tuple(e.total for e in errors))
-        step_size, last = step_size.refine(errors[worst], bound, 2 * STAGES), total
+        step_size, last = step_size.refine(errors[worst], bound, ERROR_ORDER), total
 
 
 def _largest_deflection(segment: Segment | RecordSegment) -> float:
@@ -105,7 +106,9 @@ def _integrate_all(
     if not all(run.converged for run in runs):
         raise ArithmeticError("the iteration of a step did not converge: simulate the cases one by one")
     tips = [Trajectory(tuple(run.segment(case) for run in runs)) for case in range(C)]
-    errors = [estimate_time_error(s, [run.checks(case) for run in runs]) for case, s in enumerate(systems)]
+    errors = [
+        estimate_time_error(s, [run.checks(case) for run in runs], s.tip) for case, s in enumerate(systems)
+    ]
     return tips, errors
 
 

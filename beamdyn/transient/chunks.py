@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
 from beamdyn.modal.model import Model
@@ -25,7 +27,7 @@ DONE = "done"
 
 
 @dataclass(frozen=True)
-class SweepRequest:
+class SweepRequest(FieldsOnly):
     """Checked arguments of `sweep` on which each case depends."""
 
     scene: Scene
@@ -47,8 +49,9 @@ class SweepRequest:
         assert self.scene.motion is not None
         return [self.scene.motion.with_speed(v) for v in speeds]
 
+    @cached_property
     def model(self) -> Model:
-        """Choose the discretized scene."""
+        """The discretized scene, chosen for the modal basis and the tolerance."""
         modes, target = self.basis.modes or 1, 1e-3 * self.tolerance
         return choose_model(self.scene, self.discretization, np.array(self.basis.speeds), modes, target)
 
@@ -73,12 +76,11 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
 
 
 def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseResult]:
-    equations = request.model().modal_equations(request.basis)
+    equations = request.model.modal_equations(request.basis)
     systems = [ModalSystem(equations, motion) for motion in motions]
     if is_record(systems[-1], request.t_end, StepSize.from_tolerance(request.tolerance)):
-        return [
-            _solve_single(request, motion) for motion in motions
-        ]  # steps over samples, which batches lack
+        # A batch has no steps over several samples.
+        return [_solve_single(request, motion) for motion in motions]
     try:
         batch = integrate_batch(systems, request.t_end, request.tolerance)
     except TooManySteps:

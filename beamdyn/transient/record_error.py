@@ -24,10 +24,8 @@ _MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides thos
 _BATCH = 256  # pieces that are solved at once
 
 
-def estimate_record_error(
-    system: ModalSystem, segment: RecordSegment, output: np.ndarray | None = None
-) -> TimeError:
-    """Estimate the time-integration error of the tip deflection, as `estimate_time_error` does.
+def estimate_record_error(system: ModalSystem, segment: RecordSegment, output: np.ndarray) -> TimeError:
+    """Estimate the time-integration error of an output, as `estimate_time_error` does.
 
     The checked steps are solved again from sample to sample, with two more stages.  Some are spread over the
     run and stand for all; the others are the longest, and those in which the load is roughest.
@@ -38,14 +36,13 @@ def estimate_record_error(
         The equations.
     segment : RecordSegment
         The run.
-    output : ndarray, shape (n,), optional
+    output : ndarray, shape (n,)
         As for `estimate_time_error`.
 
     Returns
     -------
     TimeError
     """
-    output = system.tip if output is None else output
     count, total, interpolation = len(segment.steps), np.zeros(system.size), 0.0
     unresolved = np.zeros(system.size, dtype=bool)
     most = max(_FEWEST_CHECKED, _PIECES_CHECKED // int(segment.steps.counts.mean()))

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.equations.root_motion import RootMotion
+from beamdyn.scene.motion import Motion
 from beamdyn.transient.gauss import (
     BLOCK,
     StepMaps,
@@ -48,14 +49,14 @@ class StepCounter(Protocol):
 
 def is_record(system: ModalSystem, t_end: float, step_size: StepCounter) -> bool:
     """Whether a motion has breakpoints about as dense as the steps, as one given by samples has."""
-    pieces = len(_piece_ends(system, t_end)) - 1
+    pieces = len(smooth_piece_ends(system.motion, t_end)) - 1
     few = _MOST_STEPS_IN_PIECE * pieces
     return pieces >= _FEWEST_PIECES and step_size.count_steps(system, 0.0, t_end) <= few
 
 
-def _piece_ends(system: ModalSystem, t_end: float) -> np.ndarray:
-    """The ends of the pieces on which the motion is smooth, 0 and `t_end` included [s]."""
-    breakpoints = np.array(system.motion.breakpoints)
+def smooth_piece_ends(motion: Motion, t_end: float) -> np.ndarray:
+    """The ends of the pieces on which a motion is smooth, 0 and `t_end` included [s]."""
+    breakpoints = np.array(motion.breakpoints)
     return np.concatenate([[0.0], breakpoints[(breakpoints > 0) & (breakpoints < t_end)], [t_end]])
 
 
@@ -85,7 +86,7 @@ class RecordSteps:
         stretches = np.linspace(0.0, t_end, _STRETCHES + 1)
         counts = [step_size.count_steps(system, a, b) for a, b in pairwise(stretches)]
         wanted = np.concatenate([[0], np.cumsum(counts)])  # number of steps up to a time
-        ends = _piece_ends(system, t_end)
+        ends = smooth_piece_ends(system.motion, t_end)
         pieces = _divide(ends, np.ceil(np.diff(np.interp(ends, stretches, wanted)) - _SLACK))
         first = _group(np.interp(pieces, stretches, wanted).tolist())
         return cls(

@@ -13,9 +13,10 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, real, within
+from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, real, real_array, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.snapshots import FieldsOnly
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import (
     FEWEST_MODES,
@@ -136,12 +137,16 @@ class Transient(Result):
         Raises
         ------
         ValueError
-            If a time lies outside the run.
+            If a time is no finite number, or lies outside the run.
         """
-        t = np.atleast_1d(np.asarray(t, dtype=float))
+        return self.path.at(self._times_in_run(t))
+
+    def _times_in_run(self, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
+        """Times as an array of shape (T,); a ValueError if one is not finite or lies outside the run."""
+        t = real_array("t", t if np.iterable(t) else [t])  # pyright: ignore[reportArgumentType]
         if t.size and not (t.min() >= self.path.start and t.max() <= self.path.end * (1 + 1e-12)):
             raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")
-        return self.path.at(t)
+        return t
 
     def shape(self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x))."""
@@ -158,7 +163,8 @@ class Transient(Result):
         ValueError
             If the beam has no outer fibre, or a time lies outside the run.
         """
-        return self._root_strain.at(np.atleast_1d(np.asarray(t, dtype=float)), *self.at(t))
+        t = self._times_in_run(t)
+        return self._root_strain.at(t, *self.path.at(t))
 
     @cached_property
     def root_strain_error(self) -> float:
@@ -180,7 +186,7 @@ class Transient(Result):
 
     @cached_property
     def _root_strain(self) -> RootStrain:
-        return RootStrain.of_scene(self.scene, self.request._model.discretization, self.system)
+        return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
     def deflection(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Tip deflection [m] at times t [s]: shape (len(t),)."""
@@ -188,8 +194,8 @@ class Transient(Result):
 
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are."""
-        t = np.atleast_1d(np.asarray(t, dtype=float))
-        q, v = self.at(t)
+        t = self._times_in_run(t)
+        q, v = self.path.at(t)
         _, K, f = self.system.coefficients(t)
         return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
 
@@ -299,7 +305,7 @@ def simulate(
 
 
 @dataclass(frozen=True)
-class TransientRequest:
+class TransientRequest(FieldsOnly):
     """Checked arguments of `simulate`, with the modal basis in place of the number of modes."""
 
     scene: Scene
@@ -316,7 +322,7 @@ class TransientRequest:
         """Integrate with the modal basis of the request."""
         start = perf_counter()
         motion, t_end = self.motion, self.t_end
-        model = self._model
+        model = self.model
         _check_motion(motion, t_end, model)
         system = ModalSystem(model.modal_equations(self.basis), motion)
         path, error, name = self._integrate(system, _initial_state(self.initial, system))
@@ -373,12 +379,12 @@ class TransientRequest:
         if basis is None or basis.modes is None or self.basis.modes is None:
             return None
         initial = self._pad_initial(self.basis.modes, basis.modes)
-        discretization = ensure_size(self.discretization, basis.modes)
+        discretization = ensure_size(self.scene, self.discretization, basis.modes)
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
     def _with_finer_discretization(self) -> TransientRequest | None:
         """Request with all functions of the next finer discretization; None if there is none."""
-        finer = self._model.discretization.finer()
+        finer = self.model.discretization.finer()
         return None if finer is None else replace(self, discretization=finer)
 
     @property
@@ -387,8 +393,9 @@ class TransientRequest:
         assert self.scene.motion is not None
         return self.scene.motion
 
-    @property
-    def _model(self) -> Model:
+    @cached_property
+    def model(self) -> Model:
+        """The discretized scene, chosen for the modal basis and the tolerance."""
         modes, target = self.basis.modes or 1, 1e-3 * self.tolerance
         return choose_model(self.scene, self.discretization, np.array(self.basis.speeds), modes, target)
 

@@ -12,9 +12,9 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.record_error import estimate_record_error
-from beamdyn.transient.record_steps import RecordSteps, is_record, propagate_record
+from beamdyn.transient.record_steps import RecordSteps, is_record, propagate_record, smooth_piece_ends
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.time_error import STAGES, CheckedSteps, TimeError, estimate_time_error
+from beamdyn.transient.time_error import ERROR_ORDER, STAGES, CheckedSteps, TimeError, estimate_time_error
 from beamdyn.transient.trajectory import Trajectory
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
@@ -28,8 +28,7 @@ _TIMES_COMPARED = 257  # times at which the equations are compared with those at
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 _ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
 _SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
-_ORDER = 2 * STAGES  # of the error, in the step size
-_ORDER_ACROSS_SAMPLES = 3  # the same inside steps in which the acceleration has kinks
+_ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
 
 
@@ -51,7 +50,7 @@ class StepSize:
     @classmethod
     def from_tolerance(cls, tolerance: float) -> StepSize:
         """Estimate the step size that meets a tolerance, relative to the largest deflection."""
-        return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / _ORDER))
+        return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / ERROR_ORDER))
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
         """Number of equal steps from start to end [s]."""
@@ -112,7 +111,7 @@ def integrate(
         If the steps of the run do not fit into memory.
     """
     if stays_in_equilibrium(system, y0, t_end):
-        edges = np.array([0.0, *(b for b in system.motion.breakpoints if 0 < b < t_end), t_end])
+        edges = smooth_piece_ends(system.motion, t_end)
         path = Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
         return path, 0.0, "no steps: the beam stays in equilibrium"
     step_size, last = StepSize.from_tolerance(tolerance), np.inf
@@ -123,10 +122,10 @@ def integrate(
             float(np.abs(s.state[:, 1 : system.size + 1] @ system.tip).max()) for s in path.segments
         )
         stalled = last / 2 < error.total < _ROUNDING * largest
-        finest = step_size.is_finest and order == _ORDER
+        finest = step_size.is_finest and order == ERROR_ORDER
         if error.total <= tolerance * largest or stalled or finest:
             steps = sum(len(s.acceleration) for s in path.segments)
-            return path, error.total, f"Gauss collocation of order {_ORDER}, {steps} steps"
+            return path, error.total, f"Gauss collocation of order {ERROR_ORDER}, {steps} steps"
         step_size, last = step_size.refine(error, tolerance * largest, order), error.total
 
 
@@ -138,8 +137,8 @@ def _attempt(
     steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
     check_number_of_steps(sum(steps), system.size, t_end)
     segments = _propagate(system, edges, steps, y0, tolerance)
-    error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in segments])
-    return Trajectory(segments), error, _ORDER
+    error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in segments], system.tip)
+    return Trajectory(segments), error, ERROR_ORDER
 
 
 def _attempt_record(
@@ -149,8 +148,8 @@ def _attempt_record(
     steps, n = RecordSteps.choose(system, t_end, step_size), system.size
     check_number_of_steps(len(steps), n, t_end)
     segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES)
-    order = _ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
-    return Trajectory((segment,)), estimate_record_error(system, segment), order
+    order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
+    return Trajectory((segment,)), estimate_record_error(system, segment, system.tip), order
 
 
 def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
@@ -172,16 +171,15 @@ def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
     """Raise a `TooManySteps` if the steps of a run, of `size` coordinates each, do not fit into memory."""
     most = min(_MOST_STEPS, _MOST_VALUES // size)
     if steps > most:
-        bound = f"it takes about {steps:.1g} steps in time; {most:.1g} of {size} coordinates fit into memory"
+        bound = f"it takes about {steps:.3g} steps in time; {most:.3g} of {size} coordinates fit into memory"
         remedy = "give an earlier end, a larger tolerance or fewer modes, or ask for the steady response"
         raise TooManySteps("t_end", t_end, bound, remedy, "s")
 
 
 def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
     """Split a run at the motion's breakpoints, and segments of changing speed into parts: all ends [s]."""
-    inner = [b for b in motion.breakpoints if 0 < b < t_end]
     parts = []
-    for a, b in pairwise([0.0, *inner, t_end]):
+    for a, b in pairwise(smooth_piece_ends(motion, t_end)):
         speed_changes = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0
         parts.append(np.linspace(a, b, (_PARTS if speed_changes else 1) + 1)[:-1])
     return np.concatenate([*parts, [t_end]])

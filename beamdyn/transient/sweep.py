@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, function, positive, within
+from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, function, positive, real, within
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
@@ -170,7 +170,7 @@ def sweep(
     request = replace(request, basis=largest)
     collector = ChunkCollector(request, _split(cases, chunk), chunk_store, progress)
     collector.collect(executor, workers)
-    method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model().discretization}"
+    method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model.discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
     result = _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
     missed = () if basis else warn_of_missed_modes(result.mode_error, request.tolerance, str(request.basis))
@@ -200,7 +200,7 @@ def _check_request(
     if ends is None or ends.shape != (2,):
         bound = "give its beginning and its end [s], two finite numbers such as (20.0, 30.0)"
         raise InvalidValue("window", window, bound)
-    start, end = ends.tolist()
+    start, end = (real(f"window[{k}]", value, "s") for k, value in enumerate(ends.tolist()))
     last = end if t_end is None else positive("t_end", t_end, "s")
     if not 0 <= start < end <= last:
         raise ValueError(
@@ -228,7 +228,7 @@ def _check_means(
 
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     """Raise a ValueError for a case that passes the critical speed, or a motion that ends early."""
-    model, t = request.model(), np.linspace(0, request.t_end, SPEED_SAMPLES)
+    model, t = request.model, np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
     if (fastest >= critical).any():

@@ -11,6 +11,7 @@ from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 
 STAGES = 8  # of the Gauss collocation that is checked
+ERROR_ORDER = 2 * STAGES  # of its error, in the step size
 _MOST_CHECKED = 48  # steps of a segment at which the local error is measured
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 _INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
@@ -61,14 +62,14 @@ def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
 
 @dataclass(frozen=True)
 class TimeError:
-    """Estimated time-integration error of a tip deflection.
+    """Estimated time-integration error of an output, such as the tip deflection.
 
     Parameters
     ----------
     modes : ndarray, shape (n,)
-        Contributions of the coordinates [m].
+        Contributions of the coordinates [unit of the output].
     interpolation : float
-        Interpolation error between the ends of steps [m].
+        Interpolation error between the ends of steps [unit of the output].
     unresolved : ndarray of bool, shape (n,)
         Whether the steps are too long to follow the free vibration of a mode.
     """
@@ -79,14 +80,12 @@ class TimeError:
 
     @property
     def total(self) -> float:
-        """Sum of all contributions, with a safety factor [m]."""
+        """Sum of all contributions, with a safety factor [unit of the output]."""
         return _MARGIN * (float(self.modes.sum()) + self.interpolation)
 
 
-def estimate_time_error(
-    system: ModalSystem, checks: Sequence[CheckedSteps], output: np.ndarray | None = None
-) -> TimeError:
-    """Estimate the time-integration error of the tip deflection from the local errors of some steps.
+def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps], output: np.ndarray) -> TimeError:
+    """Estimate the time-integration error of an output from the local errors of some steps.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
@@ -98,14 +97,14 @@ def estimate_time_error(
         The equations.
     checks : sequence of CheckedSteps
         Checked steps of each segment.
-    output : ndarray, shape (n,), optional
-        Another quantity than the tip deflection [m], per unit of each coordinate: its error is then found.
+    output : ndarray, shape (n,)
+        The quantity whose error is sought, such as the tip deflection, per unit of each coordinate.
 
     Returns
     -------
     TimeError
     """
-    n, tip = system.size, system.tip if output is None else output
+    n = system.size
     total, interpolation, unresolved = np.zeros(n), 0.0, np.zeros(n, dtype=bool)
     for check in checks:
         maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
@@ -115,8 +114,8 @@ def estimate_time_error(
         unresolved |= delta > UNRESOLVED_PHASE
         accelerations = [(m.acceleration @ check.state[:, None, :, None])[..., 0] for m in (maps, finer)]
         q = [interpolate(check.h, check.state, a, _INTERPOLATION_POINTS)[0] for a in accelerations]
-        interpolation = max(interpolation, float(np.abs((q[0] - q[1]) @ tip).max()))
-    return TimeError(total * np.abs(tip), interpolation, unresolved)
+        interpolation = max(interpolation, float(np.abs((q[0] - q[1]) @ output).max()))
+    return TimeError(total * np.abs(output), interpolation, unresolved)
 
 
 def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:

@@ -47,7 +47,7 @@ def test_a_high_critical_speed_is_found_within_its_error(name: str, tolerance: f
     scene, expected = HIGH[name]
     point = bd.critical_point(scene, tolerance=tolerance)
     assert abs(point.speed / expected - 1) <= point.error <= (tolerance or 1e-9)
-    assert point.searched == point.speed and not point.warnings
+    assert point.none_below == point.speed and not point.warnings
 
 
 @pytest.mark.parametrize("tolerance", [None, 1e-1, 1e-2, 1e-3])
@@ -122,7 +122,7 @@ def test_the_argument_agrees_with_the_sign_in_a_large_basis() -> None:
 def test_none_is_an_argument(scene: bd.Scene) -> None:
     for discretization in ("ritz", "fem", bd.Ritz(5)):
         point = bd.critical_point(scene, discretization)
-        assert (point.speed, point.error, point.searched, point.warnings) == (math.inf, 0.0, math.inf, ())
+        assert (point.speed, point.error, point.none_below, point.warnings) == (math.inf, 0.0, math.inf, ())
         assert "stiffens" in point.reason
 
 
@@ -139,13 +139,13 @@ def test_none_found_is_warned_of_with_how_far_it_was_looked() -> None:
     with pytest.warns(UserWarning, match=r"a critical speed exists \(.*topples.*certainly none below"):
         assert math.isinf(bd.critical_speed(scene))
     point = bd.critical_point(scene)
-    assert 1e3 < point.searched < 1e7 and math.isinf(point.error)
+    assert 1e3 < point.none_below < 1e7 and math.isinf(point.error)
 
 
 def test_a_given_basis_that_sees_none_says_so() -> None:
     point = bd.critical_point(TOPPLING, bd.Ritz(8))
     assert math.isinf(point.speed) and "Ritz(functions=8" in point.warnings[0]
-    assert 100 < point.searched < HIGH["toppling tip body"][1]
+    assert 100 < point.none_below < HIGH["toppling tip body"][1]
 
 
 def test_guaranteed_bound_is_below_the_critical_speed_and_close() -> None:

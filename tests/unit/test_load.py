@@ -114,6 +114,15 @@ def test_a_result_comes_back_from_its_file(made, name, discretization, tmp_path)
     assert "LeftOut" not in repr(again)
 
 
+@pytest.mark.parametrize("name", ["transient", "steady"])
+def test_the_model_of_a_request_is_chosen_once_and_left_out_of_pickles(made, name):
+    request = made(name).request
+    assert request.model is request.model
+    again = pickle.loads(pickle.dumps(request))
+    assert "model" in vars(request) and "model" not in vars(again)
+    assert again.model == request.model
+
+
 def test_results_come_back_from_a_pool_of_new_processes(made):
     context = multiprocessing.get_context("spawn")
     calls = [

@@ -130,6 +130,18 @@ def test_many_modes_of_a_beam_of_many_segments() -> None:
     assert found.error.max() < 1e-9 and found.frequency[0] * 2 * np.pi == pytest.approx(3.5160152685)
 
 
+def test_a_given_basis_counts_its_functions_on_every_segment() -> None:
+    table = bd.Table((0.0, 0.5, 1.0), (8.0, 8.0, 4.0))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, table))
+    assert len(scene.beam.breakpoints) == 3
+    modes = bd.natural_modes(scene, 0.0, 12, bd.Ritz(10))
+    fine = bd.natural_modes(scene, 0.0, 12, bd.Ritz(24)).frequency
+    assert np.isfinite(modes.error[:10]).all()
+    assert (np.abs(modes.frequency / fine - 1) <= modes.error).all()
+    with pytest.raises(ValueError, match="at most 16 modes"):
+        bd.natural_modes(scene, 0.0, 25, bd.Ritz(10))
+
+
 def test_tolerance_holds_at_every_speed_of_a_locus() -> None:
     speeds = np.linspace(-150, 150, 31)
     locus = bd.frequency_locus(HARVESTER, speeds, tolerance=1e-4)

@@ -125,6 +125,8 @@ BAD = {
     "window turned": ({"window": (0.5, 0.3)}, "must begin before it ends"),
     "window of one": ({"window": 0.5}, "its beginning and its end"),
     "window of text": ({"window": ("a", 0.5)}, "finite number"),
+    "window without end": ({"window": (0, np.inf)}, r"window\[1\] = inf s: give a finite number"),
+    "window without beginning": ({"window": (np.nan, 1.0)}, r"window\[0\] = nan s: give a finite number"),
     "t_end": ({"t_end": -1.0}, "greater than 0"),
     "modes": ({"modes": 0}, "whole number of 1"),
     "tolerance": ({"tolerance": 0.0}, "from 1e-12"),
