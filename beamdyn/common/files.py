@@ -9,8 +9,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from beamdyn.common.checks import InvalidValue
-
 ASIDE = ".unfinished-"  # begins the name of a file that is still being written
 
 
@@ -32,6 +30,8 @@ def as_path(name: str, value: object, wanted: str = "a file") -> Path:
         If it is neither text nor a path.
     """
     if not isinstance(value, str | os.PathLike):
+        from beamdyn.common.checks import InvalidValue  # with numpy, which help does without
+
         raise InvalidValue(name, value, f"give the name of {wanted}, as text or path")
     return Path(value)
 

@@ -134,7 +134,6 @@ CALLS = {
         {"scene": SCENE, "speed": 5.0, "modes": 2, "t_end": None, "budget": 1.0, "progress": None},
     ),
     "load_scene": (bd.load_scene, {"path": "examples/blade.toml"}),
-    "load": (bd.load, {"path": "modes.json"}),
 }
 SAID_AS = {"driver": "load"}  # in messages
 # What of the wrong values is right after all.
@@ -144,7 +143,6 @@ ALLOWED = {
     "sweep.progress": {"class"},
     "tradeoff.progress": {"class"},
     "load_scene.path": {"text"},
-    "load.path": {"text"},
     **{f"{name}.breakpoints": {"empty", "empty array"} for name in CALLS},
 }
 
