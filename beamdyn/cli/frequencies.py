@@ -145,9 +145,9 @@ def critical(
     outputs = Outputs(json=json, force=force)
     outputs.check(scene)
     result = critical_point(load_scene(scene), discretization)
+    write(result, outputs)
     console().print(_describe_critical(result))
     warn(result.warnings)
-    write(result, outputs)
 
 
 @app.command
@@ -212,10 +212,10 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
     outputs = Outputs(json=json, force=force)
     outputs.check(scene)
     result = terms(load_scene(scene))
+    write(result, outputs)
     heads = ("", "term", "symbol", "largest", "reason")
     console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
     console().print(result.excited())
-    write(result, outputs)
 
 
 def _describe_critical(result: CriticalPoint) -> str:

@@ -50,7 +50,7 @@ def deliver(
     warnings: Sequence[str] = (),
     refusal: str = "",
 ) -> None:
-    """Print the result of a command, write the requested files, and print warnings.
+    """Write the requested files, then print the result of a command and its warnings.
 
     Parameters
     ----------
@@ -74,10 +74,9 @@ def deliver(
     from beamdyn.common.edge.tables import show
 
     refusals = [refusal] if refusal else []
-    try:
-        show(tables)
-    finally:  # the files of a long computation do not depend on who reads the tables
-        write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
+    # The files of a long computation do not depend on who reads the tables.
+    write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
+    show(tables)
     warn(warnings)
     if refusal:
         raise program.NoAnswer(refusal)

@@ -90,8 +90,8 @@ def simulate(
     )  # fmt: skip
     with naming_option("t_end", "--t-end", t_end):
         run = simulate(loaded, end, modes, tolerance, method, discretization)
-    deliver(run, outputs, question, [transient_table(run, span)], transient_csv(run), on_axes(run.plot))
     _write_close_up(run, span or (0.0, end), series, animation, outputs.force)
+    deliver(run, outputs, question, [transient_table(run, span)], transient_csv(run), on_axes(run.plot))
 
 
 @app.command

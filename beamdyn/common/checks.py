@@ -233,12 +233,6 @@ def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any
     return given
 
 
-def text(name: str, value: object) -> None:
-    """Refuse what is not text, such as a name."""
-    if not isinstance(value, str):
-        raise InvalidValue(name, value, "give text")
-
-
 def function(name: str, value: object, remedy: str = "") -> None:
     """Refuse what cannot be called."""
     if not callable(value):

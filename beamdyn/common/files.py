@@ -12,7 +12,31 @@ from pathlib import Path
 ASIDE = ".unfinished-"  # begins the name of a file that is still being written
 
 
-def output_path(
+def as_path(name: str, value: object, wanted: str = "a file") -> Path:
+    """The path that an argument is.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for the message.
+    value : object
+        Text or path.
+    wanted : str
+        What it names.
+
+    Raises
+    ------
+    InvalidValue
+        If it is neither text nor a path.
+    """
+    if not isinstance(value, str | os.PathLike):
+        from beamdyn.common.checks import InvalidValue  # with numpy, which help does without
+
+        raise InvalidValue(name, value, f"give the name of {wanted}, as text or path")
+    return Path(value)
+
+
+def check_writable(
     path: str | Path,
     suffixes: Sequence[str] = (),
     force: bool = False,
@@ -38,15 +62,15 @@ def output_path(
     Raises
     ------
     ValueError
-        If the suffix is none of those allowed.
+        If it is no path, or the suffix is none of those allowed.
     FileExistsError
         If the file exists and `force` is not set.
     FileNotFoundError
-        If there is no such directory.
+        If there is no such folder.
     OSError
         If the path is a folder, or cannot be written for another reason.
     """
-    path = Path(path)
+    path = as_path("path", path)
     if suffixes and path.suffix.lower() not in suffixes:
         raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}")
     if os.path.isdir(path):

@@ -7,7 +7,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.files import output_path, replacing
+from beamdyn.common.files import check_writable, replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,7 +45,7 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
     OSError
         If it cannot be written.
     """
-    path = output_path(path, SUFFIXES, force)
+    path = check_writable(path, SUFFIXES, force)
     figure: Any = drawn.figure  # of axes, a subfigure perhaps; of a figure, itself
     content = BytesIO()  # matplotlib does not close a file that it cannot write
     figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
@@ -82,7 +82,7 @@ def save_animation(
     from matplotlib import rc_context
     from matplotlib.animation import PillowWriter
 
-    path = output_path(path, ANIMATION_SUFFIXES, force)
+    path = check_writable(path, ANIMATION_SUFFIXES, force)
     writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
     with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames have one size
         writer.setup(figure, str(aside), dpi)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.files import output_path, write_text
+from beamdyn.common.files import as_path, check_writable, write_text
 from beamdyn.common.records import seal, unseal
 from beamdyn.common.snapshots import decode, encode
 
@@ -59,7 +59,7 @@ class Result:
         Numbers that are not finite are null, but `load` gets them back.
         """
         values, result = _nullified(self.to_dict()), self.loadable()
-        record = {} if result is None else {"record": _encode(result)}
+        record = {} if result is None else {"record": _record_of(result)}
         return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
 
     def save(self, path: str | Path, force: bool = False) -> None:
@@ -74,12 +74,14 @@ class Result:
 
         Raises
         ------
+        ValueError
+            If the path is none.
         FileExistsError
             If the file exists and `force` is not set.
         OSError
             If it cannot be written.
         """
-        write_text(output_path(path, force=force), self.to_json())
+        write_text(check_writable(path, force=force), self.to_json())
 
 
 def load(path: str | Path) -> Any:
@@ -102,15 +104,16 @@ def load(path: str | Path) -> Any:
     Raises
     ------
     ValueError
-        If the file is damaged, was changed, holds no result, or was written by a version whose results
-        had other fields.
+        If the path is none, or the file is damaged, was changed, holds no result, or was written by a
+        version whose results had other fields.
     OSError
         If it cannot be read.
     """
+    file = as_path("path", path)
     try:
-        content = unseal(Path(path).read_bytes())
-        return _decode(content["record"])
-    except KeyError:
+        content = unseal(file.read_bytes())
+        if "record" in content:
+            return _result_from(content["record"])
         reason = "it has numbers only"
     except ValueError as error:
         reason = str(error)
@@ -118,7 +121,7 @@ def load(path: str | Path) -> Any:
     raise ValueError(f"{path}: no result can be loaded: {reason}; {remedy}")
 
 
-def _encode(result: Result) -> dict[str, Any]:
+def _record_of(result: Result) -> dict[str, Any]:
     """The fields, and the computed values that the result has kept, such as a modal truncation error."""
     names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
     kept = {
@@ -127,7 +130,7 @@ def _encode(result: Result) -> dict[str, Any]:
     return {"result": encode(result), "computed": kept}
 
 
-def _decode(record: Any) -> Result:
+def _result_from(record: Any) -> Result:
     result = decode(record["result"])
     if not isinstance(result, Result):
         raise ValueError(f"{result!r} is none of beamdyn's or brakes'")

@@ -43,14 +43,6 @@ class LeftOut:
         )
 
 
-class FieldsOnly:
-    """Base of dataclasses that are pickled by their fields, without what they have computed and kept."""
-
-    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
-        fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
-        return type(self), tuple(getattr(self, f.name) for f in fields)
-
-
 def encode(value: Any) -> Any:
     """Represent an object by JSON's types.
 

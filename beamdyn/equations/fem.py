@@ -11,7 +11,7 @@ import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
 from beamdyn.common.checks import count, one_of, set_fields
-from beamdyn.common.snapshots import FieldsOnly
+from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.checks import count, one_of, set_fields
-from beamdyn.common.snapshots import FieldsOnly
+from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from beamdyn.common.snapshots import FieldsOnly
+from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
 from beamdyn.modal.eigen import Solver

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.checks import ascending
-from beamdyn.common.files import output_path, replacing
+from beamdyn.common.files import check_writable, replacing
 from beamdyn.common.pictures import save_animation
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def write_shapes(
     OSError
         If it cannot be written.
     """
-    path = output_path(path, SHAPE_SUFFIXES, force)
+    path = check_writable(path, SHAPE_SUFFIXES, force)
     kind = path.suffix[1:].lower()
     strip = _strip(x := ascending("x", x), width)
     fields = _scale(_check_shapes(x, shapes, labels), _DRAWN_RATIO * (x[-1] - x[0]))
@@ -115,7 +115,7 @@ def write_series(
     """
     from meshio.xdmf import TimeSeriesWriter
 
-    path = output_path(path, SERIES_SUFFIXES, force)
+    path = check_writable(path, SERIES_SUFFIXES, force)
     x, t, deflection = _check_history(x, t, deflection)
     strip = _strip(x, width)
     with replacing(path) as aside, TimeSeriesWriter(aside, data_format="XML") as writer:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.snapshots import FieldsOnly
+from beamdyn.common.pickling import FieldsOnly
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
 from beamdyn.modal.model import Model

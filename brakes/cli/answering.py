@@ -1,4 +1,4 @@
-"""The body of every command on a brake: read, solve or sweep, print, write files, warn."""
+"""The body of every command on a brake: read, solve or sweep, write files, print, warn."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def run_command(
     further: Files | None = None,
     **options: object,
 ) -> None:
-    """Answer a file, print the answer and write the files asked for.
+    """Answer a file, write the files asked for and print the answer.
 
     Parameters
     ----------
@@ -117,13 +117,14 @@ def run_command(
     if result is not None:
         raise ValueError("--result goes with --sweep: without one, all results are shown")
     answer = brake.answer(tables, file)
-    show(shown := answer.tables())
+    shown = answer.tables()
     more = [(title, partial(draw, answer)) for title, draw in brake.more]
     report = Report(question, shown, [*answer.refusals, *answer.warnings], more)
     write(answer, outputs, answer.rows(), answer.figure, report)
     for path, save in (further or {}).values():
         if path is not None:
             save(answer, path)
+    show(shown)
     warn(answer.warnings)
     if answer.refusals:
         raise NoAnswer("; ".join(answer.refusals))
@@ -143,7 +144,8 @@ def _answer_sweep(
     from brakes.answers.tables import sweep_table
 
     made, warnings = brake.sweep(tables, *request)
-    show(shown := [sweep_table(made)])
+    shown = [sweep_table(made)]
     report = Report(question, shown, warnings)
     write(made, outputs, sweep_csv(made), lambda: sweep_figure(made), report)
+    show(shown)
     warn(warnings)

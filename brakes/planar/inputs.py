@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import NoneType
 from typing import Annotated, Any, get_args
 
-from beamdyn.common.checks import flag, set_fields, several, text
+from beamdyn.common.checks import flag, kind, set_fields, several
 from beamdyn.common.described import Described, described_hints, descriptions, kinds_of
 from brakes.planar.points import GROUND, Point, check_point, unit_vector
 
@@ -56,13 +56,13 @@ def check_inputs(core: object, prefix: str = "") -> None:
             set_fields(core, **{name: checked})
 
 
-def _check(name: str, value: object, kind: Any, described: Described) -> float | None:
+def _check(name: str, value: object, wanted: Any, described: Described) -> float | None:
     """Refuse a value that is not as described; a number is returned as a float."""
-    if kind is float:
+    if wanted is float:
         return described.check(name, value)
-    if kind is str:
-        text(name, value)
-    elif kind is bool:
+    if wanted is str:
+        kind(name, value, str)
+    elif wanted is bool:
         flag(name, value)
     elif type(described) is not Described:
         described.check(name, value)

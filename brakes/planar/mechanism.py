@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.checks import kind, set_fields, several, text
+from beamdyn.common.checks import kind, set_fields, several
 from brakes.planar.part import Joint, Load, Part
 from brakes.planar.points import GROUND, Point, suggest
 from brakes.planar.rows import FrictionLaw
@@ -81,7 +81,7 @@ class Mechanism:
 
     def load(self, name: str) -> Load:
         """The load of a name."""
-        text("load", name)
+        kind("load", name, str)
         known = {load.name: load for load in self.loads}
         if name not in known:
             raise ValueError(f"load {name!r} does not exist; {suggest(name, known)}")

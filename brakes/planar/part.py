@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
-from beamdyn.common.checks import text
+from beamdyn.common.checks import kind
 from beamdyn.common.described import Described
 from brakes.planar.inputs import check_inputs
 from brakes.planar.points import GROUND, End, Point
@@ -66,7 +66,7 @@ class Part:
     name: Annotated[str, Described(meaning="name")]
 
     def __post_init__(self) -> None:
-        text("name", self.name)
+        kind("name", self.name, str)
         check_inputs(self, f"{self.title}: ")
 
     @classmethod

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from beamdyn.common.files import output_path
+from beamdyn.common.files import check_writable
 from beamdyn.output.export import animate, write_series, write_shapes
 
 X = np.linspace(0, 0.05, 11)
@@ -90,7 +90,7 @@ def test_suffix_may_be_in_capitals(tmp_path):
 
 def test_missing_directory_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"no folder .*nowhere"):
-        output_path(tmp_path / "nowhere" / "a.png", [".png"])
+        check_writable(tmp_path / "nowhere" / "a.png", [".png"])
 
 
 BAD = {

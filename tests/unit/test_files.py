@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.files import output_path, replacing, same_file, write_text
+from beamdyn.common.files import check_writable, replacing, same_file, write_text
 from beamdyn.common.pictures import save_animation
 from brakes import cli as brakes
 
@@ -207,7 +207,7 @@ def test_a_link_stays_and_its_file_is_replaced(tmp_path):
 
 def test_a_link_to_nothing_makes_its_file(tmp_path):
     (tmp_path / "link").symlink_to("file")
-    write_text(output_path(tmp_path / "link"), "new")
+    write_text(check_writable(tmp_path / "link"), "new")
     assert (tmp_path / "file").read_text() == "new"
 
 

@@ -233,6 +233,13 @@ def test_the_numbers_stay_readable_for_other_programs(saved, made):
     assert list(written)[-3:] == ["record", "schema", "checksum"]
 
 
+@pytest.mark.parametrize("wrong", [5, None, b"modes.json", 1.5])
+def test_what_is_no_path_is_refused_by_name(made, wrong):
+    for call in (bd.load, made("modes").save):
+        with pytest.raises(ValueError, match=r"^path = .*: give the name of a file, as text or path$"):
+            call(wrong)
+
+
 def test_save_keeps_a_file_that_exists_unless_forced(saved, made):
     with pytest.raises(FileExistsError):
         made("locus").save(saved)

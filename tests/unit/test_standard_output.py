@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.edge.tables import Screen, spell, spell_output, table
+from beamdyn.common.edge.tables import Terminal, spell, spell_output, table
 from brakes import cli as brakes
 
 ROOT = Path(__file__).parents[2]
@@ -71,7 +71,7 @@ def test_rules_and_titles_are_spelled_too():
     printed = io.BytesIO()
     stream = io.TextIOWrapper(printed, "ascii")
     spell_output(stream)
-    screen = Screen(file=stream, width=8)
+    screen = Terminal(file=stream, width=8)
     screen.rule()
     screen.print(table("Δω in °", ("a",), [("b",)]))
     assert printed.getvalue().startswith(b"--------\n?omega")
@@ -106,6 +106,25 @@ def test_the_files_are_written_though_the_reader_has_left(run_into, tmp_path):
         code, err = run_into(stream, *COMMANDS["modes"], "--json", str(tmp_path / "modes.json"))
     assert (code, err) == (beams.DONE, "")
     assert len(json.loads((tmp_path / "modes.json").read_text())["frequency"]) == 3
+
+
+WRITING = {
+    **{name: (*COMMANDS[name], "--json") for name in ("modes", "critical", "limits", "terms", "drum")},
+    "animation": (*COMMANDS["simulate"], "--animation"),
+    "sweep of a brake": (*COMMANDS["drum"], "--sweep", "brake.friction=0.2:0.4:3", "--csv"),
+    "free bodies": (*COMMANDS["caliper"], "--free-bodies"),
+}
+SUFFIXES = {"animation": ".gif", "free bodies": ".png"}
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
+@pytest.mark.parametrize("command", WRITING)
+def test_the_files_are_written_though_the_tables_cannot_be_printed(run_into, tmp_path, command):
+    path = tmp_path / f"result{SUFFIXES.get(command, '.txt')}"
+    with suppress(OSError), open("/dev/full", "w") as full:
+        code, err = run_into(full, *WRITING[command], str(path))
+    assert code == beams.BAD_INPUT and "standard output cannot be written" in err
+    assert path.stat().st_size > 0
 
 
 def test_without_standard_error_nothing_is_mixed_into_the_output(monkeypatch, capsys):

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -20,6 +19,7 @@ from pydantic_core import ErrorDetails
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.inputs import Section, describe
 from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_written
+from beamdyn.common.files import as_path
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -80,10 +80,9 @@ def read(path: str | PathLike[str]) -> str:
     ConfigError
         If it cannot be read; the message says why.
     """
-    if not isinstance(path, str | PathLike):
-        raise InvalidValue("path", path, "give the name of a TOML file")
+    file = as_path("path", path, "a TOML file")
     try:
-        return Path(path).read_text(encoding="utf-8-sig")  # with or without the mark that editors prepend
+        return file.read_text(encoding="utf-8-sig")  # with or without the mark that editors prepend
     except FileNotFoundError:
         raise ConfigError(str(path), ["there is no such file; check the name and the folder"]) from None
     except OSError as error:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.common.files import output_path, same_file, write_text
+from beamdyn.common.files import check_writable, same_file, write_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -114,7 +114,7 @@ def check_folder(option: str, folder: Path) -> None:
     if not there.is_dir():
         raise ValueError(f"--{option} = {folder}: {there} is a file; give a folder")
     try:
-        output_path(there / "picture.png", force=True)
+        check_writable(there / "picture.png", force=True)
     except OSError as error:
         raise ValueError(f"--{option} = {folder}: {error}") from None
 
@@ -141,6 +141,6 @@ def _check_is_no_input(option: str, path: Path, inputs: Iterable[str | Path]) ->
 def _check_output(option: str, path: Path, force: bool) -> None:
     remedy = "add --force to overwrite it, or give another name"
     try:
-        output_path(path, _SUFFIXES.get(option, ()), force, remedy)
+        check_writable(path, _SUFFIXES.get(option, ()), force, remedy)
     except (OSError, ValueError) as error:
         raise ValueError(f"--{option} = {error}") from None

@@ -69,11 +69,11 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 
 
 def _call(app: App, arguments: Sequence[str]) -> None:
-    from beamdyn.common.edge.tables import Screen, spell_output
+    from beamdyn.common.edge.tables import Terminal, spell_output
 
     if isinstance(sys.stdout, TextIOWrapper):
         spell_output(sys.stdout)
-    app(arguments, console=Screen(), exit_on_error=False, print_error=False, result_action="return_value")
+    app(arguments, console=Terminal(), exit_on_error=False, print_error=False, result_action="return_value")
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:

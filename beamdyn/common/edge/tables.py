@@ -55,7 +55,7 @@ def _spell_error(error: UnicodeError) -> tuple[str, int]:
     return spell(error.object[error.start : error.end], "ascii"), error.end
 
 
-class Screen(Console):
+class Terminal(Console):
     """A console on standard output whose columns are laid out for the characters it has.
 
     The reader of a pipe may leave.
@@ -80,10 +80,10 @@ class Screen(Console):
         os.close(nowhere)
 
 
-def console() -> Screen:
+def console() -> Terminal:
     """The console on standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
-    return Screen(width=width, markup=False, highlight=False, emoji=False)
+    return Terminal(width=width, markup=False, highlight=False, emoji=False)
 
 
 def show(parts: Iterable[RenderableType]) -> None:

@@ -1,4 +1,4 @@
-"""A directory of finished parts of a long computation, one file each, named by a hash of the request."""
+"""A folder of finished parts of a long computation, one file each, named by a hash of the request."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ import numpy as np
 from beamdyn.common.files import ASIDE, write_text
 from beamdyn.common.records import DamagedRecord, seal, unseal
 
-_MARKER = "store.json"  # tells a store from a directory with other content
-_REMEDY = "name a directory that does not exist yet, or an earlier store"
+_MARKER = "store.json"  # tells a store from a folder with other content
+_REMEDY = "name a folder that does not exist yet, or an earlier store"
 
 
 class Store:
-    """A directory of records; each is written in one step, sealed by a checksum, and never changed.
+    """A folder of records; each is written in one step, sealed by a checksum, and never changed.
 
-    Opening it makes the directory, or checks that it is an earlier store and can be written.
+    Opening it makes the folder, or checks that it is an earlier store and can be written.
 
     Parameters
     ----------
     path : str or Path
-        The directory; its parents must exist.
+        The folder; its parents must exist.
     kind : str
         What is stored: a store of another kind is refused.
 
