@@ -12,8 +12,8 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
-from beamdyn.common.results import Provenance, Result, plain
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results import Provenance, Result, plain
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model

@@ -15,8 +15,8 @@ from scipy.integrate import OdeSolver
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, real, real_array, within
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results import Provenance, Result
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import (
     FEWEST_MODES,
