@@ -77,6 +77,11 @@ def test_with_friction_what_would_have_to_act_the_other_way_is_no_answer(status,
     assert way.has_answer == answered
 
 
+def test_a_caliper_that_locks_names_the_way_as_a_mechanism_does():
+    locked = dataclasses.replace(calipers.VBrake().build(), pivot_radius=0.03).friction(5.0)
+    assert locked.status == "self-locking" and "releasing: self-locking" in locked.message
+
+
 def test_any_number_of_python_is_one():
     """Decimal numbers give what floats give, and results hold floats."""
     caliper = calipers.VBrake().build()
