@@ -237,16 +237,17 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
     bound, parts = _FIT_TOLERANCE * np.abs(exact).max(), 1 + len(xi) // _AT_ONCE
     samples = list(zip(np.array_split(xi, parts), np.array_split(exact, parts), strict=True))
     for nodes in _FIT_NODES:
-        t, w = legendre.leggauss(nodes)
-        row = _project(lambda x: _sample(name, function, x), a, b, t, w)
+        t, _ = legendre.leggauss(nodes)
+        values = _sample(name, function, (a + b) / 2 + (b - a) / 2 * t)
+        row = np.linalg.solve(legendre.legvander(t, nodes - 1), values)  # a weighted sum loses digits
         short = legendre.legtrim(row, 0.01 * bound)
         if all(_misfit(short, a, b, *part).max() <= bound for part in samples):
             return tuple(legendre.legtrim(row, 1e-17 * np.abs(row).max()).tolist())
     where = xi[_FEW + 1 + np.abs(np.diff(exact[_FEW:], 2)).argmax()]  # the largest change of slope
     raise ValueError(
-        f"{name}: the function is not smooth near x/L = {where:.4g}; "
+        f"{name}: the function is not smooth near x/L = {where:.4g}, or varies too quickly to be resolved; "
         f"if it jumps or has a kink there, pass breakpoints=({where:.4g},) with the exact place, "
-        "or give a Table"
+        "else several breakpoints about it, or a Table"
     )
 
 

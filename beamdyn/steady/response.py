@@ -215,6 +215,7 @@ class ResponseRequest(FieldsOnly):
         rate, rate_error = growth_rate(system)
         status = _status(rate, speeds, model.solver.critical_speed)
         used, c, error = _solve_harmonics(system, equations.tip, self.harmonics, self.tolerance)
+        undecided = (np.abs(rate) < rate_error) & (status != "past the critical speed")
         stable = (status == "stable") & np.isfinite(c).all(axis=1)
         c[~stable], error[~stable] = np.nan, np.nan
         amplitude = np.full(len(speeds), np.nan)
@@ -235,7 +236,9 @@ class ResponseRequest(FieldsOnly):
             line_frequency=np.abs(system.rates @ harmonic.T) / (2 * np.pi),
             line_amplitude=line,
             harmonics=harmonic,
-            warnings=tuple(_warnings(scene, speeds, status, amplitude, error, self.tolerance, road)),
+            warnings=tuple(
+                _warnings(scene, speeds, status, amplitude, error, self.tolerance, road, undecided)
+            ),
             provenance=Provenance(
                 __version__,
                 f"{model.discretization}, {self.basis}, {len(used)} harmonics",
@@ -327,6 +330,7 @@ def _warnings(
     error: np.ndarray,
     tolerance: float,
     road: np.ndarray,
+    undecided: np.ndarray,
 ) -> Iterator[str]:
     for name in ("parametric instability", "past the critical speed"):
         if (at := speeds[status == name]).size:
@@ -340,3 +344,5 @@ def _warnings(
     yield from warn_of_road(road, speeds)
     if (at := speeds[error > tolerance]).size:
         yield f"the harmonics are not resolved to {tolerance:g} at {list_range(at)}; see error"
+    if (at := speeds[undecided]).size:
+        yield f"stability is not decided at {list_range(at)}: growth_rate is within growth_rate_error"

@@ -170,6 +170,8 @@ class _FreeMotion:
         parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
         coupling = reduce(np.add, parts)
         product = np.abs(coupling[..., _opposite(h)] * np.swapaxes(coupling, 1, 2))
+        own = np.arange(product.shape[1])
+        product[:, own, own] = 0  # h and -h, of opposite gaps, cancel: a frequency that varies shifts no rate
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
         return np.minimum(shift, self.radius)

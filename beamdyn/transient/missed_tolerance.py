@@ -24,7 +24,7 @@ def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator
     str
     """
     if error > tolerance:
-        size = f"{error:.1g} of the largest deflection" if np.isfinite(error) else "not known"
+        size = f"{error:.2g} of the largest deflection" if np.isfinite(error) else "not known"
         yield (
             f"tolerance = {tolerance:g} is not reached: the estimated modal truncation error is {size} with "
             f"{basis}, and more would take too long or too much memory; a sudden motion excites very many: "
@@ -36,7 +36,7 @@ def warn_of_missed_steps(error: float, tolerance: float) -> Iterator[str]:
     """Warn of a time-integration error, over the largest deflection, that exceeds the tolerance."""
     if error > tolerance:
         yield (
-            f"tolerance = {tolerance:g} is not reached: the estimated time-integration error is {error:.1g} "
+            f"tolerance = {tolerance:g} is not reached: the estimated time-integration error is {error:.2g} "
             "of the largest deflection, and smaller steps would only add rounding errors; give a larger "
             "tolerance"
         )

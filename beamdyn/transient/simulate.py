@@ -46,6 +46,7 @@ _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice 
 _MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
 _SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
 _FAST = 4.0
+_TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried as well
 
 
 @dataclass(frozen=True)
@@ -293,6 +294,11 @@ def simulate(
     t_end, tolerance = positive("t_end", t_end, "s"), within("tolerance", tolerance, *TOLERANCES)
     if scene.motion is None:
         raise InvalidValue("scene.motion", None, "a transient needs a motion", "such as SteadyRotation(50.0)")
+    if method == "auto" and options:
+        raise TypeError(
+            f"simulate has no option {' or '.join(options)}; options such as max_step belong to a method of "
+            'solve_ivp, such as method="RK45"'
+        )
     times = None if t_eval is None else _times(t_eval, t_end)
     basis = ModalBasis(None) if modes is None else given_basis(modes)
     if basis is None and not isinstance(initial, str):
@@ -361,17 +367,25 @@ class TransientRequest(FieldsOnly):
             return None
 
     def run_smallest_basis(self) -> Transient:
-        """Integrate with the smallest basis whose truncation error meets the tolerance, else the largest."""
-        run = replace(self, method="auto", t_eval=None).run()
-        if run.mode_error > self.tolerance * run.largest and run.refined is not None:
-            # A sudden motion excites many modes: as many modes at rest may then be the better basis.
-            at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
-            run = at_rest if at_rest.distance_from(run.refined) < run.distance_from(run.refined) else run
-        run = _add_modes(run, self.tolerance)
+        """Integrate with the smallest basis that meets the tolerance, else with the best that is known."""
+        run = replace(self, method="auto", t_eval=None)._search()
+        if run.relative_mode_error > self.tolerance and self.tolerance < _TIGHT:
+            # Accurate steps leave less work for modes: with coarser ones the whole error may be smaller.
+            coarse = replace(self, method="auto", t_eval=None, tolerance=_TIGHT)._search()
+            run = min(run, coarse, key=lambda run: run.time_error + run.mode_error)
         missed = tuple(warn_of_missed_modes(run.relative_mode_error, self.tolerance, str(run.request.basis)))
         as_requested = self.method == "auto" and self.t_eval is None
         run = run if as_requested else replace(self, basis=run.request.basis).run()
         return run.with_warnings(missed) if missed else run
+
+    def _search(self) -> Transient:
+        """Add modes until the truncation error meets the tolerance, or takes too much work."""
+        run = self.run()
+        if run.mode_error > self.tolerance * run.largest and run.refined is not None:
+            # A sudden motion excites many modes: as many modes at rest may then be the better basis.
+            at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
+            run = at_rest if at_rest.distance_from(run.refined) < run.distance_from(run.refined) else run
+        return _add_modes(run, self.tolerance)
 
     def _with_more_modes(self) -> TransientRequest | None:
         """Request with more modes, by "ritz" if the discretization has too few functions; or None."""

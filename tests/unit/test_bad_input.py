@@ -261,3 +261,11 @@ def test_gap_in_beam(changes, name):
 @pytest.mark.parametrize("changes", [{"beam": None}, {"mount": 0.215}, {"motion": 55.0}, {"stretch": "no"}])
 def test_gap_in_scene(changes):
     refused(lambda: Scene(**({"beam": strip()} | changes)), *changes)
+
+
+@pytest.mark.parametrize("width", [0.2, 0.1, 0.05])
+def test_a_smooth_bump_is_resolved_to_rounding(width):
+    xi = np.linspace(0, 1, 1001)
+    exact = 1 + 0.5 * np.exp(-(((xi - 0.3123) / width) ** 2))
+    profile = as_profile("width", lambda x: 1 + 0.5 * np.exp(-(((x - 0.3123) / width) ** 2)))
+    np.testing.assert_allclose(profile(xi), exact, rtol=1e-14)

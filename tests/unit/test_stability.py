@@ -121,3 +121,10 @@ def test_response_states_the_error_of_its_growth_rate() -> None:
     assert found.status[0] == "parametric instability"
     assert found.growth_rate[0] == pytest.approx(0.1648, rel=1e-3)  # by the monodromy matrix
     assert 0 < found.growth_rate_error[0] < 1e-4 * found.growth_rate[0]
+
+
+def test_a_stiffness_that_varies_slowly_shifts_no_growth_rate() -> None:
+    """At rest gravity is constant: the error of the growth rate must not grow as the speed falls."""
+    heavy = replace(HARVESTER, motion=bd.SteadyRotation(5.0), damping_ratio=1e-3, gravity=9.81)
+    slow = bd.steady_response(heavy, [0.0, 0.5, 50.0])
+    assert (slow.growth_rate_error < 1e-3 * np.abs(slow.growth_rate)).all() and slow.warnings == ()

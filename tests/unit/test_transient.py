@@ -288,3 +288,14 @@ def test_tolerance_below_rounding_ends() -> None:
     assert any("1e-12 is not reached" in w and "time-integration error" in w for w in run.warnings)
     assert len(run.path.samples[0]) < 3e6
     assert np.abs(run.deflection(t) - finer.deflection(t)).max() <= run.time_error + finer.time_error
+
+
+def test_an_option_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(TypeError, match="no option tolerence"):
+        bd.simulate(ROLLING, 1.0, tolerence=1e-9)
+
+
+def test_a_tolerance_that_cannot_be_met_does_not_make_the_answer_worse() -> None:
+    sudden = replace(HARVESTER, motion=bd.SpinUp(50.0, duration=1e-4), damping_ratio=0.005)
+    usual, tight = (bd.simulate(sudden, 0.05, tolerance=tolerance) for tolerance in (1e-5, 1e-9))
+    assert tight.mode_error <= usual.mode_error and "not reached" in " ".join(tight.warnings)
