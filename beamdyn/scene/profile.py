@@ -245,9 +245,9 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
             return tuple(legendre.legtrim(row, 1e-17 * np.abs(row).max()).tolist())
     where = xi[_FEW + 1 + np.abs(np.diff(exact[_FEW:], 2)).argmax()]  # the largest change of slope
     raise ValueError(
-        f"{name}: the function is not smooth near x/L = {where:.4g}, or varies too quickly to be resolved; "
-        f"if it jumps or has a kink there, pass breakpoints=({where:.4g},) with the exact place, "
-        "else several breakpoints about it, or a Table"
+        f"{name}: the function is not smooth near x/L = {where:.4g}; "
+        f"if it jumps or has a kink there, pass breakpoints=({where:.4g},) with the exact place; "
+        "if it varies quickly, several breakpoints about it, or a Table"
     )
 
 
