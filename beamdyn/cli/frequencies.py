@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -147,6 +148,8 @@ def critical(
     result = critical_point(load_scene(scene), discretization)
     write(result, outputs)
     console().print(_describe_critical(result))
+    if isinf(result.error):  # there is one, perhaps, but it was not found or not resolved
+        raise NoAnswer("; ".join(result.warnings))
     warn(result.warnings)
 
 
@@ -220,8 +223,6 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
 
 def _describe_critical(result: CriticalPoint) -> str:
     """The sentence on the critical speed, and on how far it was looked where none was found."""
-    from math import isinf
-
     from beamdyn.common.digits import supported
 
     if not isinf(result.speed):

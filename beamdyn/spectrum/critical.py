@@ -248,7 +248,7 @@ def _critical_warnings(
     elif tolerance is not None:
         yield from warn_of_missed_tolerance(found.error, tolerance)
     elif found.error > 1e-6:
-        yield f"estimated relative error {found.error:.1g}: the model did not resolve the critical speed"
+        yield f"the estimated relative error of the critical speed is {found.error:.1g}"
 
 
 # Setting angles at which the locus changes its character -----------------------------------------

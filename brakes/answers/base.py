@@ -83,8 +83,9 @@ class Answer(Result, ABC):
         """The results as plain numbers, lists and strings."""
 
     def to_dict(self) -> dict[str, Any]:
-        """Results, inputs, error and provenance as plain numbers, lists and strings."""
-        made = {"inputs": self.design.model_dump(), "error": self.error, "provenance": self.provenance}
+        """Results, refusals, inputs, error and provenance as plain numbers, lists and strings."""
+        made = {"refusals": self.refusals, "inputs": self.design.model_dump()}
+        made |= {"error": self.error, "provenance": self.provenance}
         return self.values() | {key: plain(value) for key, value in made.items()}
 
     @abstractmethod

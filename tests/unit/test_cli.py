@@ -81,7 +81,7 @@ def test_critical_says_why_there_is_none_or_how_far_it_was_looked(run, tmp_path)
     text = Path(SCENE).read_text().replace("[mount]", body)
     scene.write_text(text.replace('radius = "215 mm"', 'radius = "0 mm"'))
     code, out, err = run("critical", scene)
-    assert code == DONE
+    assert code == NO_ANSWER
     assert "no critical speed found; there is certainly none below" in out
     assert "a critical speed exists (the rotation topples the tip body" in err
 
