@@ -163,10 +163,7 @@ def test_a_block_brake_needs_no_travel(capsys, tmp_path):
 
 def test_a_brake_that_jams_ends_with_1(capsys, tmp_path):
     """At mu = block / offset = 5 the friction presses the block on as hard as its reaction lifts it."""
-    scene, made = (
-        write(tmp_path, BLOCK_BRAKE.replace("friction = 0.4", "friction = 5.1")),
-        tmp_path / "a.json",
-    )
+    text, made = BLOCK_BRAKE.replace("friction = 0.4", "friction = 5.1"), tmp_path / "a.json"
     code, out, err = run(capsys, write(tmp_path, text), "--json", made)
     assert code == 1 and "squeezing: self-locking" in err and "no size of 'torque'" in err
     assert "not determined" in out and "none" not in out
