@@ -65,7 +65,8 @@ def test_a_missing_motion_is_missing_in_the_file(refused, command):
 @pytest.mark.parametrize("option", [("--method", "ritz"), ("--method=fem",)])
 def test_an_unknown_option_is_known_by_its_word(refused, option):
     assert "Unknown option: --method. Did you mean --discretization?" in refused("modes", BLADE, *option)
-    assert "Did you mean --modes?" in refused("modes", BLADE, "--mode", "3")
+    said = refused("modes", BLADE, "--mode", "3").replace('"', "")  # quoted in cyclopts 4.1
+    assert "Did you mean --modes?" in said
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from typing import Literal, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 from cyclopts import App, CycloptsError, UnknownOptionError
 
@@ -90,9 +90,13 @@ def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
     """Within it, a warning of the packages is a sentence of the program, without a place in the code."""
+    usual = warnings.showwarning
 
-    def show(message: Warning | str, *_: object, **__: object) -> None:
-        warn(name, [str(message)])
+    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+        if category is UserWarning:
+            warn(name, [str(message)])
+        else:  # of another package, to its developers
+            usual(message, category, *place)
 
     with warnings.catch_warnings():
         warnings.simplefilter("default", UserWarning)  # whatever filters are set outside
