@@ -164,10 +164,11 @@ class Solver:
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
         inverse, y = solve(self.mass / time**2, damping / time, stiffness)
         s, z = _select_lowest(inverse * time, y[:n], count)
-        norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), self.mass, z).real)
+        norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), self.mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(self.growth)).max() / np.abs(stiffness).min()
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
-        return s, T @ (z / norm), rounding
+        lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
+        return s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
 
 
 @contextmanager
