@@ -17,7 +17,8 @@ from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, de
 from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
 from beamdyn.scene.scene import Scene
 
-TABLES = ("options", "mount", "beam", "motion", "model")  # on the form of each screen, in this order
+# On the form of each screen, in this order.
+TABLES = ("options", "mount", "beam", "motion", "model", "physics")
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
