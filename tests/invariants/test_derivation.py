@@ -24,6 +24,7 @@ from beamdyn.equations.fields.bending import HELD, bending_operators
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
@@ -394,7 +395,7 @@ class Case:
         taper = {k: Polynomial([v[k + "0"], v[k + "1"] * v["L"]]) for k in ("rho", "EI", "EA")}
         tip = TipMass(v["m"], v["eps"], v["Jn"], transverse_inertia=v["Je"], axial_inertia=v["J1"])
         beam = Beam.from_stiffness(v["L"], taper["rho"], taper["EI"], taper["EA"], tip=tip)
-        return Scene(beam, Mount(v["r"], *self.angles[:2]), gravity=v["g"], stretch=True)
+        return Scene(beam, Mount(v["r"], *self.angles[:2]), gravity=v["g"], physics=Physics(stretch=True))
 
     def equations(self):
         return assemble_equations(self.scene(), PowerSeries())
