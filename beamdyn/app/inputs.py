@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, get_args
 
@@ -64,6 +65,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
 
 def _beam(entries: Mapping[str, str]) -> type[Section]:
     given = {path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text}
+    given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns among others
     own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
     return StiffnessInput if given & own else RectangularInput
 
