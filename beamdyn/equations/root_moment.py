@@ -98,7 +98,7 @@ def _combine(moments: list[RootMoment], factors: list[float]) -> RootMoment:
 
 def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
     """Sum of values by quantity, times factors; quantities may be missing in some parts."""
-    names = dict.fromkeys(name for part in parts for name in part)
+    names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
     return {
         name: sum(f * part.get(name, 0.0) for f, part in zip(factors, parts, strict=True)) for name in names
     }
