@@ -33,6 +33,7 @@ _NAMES = {
         "UserMotion",
     ),
     "scene.mount": ("Mount",),
+    "scene.physics": ("Physics",),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
@@ -80,6 +81,7 @@ if TYPE_CHECKING:
         UserMotion,
     )
     from beamdyn.scene.mount import Mount
+    from beamdyn.scene.physics import Physics
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds

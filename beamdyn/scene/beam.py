@@ -11,7 +11,14 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse, set_fields, size
 from beamdyn.common.described import Described
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness
-from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints
+from beamdyn.scene.profile import (
+    Profile,
+    Property,
+    as_profile,
+    check_positive,
+    merge_breakpoints,
+    to_profile,
+)
 
 
 @dataclass(frozen=True)
@@ -85,7 +92,9 @@ class TipMass:
 
 @dataclass(frozen=True)
 class Beam:
-    """A straight Euler-Bernoulli cantilever.  Build it by `rectangular` or `from_stiffness`.
+    """A straight cantilever.  Build it by `rectangular` or `from_stiffness`.
+
+    Which of its properties a model reads is said by `Physics`.
 
     Parameters
     ----------
@@ -101,6 +110,14 @@ class Beam:
         Distance of the outer fibre from the neutral axis [m] over x/L: needed for bending strain.
     tip : TipMass, optional
         Rigid body at the tip.
+    second_bending_stiffness : Profile, optional
+        Bending stiffness in the direction of the section across [N m2]; it may be the smaller of the two.
+    twist : Profile, optional
+        Angle by which the section is turned about the beam [rad] over x/L, added to the bending angle.
+    shear_stiffness, second_shear_stiffness : Profile, optional
+        Shear stiffness kappa G A [N] over x/L, for bending in either direction of the section.
+    rotary_inertia, second_rotary_inertia : Profile, optional
+        Rotary inertia of the section per length, rho I [kg m] over x/L, for bending in either direction.
     """
 
     length: float
@@ -109,14 +126,25 @@ class Beam:
     axial_stiffness: Profile | None = None
     outer_fibre: Profile | None = None
     tip: TipMass | None = None
+    second_bending_stiffness: Profile | None = None
+    twist: Profile | None = None
+    shear_stiffness: Profile | None = None
+    second_shear_stiffness: Profile | None = None
+    rotary_inertia: Profile | None = None
+    second_rotary_inertia: Profile | None = None
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
         required = ("mass_per_length", "bending_stiffness")
-        optional = ("axial_stiffness", "outer_fibre")
-        for name in (*required, *(name for name in optional if getattr(self, name) is not None)):
+        given = (name for name in OPTIONAL_PROPERTIES if getattr(self, name) is not None)
+        for name in (*required, *given):
             kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
-            check_positive(name, getattr(self, name))
+            if name != "twist":
+                check_positive(name, getattr(self, name))
+        if self.twist is not None and self.second_bending_stiffness is None:
+            remedy = "give it to Beam.from_stiffness; Beam.rectangular computes it"
+            bound = "it turns two directions of bending, and needs second_bending_stiffness"
+            raise InvalidValue("twist", self.tip_twist, bound, remedy, "rad", where=" at the tip")
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
         if self.tip is not None and self.length + self.tip.offset < 0:
@@ -133,8 +161,12 @@ class Beam:
         density: float,
         tip: TipMass | None = None,
         breakpoints: Sequence[float] = (),
+        twist: Property | None = None,
+        poissons_ratio: float | None = None,
     ) -> Beam:
         """Build a beam of rectangular section that bends in the direction of its thickness.
+
+        The second direction of bending is that of its width.
 
         Parameters
         ----------
@@ -151,6 +183,11 @@ class Beam:
         breakpoints : sequence of float
             Fractions x/L where the section jumps or has a kink.  A callable is sampled at intervals of
             2.5e-5: what is narrower is seen only between breakpoints, or in a Table.
+        twist : float, Polynomial, Table or callable, optional
+            Angle by which the section is turned [rad], added to the bending angle of the mount.
+        poissons_ratio : float, optional
+            Poisson's ratio, from -1 to 0.5; without it there is no shear stiffness.  That is kappa G A with
+            kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33, 335-340.
 
         Returns
         -------
@@ -174,13 +211,21 @@ class Beam:
         _check_section(length, b, h)
         warn_of_material(e, rho)
         area = b * h
+        flat, edge = area * h * h, area * b * b
+        shear = None if poissons_ratio is None else area.scaled(e * _shear_modulus_ratio(poissons_ratio))
         return cls(
             length=length,
             mass_per_length=area.scaled(rho),
-            bending_stiffness=(area * h * h).scaled(e / 12),
+            bending_stiffness=flat.scaled(e / 12),
             axial_stiffness=area.scaled(e),
             outer_fibre=h.scaled(0.5),
             tip=tip,
+            second_bending_stiffness=edge.scaled(e / 12),
+            twist=None if twist is None else to_profile("twist", twist, breakpoints),
+            shear_stiffness=shear,
+            second_shear_stiffness=shear,
+            rotary_inertia=flat.scaled(rho / 12),
+            second_rotary_inertia=edge.scaled(rho / 12),
         )
 
     @classmethod
@@ -193,6 +238,12 @@ class Beam:
         outer_fibre: Property | None = None,
         tip: TipMass | None = None,
         breakpoints: Sequence[float] = (),
+        second_bending_stiffness: Property | None = None,
+        twist: Property | None = None,
+        shear_stiffness: Property | None = None,
+        second_shear_stiffness: Property | None = None,
+        rotary_inertia: Property | None = None,
+        second_rotary_inertia: Property | None = None,
     ) -> Beam:
         """Build a beam of any section from its stiffness and mass.
 
@@ -213,6 +264,14 @@ class Beam:
         breakpoints : sequence of float
             Fractions x/L where a property jumps or has a kink.  A callable is sampled at intervals of
             2.5e-5: what is narrower is seen only between breakpoints, or in a Table.
+        second_bending_stiffness : float, Polynomial, Table or callable, optional
+            E I for bending in the direction of the section across [N m2]; without it there is one plane.
+        twist : float, Polynomial, Table or callable, optional
+            Angle by which the section is turned [rad], added to the bending angle of the mount.
+        shear_stiffness, second_shear_stiffness : float, Polynomial, Table or callable, optional
+            kappa G A [N] for bending in either direction; without the second it is as the first.
+        rotary_inertia, second_rotary_inertia : float, Polynomial, Table or callable, optional
+            rho I [kg m], rotary inertia of the section per length for bending in either direction.
 
         Returns
         -------
@@ -240,6 +299,15 @@ class Beam:
             axial_stiffness=profile("axial_stiffness", axial_stiffness),
             outer_fibre=profile("outer_fibre", outer_fibre),
             tip=tip,
+            second_bending_stiffness=profile("second_bending_stiffness", second_bending_stiffness),
+            twist=None if twist is None else to_profile("twist", twist, breakpoints),
+            shear_stiffness=profile("shear_stiffness", shear_stiffness),
+            second_shear_stiffness=profile(
+                "second_shear_stiffness",
+                shear_stiffness if second_shear_stiffness is None else second_shear_stiffness,
+            ),
+            rotary_inertia=profile("rotary_inertia", rotary_inertia),
+            second_rotary_inertia=profile("second_rotary_inertia", second_rotary_inertia),
         )
         warn_of_stiffness(
             beam.length,
@@ -253,8 +321,34 @@ class Beam:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions x/L where a property may jump or have a kink, with the ends 0 and 1."""
-        profiles = (self.mass_per_length, self.bending_stiffness, self.axial_stiffness)
+        names = (name for name in OPTIONAL_PROPERTIES if name != "outer_fibre")
+        profiles = (self.mass_per_length, self.bending_stiffness, *(getattr(self, name) for name in names))
         return merge_breakpoints(np.array([b for p in profiles if p is not None for b in p.breakpoints]))
+
+    @property
+    def tip_twist(self) -> float:
+        """Angle by which the section at the tip is turned [rad]."""
+        return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
+
+
+OPTIONAL_PROPERTIES = (
+    "axial_stiffness",
+    "outer_fibre",
+    "second_bending_stiffness",
+    "twist",
+    "shear_stiffness",
+    "second_shear_stiffness",
+    "rotary_inertia",
+    "second_rotary_inertia",
+)
+
+
+def _shear_modulus_ratio(poissons_ratio: float) -> float:
+    """Kappa G / E of a rectangular section, by Cowper (1966)."""
+    nu = real("poissons_ratio", poissons_ratio)
+    bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
+    refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")
+    return 10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu))
 
 
 def _check_section(length: float, width: Profile, thickness: Profile) -> None:

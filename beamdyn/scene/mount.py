@@ -27,11 +27,16 @@ class Mount:
     bending_angle : float
         Angle psi between the direction in which the beam bends and the plane of rotation [rad]:
         0 in the plane (chordwise, lead-lag), pi/2 out of it (flapwise).
+    root_stiffness : float
+        Stiffness of the root against rotation by bending in the direction of the bending angle [N m/rad]:
+        inf is clamped, 0 a hinge.
+    second_root_stiffness : float
+        The same by bending in the direction across, where a second plane is modelled.
 
     Raises
     ------
     ValueError
-        If the radius is negative or an angle exceeds one turn.
+        If the radius or a stiffness is negative, or an angle exceeds one turn.
 
     Warns
     -----
@@ -63,9 +68,31 @@ class Mount:
         ),
     ] = 0.0
 
+    root_stiffness: Annotated[
+        float,
+        Described("N m/rad", "k", "stiffness of the root against rotation by bending; 0 is a hinge", least=0),
+    ] = math.inf
+    second_root_stiffness: Annotated[
+        float, Described("N m/rad", "k2", "the same for bending in the direction across", least=0)
+    ] = math.inf
+
     def __post_init__(self) -> None:
         remedy = "for a beam that points outward give setting_angle = pi instead"
         angles = {name: angle(name, getattr(self, name)) for name in ("setting_angle", "bending_angle")}
         set_fields(self, radius=not_negative("radius", self.radius, "m", remedy), **angles)
         for name, value in angles.items():
             warn_of_degrees(name, value)
+        for name in ("root_stiffness", "second_root_stiffness"):
+            set_fields(self, **{name: _spring(name, getattr(self, name))})
+
+    @property
+    def root_stiffnesses(self) -> tuple[float, float]:
+        """Stiffness of the root against rotation in each direction of bending [N m/rad]."""
+        return self.root_stiffness, self.second_root_stiffness
+
+
+def _spring(name: str, value: object) -> float:
+    """A stiffness of zero or more, which may be infinite [N m/rad]."""
+    if isinstance(value, float) and value == math.inf:
+        return value
+    return not_negative(name, value, "N m/rad", "0 is a hinge; without it, the root is clamped")

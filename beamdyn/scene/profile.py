@@ -99,6 +99,18 @@ class Profile:
         pairs = zip(a.coefficients, b.coefficients, strict=True)
         return Profile(a.breakpoints, tuple(tuple(legendre.legmul(p, q).tolist()) for p, q in pairs))
 
+    def __add__(self, other: Profile) -> Profile:
+        """Add two properties pointwise."""
+        a, b = self.split(other.breakpoints), other.split(self.breakpoints)
+        pairs = zip(a.coefficients, b.coefficients, strict=True)
+        return Profile(a.breakpoints, tuple(tuple(legendre.legadd(p, q).tolist()) for p, q in pairs))
+
+    def map(self, function: Callable[[np.ndarray], np.ndarray]) -> Profile:
+        """Apply an analytic function, such as the cosine, to the property; exact to rounding."""
+        ends = pairwise(self.breakpoints)
+        rows = (_map_series(function, row, a, b) for row, (a, b) in zip(self.coefficients, ends, strict=True))
+        return Profile(self.breakpoints, tuple(rows))
+
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
         return Profile(self.breakpoints, tuple(tuple(factor * c for c in row) for row in self.coefficients))
@@ -115,6 +127,23 @@ class Profile:
         return Profile(self.breakpoints, tuple(reversed(rows)))
 
 
+def _map_series(
+    function: Callable[[np.ndarray], np.ndarray], row: Sequence[float], a: float, b: float
+) -> tuple[float, ...]:
+    """Legendre coefficients on [a, b] of a function of a Legendre series: as many as do not vanish."""
+    if len(row) == 1:
+        return (float(function(np.array(row))[0]),)
+    for nodes in _FIT_NODES:
+        t, _ = legendre.leggauss(nodes)
+        values = function(legendre.legval(t, row))
+        series = np.linalg.solve(legendre.legvander(t, nodes - 1), values)
+        if (np.abs(series[-3:]) <= _FIT_TOLERANCE * np.abs(series).max()).all():
+            return tuple(legendre.legtrim(series, 1e-17 * np.abs(series).max()).tolist())
+    raise ValueError(
+        f"the property varies too quickly between x/L = {a:.4g} and {b:.4g}: give breakpoints between them"
+    )
+
+
 def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> tuple[float, ...]:
     """Compute Legendre coefficients of f on [a, b] by the Gauss rule (t, w) on [-1, 1]."""
     values = f((a + b) / 2 + (b - a) / 2 * t)
@@ -123,10 +152,24 @@ def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> t
 
 
 FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # x/L itself
+ONE = Profile((0.0, 1.0), ((1.0,),))
 
 
 def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) -> Profile:
-    """Convert a property as given by the user to a positive `Profile`.
+    """Convert a property as given by the user to a positive `Profile`: see `to_profile`.
+
+    Raises
+    ------
+    ValueError
+        As `to_profile`, or if the property is not positive everywhere.
+    """
+    profile = to_profile(name, value, breakpoints)
+    check_positive(name, profile)
+    return profile
+
+
+def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) -> Profile:
+    """Convert a property as given by the user, of any sign, to a `Profile`.
 
     Parameters
     ----------
@@ -141,8 +184,8 @@ def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     Raises
     ------
     ValueError
-        If the property is not positive and finite everywhere, or a callable is not vectorised or not
-        smooth between breakpoints.
+        If the property is not finite everywhere, or a callable is not vectorised or not smooth between
+        breakpoints.
     """
     ends = _segment_ends(breakpoints)
     if isinstance(value, Profile):
@@ -157,9 +200,7 @@ def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
         constant = real(name, value, remedy="or a Polynomial in x/L, a Table or a function of x/L")
         _check_sizes(name, np.array([constant]))
         profile = Profile((0.0, 1.0), ((constant,),))
-    profile = profile.split(ends)
-    check_positive(name, profile)
-    return profile
+    return profile.split(ends)
 
 
 _SIZES = f"give sizes from {1 / MOST:g} to {{limit}} in SI units"

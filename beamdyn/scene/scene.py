@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
-from beamdyn.common.checks import InvalidValue, flag, kind, not_negative, real, refuse, set_fields
+from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse, set_fields
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
 
 
 @dataclass(frozen=True)
@@ -26,13 +29,13 @@ class Scene:
         Modal damping ratio of every mode of the beam at rest, from 0 to below 1.
     gravity : float
         Gravitational acceleration along -n2 [m/s2].
-    stretch : bool
-        Model the axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
+    physics : Physics
+        Effects beyond the slender beam that bends in one plane.
 
     Raises
     ------
     ValueError
-        If the damping ratio is outside [0, 1), or the beam has no axial stiffness for the stretch.
+        If the damping ratio is outside [0, 1), or the beam lacks a property that the physics needs.
     """
 
     beam: Beam
@@ -40,7 +43,7 @@ class Scene:
     motion: Motion | None = None
     damping_ratio: float = 0.0
     gravity: float = 0.0
-    stretch: bool = False
+    physics: Physics = Physics()
 
     def __post_init__(self) -> None:
         kind("beam", self.beam, Beam, "Beam.rectangular and Beam.from_stiffness make one")
@@ -50,13 +53,66 @@ class Scene:
         ratio = not_negative("damping_ratio", self.damping_ratio)
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
-        gravity, stretch = real("gravity", self.gravity, "m/s2"), flag("stretch", self.stretch)
-        set_fields(self, damping_ratio=ratio, gravity=gravity, stretch=stretch)
-        if self.stretch and self.beam.axial_stiffness is None:
-            raise InvalidValue("stretch", True, "it needs axial_stiffness", "give it to Beam.from_stiffness")
+        set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
+        remedy = "physics = Physics(planes=2, shear=True) models both planes and shear deformation"
+        kind("physics", self.physics, Physics, remedy)
+        _check_properties(self.beam, self.physics)
+
+    @property
+    def modelled_beam(self) -> Beam:
+        """The beam without the properties that the physics leaves out."""
+        return _without_unmodelled(self.beam, self.physics)
+
+    @property
+    def is_slender_beam_in_one_plane(self) -> bool:
+        """Whether the model is a clamped Euler-Bernoulli beam in one plane, to which some theorems apply."""
+        plain = replace(self.physics, stretch=False) == Physics()
+        return plain and self.mount.root_stiffness == math.inf
 
 
 def check_scene(scene: object) -> None:
     """Refuse what is no scene, such as a beam, as an argument of an analysis."""
     remedy = "Scene(beam, mount) makes one of a beam, load_scene(path) reads one from a file"
     kind("scene", scene, Scene, remedy)
+
+
+# Properties that the physics needs ----------------------------------------------------------------
+
+_SECOND = "second_"  # of the properties of bending in the second direction of the section
+_BENDING = "bending_stiffness"
+# Properties of the beam for each effect, of bending in either direction.
+_NEEDED = {"shear": "shear_stiffness", "rotary_inertia": "rotary_inertia"}
+_REMEDIES = {
+    "second_bending_stiffness": "give it to Beam.from_stiffness; Beam.rectangular computes it",
+    "shear_stiffness": "give it to Beam.from_stiffness, or poissons_ratio to Beam.rectangular",
+    "rotary_inertia": "give it to Beam.from_stiffness; Beam.rectangular computes it",
+    "axial_stiffness": "give it to Beam.from_stiffness; Beam.rectangular computes it",
+}
+
+
+def _needed_properties(physics: Physics) -> dict[str, str]:
+    """The properties of the beam that a model reads beyond the usual ones, each with the effect it is for."""
+    directions = ("", _SECOND) if physics.planes == 2 else ("",)
+    needed = {direction + name: effect for effect, name in _NEEDED.items() for direction in directions}
+    needed = {name: effect for name, effect in needed.items() if getattr(physics, effect)}
+    if physics.planes == 2:
+        needed[_SECOND + _BENDING] = "planes"
+    return needed | ({"axial_stiffness": "stretch"} if physics.stretch else {})
+
+
+def _check_properties(beam: Beam, physics: Physics) -> None:
+    """Refuse physics for which the beam lacks a property."""
+    for name, effect in _needed_properties(physics).items():
+        if getattr(beam, name) is None:
+            remedy = _REMEDIES[name if name in _REMEDIES else name.removeprefix(_SECOND)]
+            raise InvalidValue(f"physics.{effect}", getattr(physics, effect), f"it needs {name}", remedy)
+
+
+@lru_cache(maxsize=256)
+def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
+    """The beam without the properties that a model with this physics does not read."""
+    optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
+    unread = (optional | {_SECOND + _BENDING}) - _needed_properties(physics).keys()
+    unread |= {"twist"} if physics.planes == 1 else set()
+    given = {name: None for name in unread if getattr(beam, name) is not None}
+    return replace(beam, **given) if given else beam

@@ -262,7 +262,8 @@ def simulate(
         keeps all functions of the discretization.
     tolerance : float
         Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
-        relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.
+        relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.  If no
+        affordable basis meets one below 1e-5, the run is that at 1e-5 where its whole error is smaller.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
         "auto": Gauss collocation with a step size from the tolerance; or any method of `solve_ivp`.
     discretization : {"ritz", "fem"} or Discretization
@@ -285,6 +286,8 @@ def simulate(
     ValueError
         If an argument is out of its range, the motion passes the critical speed, or the run takes more
         steps than fit into memory (three million, fewer with more than five coordinates).
+    TypeError
+        If there are options without a method of `solve_ivp` that takes them.
     ArithmeticError
         If the motion grows without bound.
     """

@@ -12,21 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main, parse_speeds
+from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, parse_speeds
 from beamdyn.common.digits import supported
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "tyre_harvester.toml")
 BLADE = str(ROOT / "examples" / "blade.toml")
-
-
-@pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        code = main([str(a) for a in arguments])
-        return code, *capsys.readouterr()
-
-    return run
 
 
 def test_modes_prints_the_published_frequency_without_noise(run):

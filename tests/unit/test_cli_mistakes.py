@@ -5,20 +5,11 @@ from pathlib import Path
 import pytest
 
 import beamdyn as bd
-from beamdyn.cli import BAD_INPUT, DONE, main
+from beamdyn.cli import BAD_INPUT, DONE
 
 ROOT = Path(__file__).parents[2]
 BLADE = str(ROOT / "examples" / "blade.toml")
 TYRE = str(ROOT / "examples" / "tyre_harvester.toml")
-
-
-@pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        code = main([str(a) for a in arguments])
-        return code, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from beamdyn import load_scene
-from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER, main
+from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 from beamdyn.cli.transients import _how_to_resume
 from beamdyn.cli.values import parse_window
 from beamdyn.result_tables import peaks
@@ -27,15 +27,6 @@ STILL = str(ROOT / "examples" / "tyre_harvester.toml")
 BLADE = str(ROOT / "examples" / "blade.toml")
 QUICK = ("--t-end", "0.5 s", "--modes", "2")
 SWEEP = ("sweep", SCENE, "--speeds", "50, 55 rad/s", "--window", "0.1:0.2 s", "--modes", "1")
-
-
-@pytest.fixture
-def run(capsys):
-    def run(*arguments):
-        code = main([str(a) for a in arguments])
-        return code, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

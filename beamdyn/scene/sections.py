@@ -1,0 +1,85 @@
+"""Tensors of the sections: their stiffnesses and inertias in directions that do not turn with the twist.
+
+A section with the values f (bending in the direction of the bending angle) and g (in the direction across)
+that is turned by tau has, along the directions e1, e2 at the root,
+
+    T11 = f cos^2 tau + g sin^2 tau,  T22 = f sin^2 tau + g cos^2 tau,  T12 = (f - g) cos tau sin tau.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TypeAlias
+
+import numpy as np
+
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.profile import Profile
+
+Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; those that vanish are missing
+
+
+@lru_cache(maxsize=256)
+def section_tensor(beam: Beam, name: str) -> Tensor:
+    """Tensor of a property of the sections, such as "bending_stiffness", in the directions e1, e2.
+
+    Parameters
+    ----------
+    beam : Beam
+        The beam.
+    name : str
+        The property for bending in the first direction; that in the second has the prefix "second\\_".
+
+    Returns
+    -------
+    dict
+        Profiles by pair of directions 0 and 1; only (0, 0) of a beam in one plane, none of a property that
+        the beam lacks.
+    """
+    first, second = getattr(beam, name), getattr(beam, f"second_{name}")
+    if first is None:
+        return {}
+    if second is None:
+        return {(0, 0): first}
+    if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
+        return {(0, 0): first, (1, 1): second}
+    return _turn(first, second, beam.twist)
+
+
+def _turn(first: Profile, second: Profile, twist: Profile) -> Tensor:
+    """Turn the values in the axes of the sections by the twist."""
+    cos2, sin2 = twist.map(lambda tau: np.cos(tau) ** 2), twist.map(lambda tau: np.sin(tau) ** 2)
+    oblique = (first + second.scaled(-1.0)) * twist.map(lambda tau: np.cos(tau) * np.sin(tau))
+    return {
+        (0, 0): first * cos2 + second * sin2,
+        (0, 1): oblique,
+        (1, 0): oblique,
+        (1, 1): first * sin2 + second * cos2,
+    }
+
+
+def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:
+    """Inertia [kg m2] of a tip body against tilting towards e1 and e2, shape (2, 2)."""
+    return _turned(tip.inertia, tip.inertia_about_bending_direction, twist)
+
+
+def centrifugal_inertia(tip: TipMass, twist: float) -> np.ndarray:
+    """Inertia [kg m2] of a tip body by which rotation resists its tilt out of the plane, shape (2, 2).
+
+    In the axes of the section it is diag(J_e - J_1, J_n - J_1): of the body about the axis of rotation,
+    tilting towards a direction exchanges the moment about that direction for the one about the beam.
+    """
+    bending, across = tip.inertia_about_bending_direction, tip.inertia
+    return _turned(bending - tip.axial_inertia, across - tip.axial_inertia, twist)
+
+
+def _turned(first: float, second: float, angle: float) -> np.ndarray:
+    R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return R @ np.diag([first, second]) @ R.T if angle else np.diag([first, second])
+
+
+def weight_degree(beam: Beam) -> int:
+    """Largest polynomial degree of what multiplies trial functions in integrals over a segment."""
+    names = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
+    degrees = [p.degree for name in names for p in section_tensor(beam, name).values()]
+    return max(beam.mass_per_length.degree + 2, *degrees)
