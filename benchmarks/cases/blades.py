@@ -1,4 +1,4 @@
-"""Blades of wind turbines from tables of stations, `data/blades`: scenes of them, and their nondimensional twins."""
+"""Blades of wind turbines from the tables of stations in `data/blades`: scenes and reference blades."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NAMES = ("iea_15", "nrel_5", "bmodes_test01")
 
 
 def stations(name: str) -> dict[str, Any]:
-    """Length and hub radius [m], and the table: stations x/L, mass [kg/m], stiffnesses [N m2], twist [deg]."""
+    """Length and hub radius [m], and arrays: stations x/L, mass [kg/m], stiffnesses [N m2], twist [deg]."""
     given = tomllib.loads((_FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     arrays = {key: np.array(value) for key, value in given.items() if isinstance(value, list)}
     arrays["mass_per_length"] = arrays["mass_per_length"] * given["mass_factor"]
@@ -43,7 +43,7 @@ def blade_scene(name: str, physics: bd.Physics = bd.Physics(planes=2), twisted: 
 
 
 def reference_blade(name: str, twisted: bool = True) -> tuple[Blade, float]:
-    """The blade for the second method, and its unit of time [s]; mass and stiffness over those of the root."""
+    """The blade for the second method, over mass and stiffness of its root, and its unit of time [s]."""
     data = stations(name)
     x, length = data["stations"], data["length"]
     mass, stiffness = data["mass_per_length"][0], data["flap_stiffness"][0]

@@ -1,4 +1,4 @@
-"""Beams with two planes of bending, twist, shear and rotary inertia: the files of cases, and scenes of them."""
+"""Beams with two planes of bending, twist, shear, rotary inertia: the files of cases, and their scenes."""
 
 from __future__ import annotations
 

@@ -16,6 +16,9 @@ def constant(value: float) -> Function:
     return lambda x: np.full(np.shape(x), float(value))
 
 
+_ONE, _NONE = constant(1), constant(0)
+
+
 @dataclass(frozen=True)
 class Body:
     """A rigid body at the tip, its axes those of the tip's section (angle psi(1)).
@@ -25,7 +28,7 @@ class Body:
     mass, offset
         Mass, and distance of its centre of gravity beyond the tip along the normal of the last section.
     inertia, transverse, axial
-        Moments of inertia about the axis of (first) bending, about the direction of bending, about the beam axis.
+        Moments of inertia about the axis of the first bending, about its direction, about the beam axis.
     """
 
     mass: float = 0.0
@@ -70,11 +73,11 @@ class Blade:
         Where properties may jump or have a kink.
     """
 
-    mass: Function = constant(1)
-    stiffness: Pair = (constant(1), constant(1))
-    twist: Function = constant(0)
-    flexibility: Pair = (constant(0), constant(0))
-    rotary: Pair = (constant(0), constant(0))
+    mass: Function = _ONE
+    stiffness: Pair = (_ONE, _ONE)
+    twist: Function = _NONE
+    flexibility: Pair = (_NONE, _NONE)
+    rotary: Pair = (_NONE, _NONE)
     hub: float = 0.0
     bending_angle: float = 0.0
     springs: tuple[float, float] = (math.inf, math.inf)

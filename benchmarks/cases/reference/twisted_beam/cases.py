@@ -23,9 +23,10 @@ HEADER = """\
 # Beams that bend in two planes, with twist, shear, rotary inertia, tip bodies and root springs.
 # Written by `python -m benchmarks.cases.reference.twisted_beam`: do not edit.
 #
-# All values come from that second method, collocation of the differential equations (its docstring), not from a
-# publication and not from beamdyn. Meshes of pieces and of half pieces agree to {change:.0e}. Length 1; keys as the
-# arguments of bd.Mount and bd.Beam.from_stiffness, angles in degrees but for the twist in rad, and
+# All values come from that second method, collocation of the differential equations (see its docstring),
+# not from a publication and not from beamdyn. Their squares on two meshes, one of half the size of the other,
+# agree to {change:.0e}. Length 1; keys as the arguments of bd.Mount and bd.Beam.from_stiffness, angles in
+# degrees but for the twist in rad, and
 #   gamma        the speed
 #   planes       of bending
 #   breakpoints  where a property jumps; it then is a list of polynomials in x/L, one for each piece
@@ -79,8 +80,24 @@ OUTWARD, TRAILING = 180.0, 90.0
 # name, gamma, radius, setting angle, bending angle [deg], root springs, parts
 SCENES: list[tuple[str, float, float, float, float, tuple[float, float] | None, list[Case]]] = [
     ("twist and shear", 3, 0.2, OUTWARD, 90, None, [SHEAR, {"twist": [0.0, 0.6]}]),
-    ("twist, shear, rotary inertia, fast", 12, 0.5, OUTWARD, 90, None, [SHEAR, ROTARY, {"twist": [0.0, -0.8]}]),
-    ("taper, twist, shear, rotary inertia", 6, 1.0, OUTWARD, 70, None, [TAPER, SHEAR, ROTARY, {"twist": [0.0, 0.5]}]),
+    (
+        "twist, shear, rotary inertia, fast",
+        12,
+        0.5,
+        OUTWARD,
+        90,
+        None,
+        [SHEAR, ROTARY, {"twist": [0.0, -0.8]}],
+    ),
+    (
+        "taper, twist, shear, rotary inertia",
+        6,
+        1.0,
+        OUTWARD,
+        70,
+        None,
+        [TAPER, SHEAR, ROTARY, {"twist": [0.0, 0.5]}],
+    ),
     ("curved taper and twist", 8, 0.1, OUTWARD, 80, None, [CURVED_TAPER, {"twist": [0.0, 0.9, -0.4]}]),
     ("jump and kinked twist", 4, 0.3, OUTWARD, 85, None, [JUMP, {"twist": [[0.0], [-0.28, 0.7]]}]),
     ("two jumps, all effects", 7, 0.8, OUTWARD, 35, None, [TWO_JUMPS, {"twist": [[0.0, 0.5]] * 3}]),
@@ -100,7 +117,15 @@ SCENES: list[tuple[str, float, float, float, float, tuple[float, float] | None, 
         None,
         [{"bending_stiffness": [1.0, -0.6], "second_bending_stiffness": [0.6, 0.7], "twist": [0.0, 1.0]}],
     ),
-    ("a quarter turn of twist, very fast", 25, 0.3, OUTWARD, 40, None, [TAPER, ROTARY, {"twist": [0.0, 1.570796]}]),
+    (
+        "a quarter turn of twist, very fast",
+        25,
+        0.3,
+        OUTWARD,
+        40,
+        None,
+        [TAPER, ROTARY, {"twist": [0.0, 1.570796]}],
+    ),
     ("oblique, rotary inertia alone, fast", 20, 0.1, OUTWARD, 45, None, [STOCKY_ROTARY]),
     (
         "one plane, oblique, all effects",
@@ -111,7 +136,15 @@ SCENES: list[tuple[str, float, float, float, float, tuple[float, float] | None, 
         (5.0, math.inf),
         [{"planes": 1}, STOCKY_SHEAR, STOCKY_ROTARY, {"tip": BODY}],
     ),
-    ("stocky, inward, flap hinge", 0.6, 0.25, 0.0, 90, (0.0, math.inf), [STOCKY_SHEAR, {"twist": [0.0, 0.8]}]),
+    (
+        "stocky, inward, flap hinge",
+        0.6,
+        0.25,
+        0.0,
+        90,
+        (0.0, math.inf),
+        [STOCKY_SHEAR, {"twist": [0.0, 0.8]}],
+    ),
     (
         "all at once, 135 deg",
         3,
