@@ -18,7 +18,7 @@ from beamdyn.equations.fields import FIELDS
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
 
 TIP = bd.TipMass(0.001, inertia=1e-6, axial_inertia=4e-7)
-COUPLED = replace(BLADE_SPIN_UP, stretch=True, damping_ratio=0.01)
+COUPLED = replace(BLADE_SPIN_UP, physics=bd.Physics(stretch=True), damping_ratio=0.01)
 
 
 def turned(setting: float = 0.0, bending: float = 0.0) -> bd.Scene:
