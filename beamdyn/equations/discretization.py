@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
+
+
+class RootConditions(NamedTuple):
+    """Conditions at the root and smoothness of trial functions.
+
+    Parameters
+    ----------
+    held : int
+        Number of derivatives, from the value on, that vanish at the root.
+    derivatives : int
+        Highest order of derivative that is square-integrable.
+    """
+
+    held: int
+    derivatives: int
+
+
+CLAMPED = RootConditions(2, 2)  # a deflection without slope at the root
+HINGED = RootConditions(1, 2)  # a deflection that may turn about the root, by its first function
+FIXED = RootConditions(1, 1)  # a displacement, such as the stretch
 
 
 class Space(Protocol):
@@ -38,19 +58,17 @@ class Space(Protocol):
 class Spaces(Protocol):
     """The function spaces of one discretization of one beam."""
 
-    def functions(self, held: int) -> Space:
-        """Trial functions whose derivatives of orders below `held` vanish at the root.
+    def functions(self, conditions: RootConditions) -> Space:
+        """Trial functions that satisfy conditions at the root.
 
-        Parameters
-        ----------
-        held : int
-            2 for a clamped deflection (value and slope), 1 for a stretch (value); also the highest order
-            of derivative that is square-integrable.
+        Those of `HINGED` are one with a slope at the root, then those of `CLAMPED`.
         """
         ...
 
-    def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrate over xi the weight times function i of `functions(rows)`, j of `functions(columns)`."""
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate over xi the weight times derivatives of function i of `rows` and j of `columns`."""
         ...
 
 

@@ -9,12 +9,14 @@ Derivation and conventions: docs/conventions.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg
 
+from beamdyn.equations.damping import modal_damping
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Deflection, Load, Term
@@ -34,6 +36,8 @@ class SteadyPencil:
         Mass, damping, gyroscopic matrix per speed, stiffness at rest, stiffness per squared speed.
     f2 : ndarray, shape (n,)
         Static load per squared speed.
+    shift : float
+        K0 + shift M is positive definite [1/s2]: 0 but for springs at the root that are softer than the beam.
     """
 
     M: np.ndarray
@@ -42,16 +46,39 @@ class SteadyPencil:
     K0: np.ndarray
     K2: np.ndarray
     f2: np.ndarray
+    shift: float = 0.0
 
-    def block(self, place: slice) -> SteadyPencil:
-        """Extract the equations of one field, without damping and gyroscopic coupling."""
-        M, K0, K2 = (A[place, place] for A in (self.M, self.K0, self.K2))
-        return SteadyPencil(M, np.zeros_like(M), np.zeros_like(M), K0, K2, self.f2[place])
+    def part(self, coordinates: np.ndarray) -> SteadyPencil:
+        """Extract the equations of some coordinates, which others do not affect."""
+        M, C, G, K0, K2 = (
+            A[np.ix_(coordinates, coordinates)] for A in (self.M, self.C, self.G, self.K0, self.K2)
+        )
+        return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift)
+
+    def undamped(self) -> SteadyPencil:
+        """The same without damping and gyroscopic coupling."""
+        return replace(self, C=np.zeros_like(self.C), G=np.zeros_like(self.G))
 
     @property
     def conservative(self) -> bool:
         """Whether there is neither damping nor gyroscopic coupling."""
         return not (self.C.any() or self.G.any())
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Coordinates of a field as a linear function of those of the equations.
+
+    Parameters
+    ----------
+    block : str
+        Name of the block of coordinates: the field's own before a reduction.
+    matrix : ndarray, shape (m, n)
+        Coefficients of the m functions of the discretization per coordinate of the block.
+    """
+
+    block: str
+    matrix: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -61,7 +88,8 @@ class Equations:
     Parameters
     ----------
     blocks : dict of str to slice
-        Slice of q that holds the coordinates of each field.
+        Slice of q that holds the coordinates of each field; after a reduction, of each set of fields that
+        are coupled, under the name of the first of them.
     terms : tuple of Term
         Terms of the left-hand side.
     loads : tuple of Load
@@ -70,11 +98,12 @@ class Equations:
         Mount of the beam on the carrier.
     gravity : float
         Gravitational acceleration [m/s2].
-    shapes : dict of str to ndarray, shape (m, n)
-        Shapes of the n coordinates of each field, in columns, as coefficients of the m functions of the
-        discretization; the identity before a reduction.
+    shapes : dict of str to Shape
+        Coordinates of each field by those of the equations.
     deflections : dict of str to Deflection
         Functions and loads of each field that deflects the beam.
+    shift : float
+        As for `SteadyPencil`.
     """
 
     blocks: dict[str, slice]
@@ -82,8 +111,9 @@ class Equations:
     loads: tuple[Load, ...]
     mount: Mount
     gravity: float
-    shapes: dict[str, np.ndarray]
+    shapes: dict[str, Shape]
     deflections: dict[str, Deflection]
+    shift: float = 0.0
 
     @property
     def size(self) -> int:
@@ -92,38 +122,56 @@ class Equations:
 
     @property
     def modes(self) -> int:
-        """Largest number of coordinates of a field."""
+        """Largest number of coordinates of a block."""
         return max(place.stop - place.start for place in self.blocks.values())
+
+    @property
+    def planes(self) -> int:
+        """Number of directions in which the beam is deflected: 1 or 2."""
+        return 1 + max(deflection.direction for deflection in self.deflections.values())
 
     # Deflection of the beam by the coordinates ----------------------------------------------------
 
-    def deflection(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Derivatives with respect to x/L of the deflection per coordinate, at xi (k,): shape (n, k)."""
+    def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
+        """Derivatives with respect to x/L of the deflection per coordinate, at xi (k,): shape (n, k).
+
+        The direction is 0 for that of the bending angle, 1 for that across.
+        """
         xi = np.asarray(xi, dtype=float)
-        return self._over_coordinates(lambda d: d.space.evaluate(xi, order), xi.shape)
+        return self._over_coordinates(lambda d: d.space.evaluate(xi, order), direction, xi.shape)
 
     @cached_property
     def tip(self) -> np.ndarray:
-        """Tip deflection per coordinate, shape (n,)."""
-        return self._over_coordinates(lambda d: d.space.end(0))
+        """Tip deflection per coordinate in the direction of bending, shape (n,)."""
+        return self._over_coordinates(lambda d: d.space.end(0), 0)
+
+    @cached_property
+    def tip_across(self) -> np.ndarray:
+        """Tip deflection per coordinate in the direction across, shape (n,)."""
+        return self._over_coordinates(lambda d: d.space.end(0), 1)
 
     @property
-    def P(self) -> np.ndarray:
-        """Load under a unit root acceleration in the direction of bending [kg], shape (n,)."""
-        return self._over_coordinates(lambda d: d.P)
+    def tips(self) -> np.ndarray:
+        """Tip deflection per coordinate in each direction in which the beam bends, shape (1 or 2, n)."""
+        return np.array([self.tip, self.tip_across][: self.planes])
 
-    @property
-    def Q(self) -> np.ndarray:
-        """Load under a unit angular acceleration [kg m], shape (n,)."""
-        return self._over_coordinates(lambda d: d.Q)
+    def P(self, direction: int) -> np.ndarray:
+        """Load under a unit root acceleration in a direction of bending [kg], shape (n,)."""
+        return self._over_coordinates(lambda d: d.P, direction)
+
+    def Q(self, direction: int) -> np.ndarray:
+        """Load under a unit angular acceleration in the plane of a direction [kg m], shape (n,)."""
+        return self._over_coordinates(lambda d: d.Q, direction)
 
     def _over_coordinates(
-        self, quantity: Callable[[Deflection], np.ndarray], shape: tuple[int, ...] = ()
+        self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Gather a quantity of the functions over all coordinates; 0 for fields that do not deflect."""
+        """Gather a quantity of the functions over all coordinates; 0 for fields without that direction."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
-            values[self.blocks[name]] = self.shapes[name].T @ quantity(deflection)
+            if deflection.direction == direction:
+                of_field = self.shapes[name]
+                values[self.blocks[of_field.block]] += of_field.matrix.T @ quantity(deflection)
         return values
 
     # Matrices and loads as functions of the root's motion -------------------------------------------
@@ -173,31 +221,78 @@ class Equations:
             K0=self.matrix(0, rest),
             K2=_sum_over_quantities(varying, rotating, (self.size, self.size)),
             f2=self.load(rotating),
+            shift=self.shift,
         )
+
+    @cached_property
+    def coupled(self) -> tuple[tuple[str, ...], ...]:
+        """Sets of blocks that mass or stiffness couples, at steady speed or by an acceleration."""
+        return self._connected(t for t in self.terms if t.order != 1 and t.quantity != "acceleration")
+
+    @cached_property
+    def connected(self) -> tuple[tuple[str, ...], ...]:
+        """Sets of blocks that any term couples."""
+        return self._connected(self.terms)
+
+    def _connected(self, terms: Iterable[Term]) -> tuple[tuple[str, ...], ...]:
+        set_of = {name: {name} for name in self.blocks}
+        for term in terms:
+            joined = set_of[term.rows] | set_of[term.columns]
+            set_of.update(dict.fromkeys(joined, joined))
+        sets = {min(joined, key=self._start): joined for joined in set_of.values()}
+        return tuple(tuple(sorted(sets[first], key=self._start)) for first in sorted(sets, key=self._start))
+
+    def _start(self, name: str) -> int:
+        return self.blocks[name].start
+
+    def places(self, names: Iterable[str]) -> np.ndarray:
+        """Indices of the coordinates of some blocks."""
+        return np.concatenate([np.arange(self.blocks[n].start, self.blocks[n].stop) for n in names])
 
     # Reduction to fewer coordinates -----------------------------------------------------------------
 
-    def reduced(self, shapes: Mapping[str, np.ndarray]) -> Equations:
-        """Transform the equations to other coordinates: for each field, q = shapes[field] @ q_reduced.
+    def reduced(self, bases: Mapping[tuple[str, ...], np.ndarray]) -> Equations:
+        """Transform the equations to other coordinates: for each set of blocks, q = basis @ q_reduced.
 
         Parameters
         ----------
-        shapes : mapping of str to ndarray, shape (n, m)
-            Basis of each field, in columns: its modes at rest, for instance.
+        bases : mapping of tuple of str to ndarray, shape (n, m)
+            Basis of each set of blocks, in columns: its modes at rest, for instance.
 
         Returns
         -------
         Equations
         """
-        terms = (replace(t, matrix=shapes[t.rows].T @ t.matrix @ shapes[t.columns]) for t in self.terms)
-        loads = (replace(f, vector=shapes[f.rows].T @ f.vector) for f in self.loads)
+        basis = {name: shape for names, V in bases.items() for name, shape in self._split(names, V)}
+        terms = (
+            replace(
+                t,
+                rows=basis[t.rows].block,
+                columns=basis[t.columns].block,
+                matrix=basis[t.rows].matrix.T @ t.matrix @ basis[t.columns].matrix,
+            )
+            for t in self.terms
+        )
+        loads = (
+            replace(f, rows=basis[f.rows].block, vector=basis[f.rows].matrix.T @ f.vector) for f in self.loads
+        )
+        shapes = {
+            name: Shape(basis[of_field.block].block, of_field.matrix @ basis[of_field.block].matrix)
+            for name, of_field in self.shapes.items()
+        }
         return replace(
             self,
-            blocks=_place_blocks({name: shapes[name].shape[1] for name in self.blocks}),
+            blocks=_place_blocks({names[0]: V.shape[1] for names, V in bases.items()}),
             terms=tuple(terms),
             loads=tuple(loads),
-            shapes={name: self.shapes[name] @ shapes[name] for name in self.blocks},
+            shapes=shapes,
         )
+
+    def _split(self, names: tuple[str, ...], basis: np.ndarray) -> Iterator[tuple[str, Shape]]:
+        """Yield the rows of a basis of several blocks that belong to each."""
+        ends = np.cumsum([self.blocks[name].stop - self.blocks[name].start for name in names])
+        for name, rows in zip(names, np.split(basis, ends[:-1]), strict=True):
+            yield name, Shape(names[0], rows)
 
 
 def _sum_over_quantities(
@@ -221,7 +316,7 @@ def _place_blocks(sizes: Mapping[str, int]) -> dict[str, slice]:
 
 def assemble_equations(scene: Scene, discretization: Discretization) -> Equations:
     """Assemble the equations of motion of a scene in a discretization: see `assemble_over`."""
-    return assemble_over(scene, discretization.spaces(scene.beam))
+    return assemble_over(scene, discretization.spaces(scene.modelled_beam))
 
 
 def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
@@ -240,12 +335,37 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
         Without the terms whose factor or matrix is zero in the scene.
     """
     fields = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
-    return Equations(
+    equations = Equations(
         blocks=_place_blocks({name: field.size for name, field in fields.items()}),
         terms=tuple(t for field in fields.values() for t in field.terms if t.factor and t.matrix.any()),
         loads=tuple(f for field in fields.values() for f in field.loads if f.factor),
         mount=scene.mount,
         gravity=scene.gravity,
-        shapes={name: np.eye(field.size) for name, field in fields.items()},
+        shapes={name: Shape(name, np.eye(field.size)) for name, field in fields.items()},
         deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
     )
+    if hinged := [name for name, field in fields.items() if field.hinged]:
+        equations = replace(equations, shift=_find_shift(equations, hinged))
+    if not scene.damping_ratio:
+        return equations
+    return replace(equations, terms=(*equations.terms, *_damping(equations, scene.damping_ratio)))
+
+
+def _find_shift(equations: Equations, hinged: list[str]) -> float:
+    """Find the lowest squared angular frequency of the beam with a clamped root [1/s2]."""
+    pencil = equations.steady()
+    clamped = np.delete(np.arange(equations.size), [equations.blocks[name].start for name in hinged])
+    K, M = (A[np.ix_(clamped, clamped)] for A in (pencil.K0, pencil.M))
+    return float(1 / scipy.linalg.eigh(M, K, eigvals_only=True)[-1])
+
+
+def _damping(equations: Equations, ratio: float) -> Iterator[Term]:
+    """Yield the terms that give every mode at rest of each set of coupled fields a damping ratio."""
+    pencil, names = equations.steady(), {field.name: field.damping_name for field in FIELDS}
+    for fields in equations.coupled:
+        part = pencil.part(equations.places(fields))
+        C = modal_damping(part.M, part.K0, part.shift)
+        ends = np.cumsum([equations.blocks[name].stop - equations.blocks[name].start for name in fields])[:-1]
+        for row, blocks in zip(fields, np.split(C, ends), strict=True):
+            for column, block in zip(fields, np.split(blocks, ends, axis=1), strict=True):
+                yield Term(names.get(row, "damping"), row, column, 1, block, factor=ratio)

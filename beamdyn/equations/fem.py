@@ -12,13 +12,15 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 
 from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.discretization import RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
+from beamdyn.scene.sections import weight_degree
 
 MOST_ELEMENTS = 1000  # largest number accepted
 _MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
-# Elements by the number of derivatives that vanish at the root: 2 for a deflection, 1 for a stretch.
+# Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.
 _ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
 
 
@@ -63,7 +65,7 @@ class Fem:
 
     def spaces(self, beam: Beam) -> FemSpaces:
         """Build the function spaces on a beam."""
-        order = 6 + min(8, max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree))
+        order = 6 + min(8, weight_degree(beam))
         return FemSpaces(self.nodes(beam), order)
 
     def coarser(self) -> Fem:
@@ -126,14 +128,16 @@ class FemSpaces(FieldsOnly):
         """Mesh over x/L."""
         return MeshLine(self.nodes)
 
-    def functions(self, held: int) -> FemSpace:
-        """Trial functions whose derivatives of orders below `held` vanish at the root."""
-        return FemSpace(self, held)
+    def functions(self, conditions: RootConditions) -> FemSpace:
+        """Trial functions that satisfy conditions at the root."""
+        return FemSpace(self, conditions)
 
-    def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         first, second = self.functions(rows), self.functions(columns)
-        matrix = _product.assemble(second.basis, first.basis, weight=first.weights(weight))
+        matrix = _PRODUCTS[orders].assemble(second.basis, first.basis, weight=first.weights(weight))
         return matrix.toarray()[np.ix_(first.free, second.free)]
 
 
@@ -145,29 +149,29 @@ class FemSpace(FieldsOnly):
     ----------
     spaces : FemSpaces
         Mesh and quadrature.
-    held : int
-        Number of degrees of freedom fixed at the root: deflection and slope, or the stretch.
+    conditions : RootConditions
+        Conditions at the root: as many degrees of freedom there are fixed as derivatives vanish.
     """
 
     spaces: FemSpaces
-    held: int
+    conditions: RootConditions
 
     @cached_property
     def basis(self) -> Basis:
         """Mesh, element and quadrature."""
         # A new element for each basis, because ElementLineHermite caches the matrix of its first mesh.
-        return Basis(self.spaces.mesh, _ELEMENTS[self.held](), intorder=self.spaces.order)
+        return Basis(self.spaces.mesh, _ELEMENTS[self.conditions.derivatives](), intorder=self.spaces.order)
 
     @property
     def free(self) -> np.ndarray:
         """Indices of the degrees of freedom that are not fixed at the root."""
-        root = np.asarray(self.basis.nodal_dofs)[: self.held, 0]
+        root = np.asarray(self.basis.nodal_dofs)[: self.conditions.held, 0]
         return np.setdiff1d(np.arange(self.basis.N), root)
 
     @property
     def size(self) -> int:
         """Number of functions."""
-        return self.basis.N - self.held
+        return self.basis.N - self.conditions.held
 
     def weights(self, weight: Profile) -> np.ndarray:
         """Evaluate a property at the quadrature points."""
@@ -233,5 +237,15 @@ def _curvature_load(v: Any, w: Any) -> Any:
     return w.weight * v.hess[0][0]
 
 
+def _derivative(u: Any, order: int) -> Any:
+    return (u, u.grad[0] if order else None, u.hess[0][0] if order == 2 else None)[order]
+
+
+def _product_of(rows: int, columns: int) -> BilinearForm:
+    """Form of the product of derivatives of two orders; scikit-fem passes the columns first."""
+    return BilinearForm(lambda u, v, w: w.weight * _derivative(u, columns) * _derivative(v, rows))
+
+
+_PRODUCTS = {(a, b): _product_of(a, b) for a in range(3) for b in range(3)} | {(0, 0): _product}
 _GRAMS = (_product, _slopes, _curvatures)
 _LOADS = (_load, _slope_load, _curvature_load)

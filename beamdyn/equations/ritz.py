@@ -13,8 +13,10 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
+from beamdyn.scene.sections import weight_degree
 
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 
@@ -59,9 +61,8 @@ class Ritz:
 
     def _points(self, beam: Beam) -> int:
         """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
-        weight_degree = max(beam.mass_per_length.degree + 2, beam.bending_stiffness.degree)
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return degree + 2 + weight_degree // 2 + 1
+        return degree + 2 + weight_degree(beam) // 2 + 1
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""
@@ -97,14 +98,16 @@ class RitzSpaces:
     breakpoints: tuple[float, ...]
     points: int
 
-    def functions(self, held: int) -> RitzSpace:
-        """Trial functions whose derivatives of orders below `held` vanish at the root."""
-        return _build_space(self, held)
+    def functions(self, conditions: RootConditions) -> RitzSpace:
+        """Trial functions that satisfy conditions at the root."""
+        return _build_space(self, conditions)
 
-    def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         first, second = self.functions(rows), self.functions(columns)
-        return (first.samples[0] * first.weights(weight)) @ second.samples[0].T
+        return (first.samples[orders[0]] * first.weights(weight)) @ second.samples[orders[1]].T
 
 
 @dataclass(frozen=True)
@@ -115,18 +118,22 @@ class RitzSpace(FieldsOnly):
     ----------
     spaces : RitzSpaces
         Basis, segments and rule.
-    held : int
-        Number of derivatives that vanish at the root; also the highest order of derivative.
+    conditions : RootConditions
+        Conditions at the root.
     """
 
     spaces: RitzSpaces
-    held: int
+    conditions: RootConditions
 
     @cached_property
     def evaluation(self) -> Evaluation:
         """Evaluates the derivatives of all functions at given points."""
-        basis = _BASES[self.spaces.ritz.basis][self.held]
+        basis = _BASES[self.spaces.ritz.basis][self.conditions]
         return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
+
+    @property
+    def _orders(self) -> range:
+        return range(self.conditions.derivatives + 1)
 
     @cached_property
     def _gauss_rule(self) -> tuple[np.ndarray, np.ndarray]:
@@ -145,7 +152,7 @@ class RitzSpace(FieldsOnly):
     @cached_property
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points."""
-        return [self.evaluation(self.points, order) for order in range(self.held + 1)]
+        return [self.evaluation(self.points, order) for order in self._orders]
 
     @property
     def size(self) -> int:
@@ -167,7 +174,7 @@ class RitzSpace(FieldsOnly):
 
     @cached_property
     def _tip_values(self) -> list[np.ndarray]:
-        return [self.evaluation(np.ones(1), order)[:, 0] for order in range(self.held + 1)]
+        return [self.evaluation(np.ones(1), order)[:, 0] for order in self._orders]
 
     def end(self, order: int) -> np.ndarray:
         """Evaluate the `order`-th derivatives at the tip."""
@@ -179,8 +186,8 @@ class RitzSpace(FieldsOnly):
 
 
 @lru_cache(maxsize=128)  # independent of the beam's properties: saves half the time of a small model
-def _build_space(spaces: RitzSpaces, held: int) -> RitzSpace:
-    return RitzSpace(spaces, held)
+def _build_space(spaces: RitzSpaces, conditions: RootConditions) -> RitzSpace:
+    return RitzSpace(spaces, conditions)
 
 
 def _gauss_rule(ends: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -273,11 +280,36 @@ def _clamped_free_rod(functions: int, ends: np.ndarray) -> Evaluation:
     return evaluation
 
 
-# Functions of each basis by the number of derivatives that vanish at the root.
+# A root that turns --------------------------------------------------------------------------------
+
+
+def _with_rotation(clamped: Callable[[int, np.ndarray], Evaluation]) -> Callable[..., Evaluation]:
+    """Extend a basis of clamped functions by the rigid rotation x/L, which stands first."""
+
+    def hinged(functions: int, ends: np.ndarray) -> Evaluation:
+        inner = clamped(functions, ends)
+
+        def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
+            rotation = (xi, np.ones_like(xi), np.zeros_like(xi))[order]
+            return np.concatenate([rotation[None, :], inner(xi, order)])
+
+        return evaluation
+
+    return hinged
+
+
+_twice_integrated = partial(_integrated_legendre, integrations=2)
+
+# Functions of each basis by the conditions at the root.
 _BASES = {
     "legendre": {
-        2: partial(_integrated_legendre, integrations=2),
-        1: partial(_integrated_legendre, integrations=1),
+        CLAMPED: _twice_integrated,
+        HINGED: _with_rotation(_twice_integrated),
+        FIXED: partial(_integrated_legendre, integrations=1),
     },
-    "eigenfunctions": {2: _clamped_free, 1: _clamped_free_rod},
+    "eigenfunctions": {
+        CLAMPED: _clamped_free,
+        HINGED: _with_rotation(_clamped_free),
+        FIXED: _clamped_free_rod,
+    },
 }

@@ -1,4 +1,4 @@
-"""Bending moment at the clamped root, from the loads and the inertia of the whole beam.
+"""Bending moment at the root, from the loads and the inertia of the whole beam.
 
 The curvature of a few modes converges slowly at a clamped end, and from below.  The principle of virtual
 work needs no curvature there: its test function w may turn about the root, against the clamp, whose moment
@@ -10,25 +10,22 @@ with the loads f and the forms m, g, k of mass, gyroscopic terms and stiffness. 
 the rigid rotation x/L minus as much of the kept shapes as makes it orthogonal to them in the mass: neither
 the accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) work on it.  What remains is
 the moment of the kept shapes and the static one of all others, as in the mode-acceleration method: Craig
-and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.
+and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  A root on a spring has the moment of
+the spring.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.linalg
 
-from beamdyn.equations.discretization import Discretization, Space, Spaces
+from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, assemble_over
-from beamdyn.equations.fields.bending import HELD
 from beamdyn.equations.root_motion import Quantity, RootMotion
-from beamdyn.scene.profile import FRACTION, Profile
 from beamdyn.scene.scene import Scene
-
-_ROTATION = (FRACTION, Profile((0.0, 1.0), ((1.0,),)), Profile((0.0, 1.0), ((0.0,),)))  # x/L, derivatives
 
 
 @dataclass(frozen=True)
@@ -61,6 +58,8 @@ class RootMoment:
 def root_moment(scene: Scene, discretization: Discretization, equations: Equations) -> RootMoment:
     """Derive the bending moment at the root for the coordinates of given equations.
 
+    It is that about the axis of bending of the section at the root, which the twist may have turned.
+
     Parameters
     ----------
     scene : Scene
@@ -74,89 +73,77 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
     -------
     RootMoment
     """
-    turning = _equations_with_rotation(replace(scene, damping_ratio=0.0), discretization, equations.shapes)
-    rotations = [turning.blocks[name].start for name in equations.deflections]
-    kept = np.concatenate(
-        [np.arange(b.stop - equations.shapes[name].shape[1], b.stop) for name, b in turning.blocks.items()]
-    )
+    twist = scene.modelled_beam.root_twist
+    by_direction = [math.cos(twist), math.sin(twist)][: equations.planes]
+    moments = [
+        _clamped_moment(scene, discretization, equations, direction)
+        if math.isinf(scene.mount.root_stiffnesses[direction])
+        else _spring_moment(scene, equations, direction)
+        for direction in range(equations.planes)
+    ]
+    return _combine(moments, by_direction)
+
+
+def _combine(moments: list[RootMoment], factors: list[float]) -> RootMoment:
+    """Sum of moments times factors."""
+    if factors == [1.0]:
+        return moments[0]
+    load: dict[Quantity, float] = {}
+    position: dict[Quantity, np.ndarray] = {}
+    velocity: dict[Quantity, np.ndarray] = {}
+    for moment, factor in zip(moments, factors, strict=True):
+        for total, part in ((load, moment.load), (position, moment.position), (velocity, moment.velocity)):
+            for name, value in part.items():
+                total[name] = total.get(name, 0.0) + factor * value
+    return RootMoment(load, position, velocity)
+
+
+def _spring_moment(scene: Scene, equations: Equations, direction: int) -> RootMoment:
+    """Moment of the spring against which the root turns."""
+    slope = equations.deflection(np.zeros(1), 1, direction)[:, 0] / scene.beam.length
+    return RootMoment({}, {"unity": scene.mount.root_stiffnesses[direction] * slope}, {})
+
+
+def _clamped_moment(
+    scene: Scene, discretization: Discretization, equations: Equations, direction: int
+) -> RootMoment:
+    """Moment that holds a clamped root, by virtual work of a rotation."""
+    name = next(n for n, d in equations.deflections.items() if d.direction == direction)
+    hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
+    freed = replace(scene, damping_ratio=0.0, mount=replace(scene.mount, **hinges))
+    full = assemble_over(freed, discretization.spaces(scene.modelled_beam))
+    kept = _embed(full, equations)
+    rotation = _orthogonal_rotation(full, kept, full.blocks[name].start)
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
 
     def rows(order: int) -> dict[Quantity, np.ndarray]:
-        matrices = turning.matrices[order].items()
-        return {name: -length * A[np.ix_(rotations, kept)].sum(axis=0) for name, A in matrices}
+        matrices = full.matrices[order].items()
+        return {quantity: -length * (rotation @ A @ kept) for quantity, A in matrices}
 
     load: dict[Quantity, float] = {
-        name: length * float(f[rotations].sum()) for name, f in turning.vectors.items()
+        quantity: length * float(rotation @ f) for quantity, f in full.vectors.items()
     }
     return RootMoment(load, rows(0), rows(1))
 
 
-def _equations_with_rotation(
-    scene: Scene, discretization: Discretization, shapes: Mapping[str, np.ndarray]
-) -> Equations:
-    """Equations over the given shapes; the first of a clamped field is the rotation, orthogonal to them."""
-    full = assemble_over(scene, _SpacesWithRotation(discretization.spaces(scene.beam)))
-    mass = full.matrices[2]["unity"]
-    extended = {name: _add_rotation(mass[place, place], shapes[name]) for name, place in full.blocks.items()}
-    return full.reduced(extended)
-
-
-def _add_rotation(mass: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """Shapes with the rotation before them if the mass has it, minus its projection on the shapes."""
-    if len(mass) == len(shapes):
-        return shapes
-    kept = scipy.linalg.block_diag([[1.0]], shapes)
-    product = kept.T @ mass @ kept
-    kept[:, 0] -= kept[:, 1:] @ np.linalg.solve(product[1:, 1:], product[1:, 0])
+def _embed(full: Equations, equations: Equations) -> np.ndarray:
+    """Shapes of the coordinates of given equations, in columns, over those of equations with a free root."""
+    kept = np.zeros((full.size, equations.size))
+    for name, shape in equations.shapes.items():
+        end = full.blocks[name].stop
+        kept[end - len(shape.matrix) : end, equations.blocks[shape.block]] = shape.matrix
     return kept
 
 
-@dataclass(frozen=True)
-class _SpacesWithRotation:
-    """Function spaces with the rigid rotation x/L as the first function of a clamped deflection."""
+def _orthogonal_rotation(full: Equations, kept: np.ndarray, first: int) -> np.ndarray:
+    """Rigid rotation x/L about the root, minus its projection by the mass on the kept shapes.
 
-    spaces: Spaces
-
-    def functions(self, held: int) -> Space:
-        """Trial functions, with the rotation before the clamped ones."""
-        space = self.spaces.functions(held)
-        return _SpaceWithRotation(space) if held == HELD else space
-
-    def product(self, weight: Profile, rows: int, columns: int) -> np.ndarray:
-        """Integrate the weight times functions i of ``functions(rows)`` and j of ``functions(columns)``."""
-        matrix, moment = self.spaces.product(weight, rows, columns), weight * FRACTION
-        if columns == HELD:
-            matrix = np.column_stack([self.spaces.functions(rows).load(moment), matrix])
-        if rows == HELD:
-            matrix = np.vstack([self.functions(columns).load(moment), matrix])
-        return matrix
-
-
-@dataclass(frozen=True)
-class _SpaceWithRotation:
-    """The rigid rotation x/L, then the functions of a space."""
-
-    space: Space
-
-    @property
-    def size(self) -> int:
-        """Number of functions."""
-        return self.space.size + 1
-
-    def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivatives of functions i and j."""
-        row = self.load(weight * _ROTATION[order], order)
-        return np.block([[row[:1, None], row[None, 1:]], [row[1:, None], self.space.gram(weight, order)]])
-
-    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivative of function i."""
-        rotation = (weight * _ROTATION[order]).outboard_integral()
-        return np.append(rotation(np.zeros(1)), self.space.load(weight, order))
-
-    def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at the tip."""
-        return np.append(_ROTATION[order](np.ones(1)), self.space.end(order))
-
-    def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi."""
-        return np.vstack([_ROTATION[order](np.asarray(xi, dtype=float)), self.space.evaluate(xi, order)])
+    It is the deflection without elastic energy; its only coordinate with a slope at the root is the first
+    of its field.
+    """
+    others = np.delete(np.arange(full.size), first)
+    K, M = full.matrices[0]["unity"], full.matrices[2]["unity"]
+    rotation = np.zeros(full.size)
+    rotation[first] = 1.0
+    rotation[others] = -np.linalg.solve(K[np.ix_(others, others)], K[others, first])
+    return rotation - kept @ np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rotation)

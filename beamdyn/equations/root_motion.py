@@ -11,7 +11,9 @@ import numpy as np
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 
-Quantity = Literal["unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse"]
+Quantity = Literal[
+    "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
+]
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 
@@ -29,6 +31,8 @@ class RootMotion:
         Acceleration a_O1 of the root along the beam, minus gravity [m/s2].
     root_transverse : ndarray
         Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2].
+    root_across : ndarray
+        Acceleration c a_O3 - s a_O2 in the direction across, minus gravity [m/s2].
     """
 
     unity: np.ndarray
@@ -37,6 +41,7 @@ class RootMotion:
     speed_squared: np.ndarray
     root_axial: np.ndarray
     root_transverse: np.ndarray
+    root_across: np.ndarray
 
 
 def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> RootMotion:
@@ -71,6 +76,7 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
         speed_squared=omega**2,
         root_axial=a1,
         root_transverse=cpsi * a2 + spsi * v3,
+        root_across=cpsi * v3 - spsi * a2,
     )
 
 

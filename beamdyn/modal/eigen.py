@@ -16,6 +16,7 @@ import scipy.linalg
 from scipy.linalg import solve_triangular
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modal.springs import remove_shift, softening_on_springs, solve_definite, solve_first_order
 
 _EPS = np.finfo(float).eps
 # Rounding errors, fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of random scenes.  The
@@ -60,19 +61,20 @@ class Solver:
     Attributes
     ----------
     growth : ndarray, shape (n,)
-        Stiffness per squared speed: in the coordinates of the solver K = diag(1 + speed^2 growth).
+        Stiffness per squared speed: in the coordinates of the solver K = diag(1 + speed^2 growth), minus
+        `pencil.shift` times the mass.
     basis : ndarray, shape (n, n)
         Coordinates of the pencil per coordinate of the solver.
     mass : ndarray, shape (n, n)
         Mass matrix in the coordinates of the solver.
     lowest_at_rest : float
-        Lowest squared angular frequency at rest [rad2/s2].
+        Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`.
     """
 
     def __init__(self, pencil: SteadyPencil) -> None:
         self.pencil = pencil
         with _explained():
-            L = np.linalg.cholesky(pencil.K0)
+            L = np.linalg.cholesky(_shifted_stiffness(pencil))
         growth, Q = np.linalg.eigh(_transform_by_inverse(L, pencil.K2))
         self.growth = growth
         self.basis = solve_triangular(L, Q, trans="T", lower=True)
@@ -87,6 +89,8 @@ class Solver:
     @property
     def softening(self) -> float:
         """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        if self.pencil.shift:
+            return softening_on_springs(self.mass, self.growth, self.pencil.shift)
         lowest = -float(self.growth[0])
         return lowest if lowest > 2 * _BACKWARD * np.abs(self.growth).max() else 0.0
 
@@ -118,11 +122,34 @@ class Solver:
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
         """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
-        if not self.pencil.conservative or stiffness.min() < _LEAST_STIFFNESS:
+        if not self.pencil.conservative or stiffness.min() < _LEAST_STIFFNESS or self.pencil.shift:
             return self.solve(speeds, count).eigenvalue
         scale = 1 / np.sqrt(stiffness)
         mu = np.linalg.eigvalsh(scale[:, :, None] * self.mass * scale[:, None, :])
         return 1j / np.sqrt(_above_rounding(mu[:, : -count - 1 : -1]))
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+
+        Parameters
+        ----------
+        speeds : ndarray, shape (S,)
+            Speeds [rad/s].
+        outputs : ndarray, shape (d, n)
+            The functions per coordinate, such as the tip deflections.
+
+        Returns
+        -------
+        ndarray, shape (S, d)
+            nan from the critical speed on.
+        """
+        if self.pencil.shift:
+            return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
+        stiffness = 1 + speeds[:, None] ** 2 * self.growth
+        with np.errstate(divide="ignore", invalid="ignore"):
+            q = (self.basis.T @ self.pencil.f2) * speeds[:, None] ** 2 / stiffness
+        values = np.stack([q @ (self.basis.T @ output) for output in outputs], axis=1)
+        return np.where(stiffness.min(axis=1, keepdims=True) > 0, values, np.nan)
 
     # Conservative equations: a real symmetric problem -----------------------------------------------
 
@@ -136,6 +163,8 @@ class Solver:
                 modes = solve(self.mass, stiffness[mask], count, self.lowest_at_rest)
                 squared[mask], z[mask], rounding[mask] = modes
         rounding += self._estimate_rounding(speeds, squared, z)
+        if self.pencil.shift:
+            squared, rounding = remove_shift(self.pencil, speeds, squared, self.basis @ z, rounding)
         root = np.sqrt(np.abs(squared))
         eigenvalue = np.where(squared > 0, 1j * root, root)
         return Eigen(eigenvalue, self.basis @ z, np.where(squared == 0, np.inf, rounding))
@@ -159,10 +188,14 @@ class Solver:
         stiffness = 1 + speed**2 * self.growth
         T, n = self.basis, self.size
         damping = T.T @ (self.pencil.C + speed * self.pencil.G) @ T
-        gyroscopic = not self.pencil.C.any() and stiffness.min() > 0
-        solve = _solve_gyroscopic if gyroscopic else _solve_general
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
-        inverse, y = solve(self.mass / time**2, damping / time, stiffness)
+        if self.pencil.shift:
+            K = np.diag(stiffness) - self.pencil.shift * self.mass
+            inverse, y = solve_first_order(self.mass / time**2, damping / time, K)
+        else:
+            gyroscopic = not self.pencil.C.any() and stiffness.min() > 0
+            solve = _solve_gyroscopic if gyroscopic else _solve_general
+            inverse, y = solve(self.mass / time**2, damping / time, stiffness)
         s, z = _select_lowest(inverse * time, y[:n], count)
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), self.mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(self.growth)).max() / np.abs(stiffness).min()
@@ -181,6 +214,10 @@ def _explained() -> Iterator[None]:
             "stiffness, mass and speed span more digits than double precision has: give a lower speed, "
             "a smaller tip inertia, or properties and breakpoints that vary less"
         ) from error
+
+
+def _shifted_stiffness(pencil: SteadyPencil) -> np.ndarray:
+    return pencil.K0 + pencil.shift * pencil.M if pencil.shift else pencil.K0
 
 
 def _transform_by_inverse(L: np.ndarray, A: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ class ModalBasis:
     Parameters
     ----------
     modes : int or None
-        Number of modes of each field at each speed; None for all modes of the discretization.
+        Number of modes at each speed of each set of coupled fields; None for all modes of the discretization.
     speeds : tuple of float
         Speeds of the modes [rad/s].
     """
@@ -66,12 +66,18 @@ def find_speed_range(motion: Motion, t_end: float) -> tuple[float, ...]:
 def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
     """Transform the equations to modal coordinates of unit mass, signed for a positive tip deflection."""
     pencil, count = equations.steady(), basis.modes or equations.size
-    shapes = {
-        name: span_modes(pencil.block(place), count, basis.speeds) for name, place in equations.blocks.items()
-    }
-    for name, place in equations.blocks.items():
-        shapes[name] *= np.where(equations.tip[place] @ shapes[name] < 0, -1.0, 1.0)
-    return equations.reduced(shapes)
+    bases = {}
+    for names in equations.coupled:
+        places = equations.places(names)
+        shapes = span_modes(pencil.part(places).undamped(), count, basis.speeds)
+        bases[names] = shapes * _signs(equations.tips[:, places] @ shapes)
+    return equations.reduced(bases)
+
+
+def _signs(tips: np.ndarray) -> np.ndarray:
+    """Signs (m,) by which the larger of the tip deflections (directions, m) becomes positive."""
+    larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
+    return np.where(larger < 0, -1.0, 1.0)
 
 
 def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:

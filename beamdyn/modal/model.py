@@ -10,6 +10,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
+from beamdyn.modal.uncoupled import UncoupledSolver, solver_of
 from beamdyn.scene.scene import Scene
 
 
@@ -34,9 +35,9 @@ class Model(FieldsOnly):
         return assemble_equations(self.scene, self.discretization)
 
     @cached_property
-    def solver(self) -> Solver:
+    def solver(self) -> Solver | UncoupledSolver:
         """Solver of the eigenproblem at steady speeds."""
-        return Solver(self.equations.steady())
+        return solver_of(self.equations)
 
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
         """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""

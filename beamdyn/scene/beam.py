@@ -326,6 +326,11 @@ class Beam:
         return merge_breakpoints(np.array([b for p in profiles if p is not None for b in p.breakpoints]))
 
     @property
+    def root_twist(self) -> float:
+        """Angle by which the section at the root is turned [rad]."""
+        return 0.0 if self.twist is None else float(self.twist.end_values()[0][0])
+
+    @property
     def tip_twist(self) -> float:
         """Angle by which the section at the tip is turned [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])

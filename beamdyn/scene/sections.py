@@ -28,7 +28,7 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     beam : Beam
         The beam.
     name : str
-        The property for bending in the first direction; that in the second has the prefix "second\\_".
+        The property for bending in the first direction; that in the second begins with "second".
 
     Returns
     -------

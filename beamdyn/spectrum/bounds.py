@@ -47,17 +47,17 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import count, real
+from beamdyn.common.checks import InvalidValue, count, real
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
-from beamdyn.equations.discretization import Space
+from beamdyn.equations.discretization import CLAMPED, Space
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.fields.bending import HELD
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
@@ -156,11 +156,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
 
 
 def _check_input(scene: Scene, speed: float, modes: int) -> None:
-    if scene.stretch or scene.damping_ratio:
-        raise ValueError(
-            f"stretch = {scene.stretch}, damping_ratio = {scene.damping_ratio:g}: bounds are known for "
-            "undamped bending only; give dataclasses.replace(scene, stretch=False, damping_ratio=0.0)"
-        )
+    _check_model(scene)
     check_speeds(speed, "speed")
     most = _most_functions(scene.beam) * (len(scene.beam.breakpoints) - 1)
     if modes > most:
@@ -168,6 +164,19 @@ def _check_input(scene: Scene, speed: float, modes: int) -> None:
             f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
             "degree of its properties, the less"
         )
+
+
+def _check_model(scene: Scene) -> None:
+    """Refuse, by name, what the theorem does not cover."""
+    bound = "bounds are known for an undamped slender beam on a clamped root that bends in one plane"
+    physics, plain = scene.physics, Physics()
+    for name in ("planes", "shear", "rotary_inertia", "stretch"):
+        if (value := getattr(physics, name)) != getattr(plain, name):
+            raise InvalidValue(f"physics.{name}", value, bound, "leave it out of physics")
+    if scene.damping_ratio:
+        raise InvalidValue("damping_ratio", scene.damping_ratio, bound, "give 0")
+    if not scene.is_slender_beam_in_one_plane:
+        raise InvalidValue("root_stiffness", scene.mount.root_stiffness, bound, "leave it out", "N m/rad")
 
 
 def _widen(values: np.ndarray, units: int) -> np.ndarray:
@@ -322,7 +331,7 @@ class Split:
         self.scene, self.speed, self.flexibility = scene, speed, flexibility
         larger = functions + _extra_degrees(scene.beam)
         segments = len(scene.beam.breakpoints) - 1
-        space = Ritz(larger).spaces(scene.beam).functions(HELD)
+        space = Ritz(larger).spaces(scene.beam).functions(CLAMPED)
         self.stiffness = space.gram(scene.beam.bending_stiffness, 2)
         self.forms = _assemble_forms(scene.beam, space)
         self.head = np.flatnonzero(np.tile(np.arange(larger) < functions, segments))

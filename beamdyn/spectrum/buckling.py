@@ -31,7 +31,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from beamdyn.equations.centrifugal_tension import axial_tension
-from beamdyn.equations.fields.stretch import HELD as HELD_STRING
+from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.ritz import Ritz
 from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.beam import TipMass
@@ -60,6 +60,8 @@ class Buckling:
 
 def decide_buckling(scene: Scene) -> Buckling:
     """Decide whether bending has a critical speed, by the arguments in the docstring of this module."""
+    if not scene.is_slender_beam_in_one_plane:
+        return Buckling(None, "the argument that decides it is known for a slender beam in one plane")
     form = _SpinForm.of(scene)
     if form.tension_at_root < 0 or form.tension_at_tip < 0:
         return Buckling(True, "the rotation compresses a part of the beam")
@@ -168,7 +170,7 @@ def _decide_by_string(form: _SpinForm) -> Buckling:
 def _lowest_of_string(form: _SpinForm, size: int) -> float:
     """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
     beam, segments = form.scene.beam, len(form.scene.beam.breakpoints) - 1
-    space = Ritz(max(2, size // segments)).spaces(beam).functions(HELD_STRING)
+    space = Ritz(max(2, size // segments)).spaces(beam).functions(FIXED)
     n_a, n_b = axial_tension(beam)
     tension = space.gram(n_b, 1) - form.inward * space.gram(n_a, 1)
     end, length = space.end(0), beam.length

@@ -126,14 +126,14 @@ def critical_point(
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
-    if buckling.exists is False and not scene.stretch:
+    if buckling.exists is False and not scene.physics.stretch:
         none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
         return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
     found, reason = _search(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = _search(models(scene, "ritz"), target)
-    if scene.stretch:
-        without_stretch = models(replace(scene, stretch=False), discretization)
+    if scene.physics.stretch:
+        without_stretch = models(_without_stretch(scene), discretization)
         found, reason = _compare_with_bending(found, without_stretch, buckling, target)
     none_below = _none_below(scene, found)
     names = str(found.model.discretization), str(found.coarse.discretization)
@@ -163,10 +163,15 @@ def _compare_with_bending(
 
 
 def _none_below(scene: Scene, found: _Found) -> float:
-    """Speed below which there is no critical one [rad/s]; it can be bounded for bending alone only."""
+    """Speed below which there is no critical one [rad/s]; it is bounded for a slender beam in one plane."""
     if np.isfinite(found.error):
         return found.speed
-    return 0.0 if scene.stretch else bound_critical_speed(scene)
+    bounded = scene.is_slender_beam_in_one_plane and not scene.physics.stretch
+    return bound_critical_speed(scene) if bounded else 0.0
+
+
+def _without_stretch(scene: Scene) -> Scene:
+    return replace(scene, physics=replace(scene.physics, stretch=False))
 
 
 def _list_models(
@@ -315,7 +320,7 @@ def setting_angle_limits(
     start = perf_counter()
     check_scene(scene)
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
-    scene = replace(scene, damping_ratio=0.0, stretch=False)
+    scene = replace(_without_stretch(scene), damping_ratio=0.0)
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = choose_model(tangential, discretization, speeds, 1)

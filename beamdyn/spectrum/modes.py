@@ -15,6 +15,7 @@ from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -54,12 +55,15 @@ class Modes(Result):
         "stable", "divergence", "flutter" or "overdamped".
     eigenvalue : ndarray of complex, shape (m,)
         s in exp(s t) [1/s].
-    tip : ndarray, shape (m,)
-        Tip deflection of the mass-normalised modes [kg^-1/2], positive.
-    load : ndarray, shape (m,)
-        Modal load under a unit root acceleration, P in modal coordinates [kg^1/2].
-    angular_load : ndarray, shape (m,)
-        Modal load under a unit angular acceleration, Q in modal coordinates [kg^1/2 m].
+    tip, tip_across : ndarray, shape (m,)
+        Tip deflections of the mass-normalised modes [kg^-1/2] in the direction of bending at the root and
+        across it, the larger one positive; 0 across where one plane is modelled.
+    plane_share : ndarray, shape (m, 2)
+        Share of each mode's kinetic energy in the two directions.
+    load, load_across : ndarray, shape (m,)
+        Modal loads under a unit root acceleration in either direction, P in modal coordinates [kg^1/2].
+    angular_load, angular_load_across : ndarray, shape (m,)
+        Modal loads under a unit angular acceleration in either plane, Q in modal coordinates [kg^1/2 m].
     static_deflection : float
         Static tip deflection under the rotation [m]; nan past the critical speed.
     axial_strain : float
@@ -77,8 +81,12 @@ class Modes(Result):
     status: np.ndarray
     eigenvalue: np.ndarray
     tip: np.ndarray
+    tip_across: np.ndarray
+    plane_share: np.ndarray
     load: np.ndarray
+    load_across: np.ndarray
     angular_load: np.ndarray
+    angular_load_across: np.ndarray
     static_deflection: float
     axial_strain: float
     warnings: tuple[str, ...]
@@ -87,12 +95,15 @@ class Modes(Result):
     vectors: np.ndarray = field(repr=False)
     model: Model = field(repr=False)
 
-    def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x))."""
+    def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
+        """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).
+
+        The direction is 0 for that of the bending angle at the root, 1 for that across.
+        """
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
-        return self.vectors.T @ self.model.equations.deflection(np.minimum(xi, 1.0))
+        return self.vectors.T @ self.model.equations.deflection(np.minimum(xi, 1.0), direction=direction)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
@@ -158,7 +169,7 @@ def natural_modes(
     tolerance = _check_tolerance(tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations, solution.eigen.eigenvalue[0]
-    vectors, status = _with_positive_tip(equations.tip, solution.eigen.vector[0]), _status(s)
+    vectors, status = _with_positive_tip(equations.tips, solution.eigen.vector[0]), _status(s)
     deflection, strain = static_load(solution.model, speeds)
     warnings = _warnings(scene, speeds, deflection, strain, solution.error, status[None], tolerance)
     return Modes(
@@ -169,8 +180,12 @@ def natural_modes(
         status=status,
         eigenvalue=s,
         tip=np.real(equations.tip @ vectors),
-        load=np.real(equations.P @ vectors),
-        angular_load=np.real(equations.Q @ vectors),
+        tip_across=np.real(equations.tip_across @ vectors),
+        plane_share=plane_share(equations, vectors[None])[0],
+        load=np.real(equations.P(0) @ vectors),
+        load_across=np.real(equations.P(1) @ vectors),
+        angular_load=np.real(equations.Q(0) @ vectors),
+        angular_load_across=np.real(equations.Q(1) @ vectors),
         static_deflection=float(deflection[0]),
         axial_strain=float(strain[0]),
         warnings=tuple(warnings),
@@ -185,11 +200,27 @@ def _check_tolerance(tolerance: float | None) -> float | None:
     return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
 
 
-def _with_positive_tip(tip: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Give the vectors the phase at which their tip deflection is real and positive."""
-    deflection = tip @ vectors
+def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Give the vectors the phase at which the larger of their tip deflections is real and positive."""
+    each = tips @ vectors
+    deflection = np.take_along_axis(each, np.abs(each).argmax(axis=0)[None], axis=0)[0]
     phase = np.where(deflection == 0, 1.0, deflection / np.abs(np.where(deflection == 0, 1.0, deflection)))
     return vectors / phase
+
+
+def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
+    """Share of the kinetic energy of modes (S, n, k) in the two directions of deflection: (S, k, 2)."""
+    if equations.planes == 1:
+        return np.tile([1.0, 0.0], (len(vectors), vectors.shape[2], 1))
+    energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
+    by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
+    total = energy.sum(axis=1)
+    return np.stack(by_plane, axis=2) / np.where(total == 0, 1.0, total)[..., None]
+
+
+def _coordinates(equations: Equations, direction: int) -> np.ndarray:
+    """Indices of the coordinates, before a reduction, that deflect the beam in a direction."""
+    return equations.places(n for n, d in equations.deflections.items() if d.direction == direction)
 
 
 def _status(s: np.ndarray) -> np.ndarray:
@@ -221,12 +252,9 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     strain : ndarray, shape (S,)
         Largest static axial strain; nan if the axial stiffness is not given.
     """
-    solver, beam, mount = model.solver, model.scene.beam, model.scene.mount
-    stiffness = 1 + speeds[:, None] ** 2 * solver.growth
-    with np.errstate(divide="ignore", invalid="ignore"):
-        q = (solver.basis.T @ solver.pencil.f2) * speeds[:, None] ** 2 / stiffness
-    tip = q @ (solver.basis.T @ model.equations.tip)
-    deflection = np.where(stiffness.min(axis=1) > 0, tip, np.nan)
+    beam, mount = model.scene.beam, model.scene.mount
+    tips = model.solver.solve_static(speeds, model.equations.tips)
+    deflection = tips[:, 0] if tips.shape[1] == 1 else np.linalg.norm(tips, axis=1)
     if beam.axial_stiffness is None:
         return deflection, np.full(len(speeds), np.nan)
     n_a, n_b = axial_tension(beam)
@@ -284,6 +312,8 @@ class Locus(Result):
         "stable", "divergence", "flutter" or "overdamped".
     eigenvalue : ndarray of complex, shape (S, m)
         s in exp(s t) [1/s].
+    plane_share : ndarray, shape (S, m, 2)
+        Share of each mode's kinetic energy in the two directions of bending at the root.
     static_deflection : ndarray, shape (S,)
         Static tip deflection under the rotation [m]; nan past the critical speed.
     axial_strain : ndarray, shape (S,)
@@ -301,6 +331,7 @@ class Locus(Result):
     error: np.ndarray
     status: np.ndarray
     eigenvalue: np.ndarray
+    plane_share: np.ndarray
     static_deflection: np.ndarray
     axial_strain: np.ndarray
     warnings: tuple[str, ...]
@@ -365,12 +396,19 @@ def frequency_locus(
         error=error,
         status=status,
         eigenvalue=s,
+        plane_share=_track_shares(solution, order[:, :modes]),
         static_deflection=deflection,
         axial_strain=strain,
         warnings=tuple(_warnings(scene, speeds, deflection, strain, error, status, tolerance)),
         provenance=_provenance(solution, start),
         scene=scene,
     )
+
+
+def _track_shares(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
+    """Shares of the planes (S, m, 2) in tracked order."""
+    shares = plane_share(solution.model.equations, solution.eigen.vector)
+    return np.take_along_axis(shares, order[:, :, None], axis=1)
 
 
 def _track_error(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:

@@ -121,7 +121,7 @@ def _diagonalize(systems: Sequence[ModalSystem]) -> list[ModalSystem]:
     speed = middle.motion.final_speed
     steady = SteadyRotation(speed if np.isfinite(speed) else 0.0)
     _, K, _ = ModalSystem(middle.equations, steady).coefficients(np.zeros(()))
-    bases = {name: np.linalg.eigh(K[block, block])[1] for name, block in middle.equations.blocks.items()}
+    bases = {(name,): np.linalg.eigh(K[block, block])[1] for name, block in middle.equations.blocks.items()}
     equations = middle.equations.reduced(bases)
     return [ModalSystem(equations, s.motion) for s in systems]
 

@@ -72,14 +72,17 @@ class Deflection:
     space : Space
         Trial functions phi_i of x/L.
     P : ndarray, shape (n,)
-        Load under a unit root acceleration in the direction of bending [kg].
+        Load under a unit root acceleration in the direction of the deflection [kg].
     Q : ndarray, shape (n,)
-        Load under a unit angular acceleration [kg m].
+        Load under a unit angular acceleration in its plane [kg m].
+    direction : int
+        0 for deflection in the direction of the bending angle, 1 for the direction across.
     """
 
     space: Space
     P: np.ndarray
     Q: np.ndarray
+    direction: int = 0
 
 
 @dataclass(frozen=True)
@@ -96,12 +99,15 @@ class FieldEquations:
         Terms of the right-hand side.
     deflection : Deflection or None
         Deflection of the beam by the coordinates; None for a field that does not deflect it.
+    hinged : bool
+        Whether the first coordinate turns the beam about its root.
     """
 
     size: int
     terms: tuple[Term, ...]
     loads: tuple[Load, ...]
     deflection: Deflection | None = None
+    hinged: bool = False
 
 
 class Field(ABC):
@@ -113,20 +119,23 @@ class Field(ABC):
     1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
     2. `is_modelled` says whether a scene has the field.  A scene without it has no cost of it.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
-       ``spaces.functions(held)``, and returns the terms, the loads and, for a field that deflects the beam
+       ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects the beam
        transversely, the `Deflection`.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
-       every quantity.  Its own stiffness, under the quantity "unity", is positive definite.
+       every quantity.  Its own stiffness, under the quantity "unity", is positive definite; only that of a
+       field that is `hinged` may lack stiffness against its first coordinate.
     5. Of two coupled fields, one supplies the coupling terms in the equations of both.
     6. `explanations` has, by the name of each term and load, its symbol, the reason for its presence and its
        conditions, for `beamdyn.terms`.
-    7. `complete` returns a scene in which every term of the field is present, for the same list.
+    7. Damping is added to all fields (`beamdyn.equations.damping`), under the name `damping_name`.
+    8. `complete` returns a scene in which every term of the field is present, for the same list.
 
     Discretizations, modal reductions, integrators, harmonic balance and results read the list of terms
     and do not depend on which fields there are.
     """
 
     name: ClassVar[str]
+    damping_name: ClassVar[str] = "damping"
     explanations: ClassVar[Mapping[str, Explanation]]
 
     @abstractmethod

@@ -3,72 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 from beamdyn.equations import explanations as why
-from beamdyn.equations.damping import modal_damping
-from beamdyn.equations.discretization import Spaces
+from beamdyn.equations.discretization import FIXED, Spaces
 from beamdyn.equations.explanations import Condition, Explanation
-from beamdyn.equations.fields import bending
-from beamdyn.equations.fields.bending import Bending
+from beamdyn.equations.fields.bending import Bending, SecondBending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
-from beamdyn.equations.root_motion import exact_cos_sin
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.equations.fields.shear import SecondShear, Shear
+from beamdyn.equations.fields.transverse import TransverseField, Trial, plane_components
+from beamdyn.scene.beam import TipMass
 from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
 
-HELD = 1  # no displacement at the root
-MODELLED = Condition(lambda s: s.scene.stretch, "no stretch: the beam is modelled as inextensible")
-
-
-@dataclass(frozen=True)
-class StretchOperators:
-    """Matrices and vectors of the stretch s = sum phi_i(x/L) q_i and its coupling with bending.
-
-    Symbols and equation numbers are those of Lee and Yoo (2019).
-
-    Parameters
-    ----------
-    M : ndarray, shape (m, m)
-        Mass M11 (15) [kg].
-    M12 : ndarray, shape (m, n)
-        Coupling mass (15) [kg].
-    KS : ndarray, shape (m, m)
-        Axial stiffness (16) [N/m].
-    P, Q : ndarray, shape (m,)
-        Loads (21) [kg] and (20) [kg m].
-    """
-
-    M: np.ndarray
-    M12: np.ndarray
-    KS: np.ndarray
-    P: np.ndarray
-    Q: np.ndarray
-
-
-def stretch_operators(beam: Beam, spaces: Spaces) -> StretchOperators:
-    """Integrate the operators of stretch and of its coupling with bending."""
-    length, mass, tip = beam.length, beam.mass_per_length, beam.tip or TipMass(0.0)
-    assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
-    space, clamped = spaces.functions(HELD), spaces.functions(bending.HELD)
-    end = space.end(0)
-    centre = clamped.end(0) + tip.offset / length * clamped.end(1)
-    return StretchOperators(
-        M=space.gram(mass, 0) * length + tip.mass * np.outer(end, end),
-        M12=spaces.product(mass, HELD, bending.HELD) * length + tip.mass * np.outer(end, centre),
-        KS=space.gram(beam.axial_stiffness, 1) / length,
-        P=space.load(mass) * length + tip.mass * end,
-        Q=space.load(mass * FRACTION) * length**2 + tip.mass * (length + tip.offset) * end,
-    )
+MODELLED = Condition(lambda s: s.scene.physics.stretch, "no stretch: the beam is modelled as inextensible")
+PARTNERS: tuple[TransverseField, ...] = (Bending(), SecondBending(), Shear(), SecondShear())
 
 
 class Stretch(Field):
     """Axial stretch of the beam."""
 
     name = "stretch"
+    damping_name = "axial damping"
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "stretch mass": Explanation("M11 q1''", "stretch is modelled", (MODELLED,)),
         "axial stiffness": Explanation("KS q1", "stretch is modelled", (MODELLED,)),
@@ -91,33 +50,59 @@ class Stretch(Field):
     }
 
     def is_modelled(self, scene: Scene) -> bool:
-        """Whether `scene.stretch` is set."""
-        return scene.stretch
+        """Whether `physics.stretch` is set."""
+        return scene.physics.stretch
 
     def complete(self, scene: Scene) -> Scene:
-        """Set `stretch`, and an axial stiffness if there is none."""
+        """Set `physics.stretch`, and an axial stiffness if there is none."""
         stiffness = scene.beam.axial_stiffness or scene.beam.bending_stiffness
-        return replace(scene, beam=replace(scene.beam, axial_stiffness=stiffness), stretch=True)
+        beam, physics = replace(scene.beam, axial_stiffness=stiffness), replace(scene.physics, stretch=True)
+        return replace(scene, beam=beam, physics=physics)
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble eqs. (13) of Lee and Yoo (2019), and the coupling in (14)."""
-        op = stretch_operators(scene.beam, spaces)
-        return FieldEquations(len(op.P), (*_terms(scene, op),), (*_loads(op),))
+        coupling = (
+            term
+            for partner in PARTNERS
+            if partner.is_modelled(scene)
+            for term in _coupling(Trial(partner, scene, spaces))
+        )
+        terms = (*_own_terms(scene, spaces), *coupling)
+        return FieldEquations(spaces.functions(FIXED).size, terms, (*_loads(scene, spaces),))
 
 
-def _terms(scene: Scene, op: StretchOperators) -> Iterator[Term]:
-    b, s, (c, _) = Bending.name, Stretch.name, exact_cos_sin(scene.mount.bending_angle)
-    yield Term("stretch mass", s, s, 2, op.M)
-    yield Term("axial stiffness", s, s, 0, op.KS)
-    yield Term("axial spin softening", s, s, 0, op.M, "speed_squared", -1.0)
-    yield Term("Coriolis coupling of stretch", s, b, 1, op.M12, "speed", 2 * c)
-    yield Term("Coriolis coupling of bending", b, s, 1, op.M12.T, "speed", -2 * c)
-    yield Term("Euler coupling of stretch", s, b, 0, op.M12, "acceleration", c)
-    yield Term("Euler coupling of bending", b, s, 0, op.M12.T, "acceleration", -c)
-    if scene.damping_ratio:
-        yield Term("axial damping", s, s, 1, modal_damping(op.M, op.KS), factor=scene.damping_ratio)
+def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
+    """Yield mass M11 (15), axial stiffness KS (16) and its softening by spin."""
+    s, beam, space = Stretch.name, scene.beam, spaces.functions(FIXED)
+    assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
+    end = space.end(0)
+    M = space.gram(beam.mass_per_length, 0) * beam.length + _tip(scene).mass * np.outer(end, end)
+    yield Term("stretch mass", s, s, 2, M)
+    yield Term("axial stiffness", s, s, 0, space.gram(beam.axial_stiffness, 1) / beam.length)
+    yield Term("axial spin softening", s, s, 0, M, "speed_squared", -1.0)
 
 
-def _loads(op: StretchOperators) -> Iterator[Load]:
-    yield Load("centrifugal stretching", Stretch.name, op.Q, "speed_squared")
-    yield Load("axial root acceleration", Stretch.name, op.P, "root_axial", -1.0)
+def _coupling(trial: Trial) -> Iterator[Term]:
+    """Yield the coupling, by the mass M12 (15), with a deflection in the plane of rotation."""
+    b, s, beam = trial.field.name, Stretch.name, trial.beam
+    by_beam = trial.spaces.product(beam.mass_per_length, FIXED, trial.conditions) * beam.length
+    M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(FIXED).end(0), trial.centre)
+    c = plane_components(trial.scene)[0][trial.direction]
+    yield Term("Coriolis coupling of stretch", s, b, 1, M12, "speed", 2 * c)
+    yield Term("Coriolis coupling of bending", b, s, 1, M12.T, "speed", -2 * c)
+    yield Term("Euler coupling of stretch", s, b, 0, M12, "acceleration", c)
+    yield Term("Euler coupling of bending", b, s, 0, M12.T, "acceleration", -c)
+
+
+def _loads(scene: Scene, spaces: Spaces) -> Iterator[Load]:
+    """Yield the loads of eqs. (21) and (20)."""
+    beam, tip, space = scene.beam, _tip(scene), spaces.functions(FIXED)
+    length, mass, end = beam.length, beam.mass_per_length, space.end(0)
+    P = space.load(mass) * length + tip.mass * end
+    Q = space.load(mass * FRACTION) * length**2 + tip.mass * (length + tip.offset) * end
+    yield Load("centrifugal stretching", Stretch.name, Q, "speed_squared")
+    yield Load("axial root acceleration", Stretch.name, P, "root_axial", -1.0)
+
+
+def _tip(scene: Scene) -> TipMass:
+    return scene.beam.tip or TipMass(0.0)

@@ -1,0 +1,321 @@
+"""Fields that deflect the beam transversely, and the terms that each pair of them has in common.
+
+The deflection is u2 = sum d_i v_i in the plane of rotation and u3 = sum n_i v_i out of it, over the fields
+v_i, each of which bends or shears the beam in one of two directions e1, e2 fixed to the root:
+
+    e1 = c b2 + s b3,  e2 = -s b2 + c b3,  so that  d = (c, -s),  n = (s, c),
+
+with c, s the cosine and sine of the bending angle.  Two fields thus share the mass, the tension, and what
+rotation does to the mass; bending also turns the sections and the tip body, shear does not.
+
+A body with centrifugal inertia B (in the sections' rotary inertia -E) and a tilt u' = (u2', u3') has the
+energy of rotation omega^2/2 u3' (B u')_3.  And as no section is free to twist, bending in both planes turns
+them about the beam by int (u2' u3'' - u3' u2'')/2, on which their product of inertia works.  Derivation:
+docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from beamdyn.equations import explanations as why
+from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.discretization import RootConditions, Space, Spaces
+from beamdyn.equations.explanations import Explanation
+from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Load, Term
+from beamdyn.equations.root_motion import Quantity, exact_cos_sin
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import FRACTION, ONE, Profile
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Trial functions of a transverse field of a scene, and what is evaluated of them at the tip.
+
+    Symbols are those of docs/conventions.md.
+
+    Parameters
+    ----------
+    field : TransverseField
+        The field.
+    scene : Scene
+        The scene.
+    spaces : Spaces
+        Function spaces on the beam.
+    """
+
+    field: TransverseField
+    scene: Scene
+    spaces: Spaces
+
+    @property
+    def direction(self) -> int:
+        """0 for deflection along e1, 1 along e2."""
+        return self.field.direction
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the sections turn with the slope of the deflection."""
+        return self.field.rotates
+
+    @cached_property
+    def conditions(self) -> RootConditions:
+        """Conditions at the root."""
+        return self.field.conditions(self.scene.mount)
+
+    @cached_property
+    def space(self) -> Space:
+        """Trial functions."""
+        return self.spaces.functions(self.conditions)
+
+    @cached_property
+    def beam(self) -> Beam:
+        """The beam, with the modelled properties."""
+        return self.scene.modelled_beam
+
+    @cached_property
+    def tip(self) -> TipMass:
+        """Rigid body at the tip."""
+        return self.beam.tip or TipMass(0.0)
+
+    @cached_property
+    def rotation(self) -> np.ndarray:
+        """Rotation D of the section at the tip per coordinate [1/m], shape (n,)."""
+        slope = self.space.end(1) / self.beam.length
+        return slope if self.rotates else np.zeros_like(slope)
+
+    @cached_property
+    def centre(self) -> np.ndarray:
+        """Deflection t of the tip body's centre of gravity per coordinate, shape (n,)."""
+        return self.space.end(0) + self.tip.offset * self.rotation
+
+    def tilting_load(self, direction: int) -> np.ndarray:
+        """Moment of inertia (n,) that tilts the sections, as the beam's end turns towards a direction."""
+        body = tilting_inertia(self.tip, self.beam.tip_twist)[self.direction, direction] * self.rotation
+        inertia = section_tensor(self.beam, "rotary_inertia").get((self.direction, direction))
+        if inertia is None or not self.rotates:
+            return body
+        return body + self.space.load(inertia, 1)
+
+    @cached_property
+    def Q(self) -> np.ndarray:
+        """Load under a unit angular acceleration in the direction of the field [kg m], shape (n,)."""
+        length, tip = self.beam.length, self.tip
+        by_mass = self.space.load(self.beam.mass_per_length * FRACTION) * length**2
+        reach = length + tip.offset
+        return by_mass + tip.mass * reach * self.centre + self.tilting_load(self.direction)
+
+    @cached_property
+    def P(self) -> np.ndarray:
+        """Load under a unit root acceleration in the direction of the field [kg], shape (n,)."""
+        return self.space.load(self.beam.mass_per_length) * self.beam.length + self.tip.mass * self.centre
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Integrals of products of two transverse fields, which may be the same.
+
+    Parameters
+    ----------
+    rows, columns : Trial
+        The trial functions.
+    """
+
+    rows: Trial
+    columns: Trial
+
+    @property
+    def directions(self) -> tuple[int, int]:
+        """Directions of the two."""
+        return self.rows.direction, self.columns.direction
+
+    @property
+    def rotate(self) -> bool:
+        """Whether both turn the sections."""
+        return self.rows.rotates and self.columns.rotates
+
+    def integrate(self, weight: Profile, *orders: int) -> np.ndarray:
+        """Integrate over x the weight times derivatives by x of the given order, or orders, of both."""
+        first, last = orders[0], orders[-1]
+        length = self.rows.beam.length
+        if self.rows is self.columns and first == last:
+            matrix = self.rows.space.gram(weight, first)
+        else:
+            conditions = self.rows.conditions, self.columns.conditions
+            matrix = self.rows.spaces.product(weight, *conditions, (first, last))
+        return matrix * length if first + last == 0 else matrix / length ** (first + last - 1)
+
+    @cached_property
+    def translation(self) -> np.ndarray:
+        """Mass of the centres of gravity of sections and tip body [kg]."""
+        tips = np.outer(self.rows.centre, self.columns.centre)
+        return self.integrate(self.rows.beam.mass_per_length, 0) + self.rows.tip.mass * tips
+
+    @cached_property
+    def tilts(self) -> np.ndarray:
+        """Products of the rotations D at the tip [1/m2]."""
+        return np.outer(self.rows.rotation, self.columns.rotation)
+
+
+class TransverseField(Field):
+    """Deflection of the beam in one of two directions."""
+
+    direction: ClassVar[int]
+    rotates: ClassVar[bool]
+    partners: ClassVar[tuple[TransverseField, ...]]  # the transverse fields before this one in `FIELDS`
+    explanations: ClassVar[Mapping[str, Explanation]] = {
+        "mass": Explanation("M22 q2''", "always"),
+        "rotary inertia of sections": Explanation("R22 q2''", "physics.rotary_inertia"),
+        "centrifugal stiffening": Explanation("ω² KGB q2", "the carrier turns", (why.TURNS,)),
+        "spin softening": Explanation(
+            "-ω² c² S22 q2", "it bends in the plane of rotation", (why.TURNS, why.IN_PLANE)
+        ),
+        "spin of the tip body": Explanation(
+            "ω² s² (Je - J1) D Dᵀ q2",
+            "the tip body tilts out of the plane of rotation",
+            (why.TIP_BODY, why.TIP_INERTIA, why.OUT_OF_PLANE, why.TURNS),
+        ),
+        "spin of sections": Explanation(
+            "-ω² s² R22 q2", "sections tilt out of the plane of rotation", (why.OUT_OF_PLANE, why.TURNS)
+        ),
+        "twisting by inertia": Explanation(
+            "ω² G (u2' u3'' - u3' u2'')/2",
+            "bending in both planes turns sections with a product of inertia",
+            (why.TURNS,),
+        ),
+        "tension by root acceleration": Explanation("-aO1 KGA q2", why.say_tension, (why.TENSIONED,)),
+        "damping": Explanation("2 ζ Λ q2'", "the damping ratio is not 0", (why.DAMPED,)),
+        "angular acceleration": Explanation("ω' c Q2", "the speed varies", (why.ACCELERATES, why.IN_PLANE)),
+        "root acceleration": Explanation("-(c aO2 + s aO3) P2", why.say_static_load, (why.LOADED,)),
+    }
+
+    def conditions(self, mount: Mount) -> RootConditions:
+        """Conditions at the root."""
+        raise NotImplementedError
+
+    def own_stiffness(self, pair: Pair) -> Iterator[Term]:
+        """Yield the terms of the elastic stiffness of this field with another, or with itself."""
+        raise NotImplementedError
+
+    def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
+        """Assemble eqs. (14) of Lee and Yoo (2019), corrected, with tip body, and what goes beyond them."""
+        own = Trial(self, scene, spaces)
+        terms = [*self._terms_with(Pair(own, own))]
+        for partner in self.partners:
+            if partner.is_modelled(scene):
+                above = [*self._terms_with(Pair(Trial(partner, scene, spaces), own))]
+                terms += [*above, *map(_transposed, above)]
+        deflection = Deflection(own.space, own.P, own.Q, self.direction)
+        turning = own.conditions.held == 1 and self.rotates
+        return FieldEquations(own.space.size, (*terms,), (*_loads(own),), deflection, turning)
+
+    def _terms_with(self, pair: Pair) -> Iterator[Term]:
+        yield from _mass(pair)
+        yield from self.own_stiffness(pair)
+        yield from _tension(pair)
+        yield from _spin(pair)
+
+
+def term_of(
+    name: str, pair: Pair, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0
+) -> Term:
+    """Term of the stiffness of a pair of fields."""
+    return Term(name, pair.rows.field.name, pair.columns.field.name, 0, matrix, quantity, factor)
+
+
+def _transposed(term: Term) -> Term:
+    return Term(
+        term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor
+    )
+
+
+def _mass(pair: Pair) -> Iterator[Term]:
+    names, (i, j) = (pair.rows.field.name, pair.columns.field.name), pair.directions
+    inertia = tilting_inertia(pair.rows.tip, pair.rows.beam.tip_twist)[i, j]
+    tilted = inertia * pair.tilts
+    yield Term("mass", *names, 2, pair.translation + tilted if i == j else tilted)
+    sections = section_tensor(pair.rows.beam, "rotary_inertia").get((i, j))
+    if pair.rotate and sections is not None:
+        yield Term("rotary inertia of sections", *names, 2, pair.integrate(sections, 1))
+
+
+def _tension(pair: Pair) -> Iterator[Term]:
+    """Stiffness by tension, which acts on the slope of the whole deflection (Engesser)."""
+    if pair.rows.direction != pair.columns.direction:
+        return
+    tip, (n_a, n_b) = pair.rows.tip, axial_tension(pair.rows.beam)
+    reach = pair.rows.beam.length + tip.offset
+    KGB = pair.integrate(n_b, 1) + tip.mass * reach * tip.offset * pair.tilts
+    KGA = pair.integrate(n_a, 1) + tip.mass * tip.offset * pair.tilts
+    yield term_of("centrifugal stiffening", pair, KGB, "speed_squared")
+    yield term_of("tension by root acceleration", pair, KGA, "root_axial", -1.0)
+
+
+def _spin(pair: Pair) -> Iterator[Term]:
+    """Work of rotation on masses that move in the plane of rotation, or tilt out of it."""
+    d, n = plane_components(pair.rows.scene)
+    i, j = pair.directions
+    if d[i] and d[j]:
+        yield term_of("spin softening", pair, pair.translation, "speed_squared", -(d[i] * d[j]))
+    if not pair.rotate:
+        return
+    beam = pair.rows.beam
+    body = centrifugal_inertia(pair.rows.tip, beam.tip_twist)
+    for p, q, factor in _tilting_factors(i, j, n):
+        yield term_of("spin of the tip body", pair, body[p, q] * pair.tilts, "speed_squared", factor)
+        sections = section_tensor(beam, "rotary_inertia").get((p, q))
+        if sections is not None:
+            matrix = pair.integrate(sections, 1)
+            yield term_of("spin of sections", pair, matrix, "speed_squared", -factor)
+    if i != j:
+        yield from _twisting(pair, body, d, n)
+
+
+def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Components d on b2 and n on b3 of the directions e1, e2."""
+    c, s = exact_cos_sin(scene.mount.bending_angle)
+    return (c, -s), (s, c)
+
+
+def _tilting_factors(i: int, j: int, n: tuple[float, float]) -> Iterator[tuple[int, int, float]]:
+    """Coefficients of B_pq in the matrix of u3' (B u')_3 for fields in directions i, j: p, q, factor != 0."""
+    B = np.zeros((2, 2))
+    for q in range(2):
+        B[q, j] += n[i] * n[q] / 2
+        B[q, i] += n[j] * n[q] / 2
+    for p, q in ((0, 0), (1, 1), (0, 1)):
+        factor = B[p, q] if p == q else B[0, 1] + B[1, 0]
+        if factor:
+            yield p, q, float(factor)
+
+
+def _twisting(
+    pair: Pair, body: np.ndarray, d: tuple[float, float], n: tuple[float, float]
+) -> Iterator[Term]:
+    """Work of rotation on sections and tip body that bending in both planes turns about the beam."""
+    beam = pair.rows.beam
+    product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
+    for (p, q), inertia in section_tensor(beam, "rotary_inertia").items():
+        product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
+    matrix = pair.integrate(product, 1, 2) - pair.integrate(product, 2, 1)
+    sign = 0.5 if pair.directions == (0, 1) else -0.5
+    yield term_of("twisting by inertia", pair, matrix, "speed_squared", sign)
+
+
+def _loads(trial: Trial) -> Iterator[Load]:
+    name, (d, _) = trial.field.name, plane_components(trial.scene)
+    i = trial.direction
+    yield Load("angular acceleration", name, trial.Q, "acceleration", d[i])
+    across = trial.tilting_load(1 - i)
+    if across.any():
+        yield Load("angular acceleration", name, across, "acceleration", d[1 - i])
+    transverse: tuple[Quantity, Quantity] = "root_transverse", "root_across"
+    yield Load("root acceleration", name, trial.P, transverse[i], -1.0)

@@ -1,0 +1,112 @@
+"""Equations of a beam whose root turns on springs: their stiffness at rest may be singular, or nearly so.
+
+The eigensolver then works with the stiffness plus a multiple of the mass, its shift, which it takes off the
+squared frequencies.  Here is what cannot be done so.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from beamdyn.equations.equations_of_motion import SteadyPencil
+
+_EPS = np.finfo(float).eps
+_LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
+_BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
+_SMALLEST_TRIAL = 1e-12  # speed squared, over that at which rotation matters, below which it is sought in vain
+
+
+def remove_shift(
+    pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, v: np.ndarray, rounding: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Subtract the shift from squared frequencies; of low ones take the Rayleigh quotient.
+
+    The quotient has the error of the vector squared, and no cancellation.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Conservative equations.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    squared : ndarray, shape (S, k)
+        Squared frequencies plus the shift [rad2/s2].
+    v : ndarray, shape (S, n, k)
+        Mass-normalised modes.
+    rounding : ndarray, shape (S, k)
+        Relative rounding error of `squared`.
+
+    Returns
+    -------
+    squared : ndarray, shape (S, k)
+        Squared frequencies; 0 where they are within their rounding error.
+    rounding : ndarray, shape (S, k)
+        Relative rounding error of the frequencies.
+    """
+    spin = speeds[:, None, None] ** 2
+    K, size = pencil.K0 + spin * pencil.K2, np.abs(pencil.K0) + spin * np.abs(pencil.K2)
+    quotient = np.einsum("snk,snk->sk", v, K @ v)
+    lost = _BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
+    difference = squared - pencil.shift
+    low = np.abs(difference) < _LOW * pencil.shift
+    removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
+    nonzero = np.where(removed == 0, 1.0, np.abs(removed))
+    return removed, np.where(low, lost / nonzero, rounding * squared / nonzero)
+
+
+def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> float:
+    """Find 1/speed^2 at which the stiffness I - shift mass + speed^2 diag(growth) becomes singular.
+
+    Its lowest eigenvalue is a concave function of the squared speed: once positive, it vanishes at most
+    once.  If a free rotation about the root is softened from rest on, the softening is infinite.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (n, n)
+        Mass matrix.
+    growth : ndarray, shape (n,)
+        Diagonal of the stiffness per squared speed.
+    shift : float
+        Multiple of the mass.
+
+    Returns
+    -------
+    float
+        Inverse of the squared critical speed [s2]; 0 if there is none.
+    """
+    at_rest, spin = np.eye(len(growth)) - shift * mass, np.diag(growth)
+    squared = 1 / np.abs(growth).max()
+    while squared > _SMALLEST_TRIAL / np.abs(growth).max():
+        stiffness = at_rest + squared * spin
+        if _is_definite(stiffness):
+            loss = scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1]
+            return float(loss / (1 + squared * loss)) if loss > _EPS else 0.0
+        squared /= 4
+    lowest = np.linalg.eigh(at_rest)[1][:, 0]
+    softened = lowest @ spin @ lowest < -len(growth) * _EPS * np.abs(growth).max()
+    return np.inf if softened else 0.0
+
+
+def _is_definite(A: np.ndarray) -> bool:
+    values = np.linalg.eigvalsh(A)
+    return bool(values[0] > len(A) * _EPS * values[-1])
+
+
+def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
+    """Coordinates (n,) in static equilibrium at a speed; nan where the stiffness is not positive definite."""
+    K = pencil.K0 + speed**2 * pencil.K2
+    try:
+        factor = scipy.linalg.cho_factor(K)
+    except np.linalg.LinAlgError:
+        return np.full(len(K), np.nan if speed else 0.0)
+    return scipy.linalg.cho_solve(factor, speed**2 * pencil.f2)
+
+
+def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solve M q'' + C q' + K q = 0 for any K: 1/s (2 n,) and vectors (2 n, 2 n) with q first."""
+    n, zero = len(M), np.zeros_like(M)
+    A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
+    s, y = scipy.linalg.eig(A, B)
+    least = _EPS * np.abs(s).max()
+    return 1 / np.where(np.abs(s) < least, 1j * least, s), y
