@@ -17,6 +17,7 @@ from benchmarks.peers import pybmodes
 NAMES = {"iea_15": "IEA 15 MW", "nrel_5": "NREL 5 MW", "bmodes_test01": "BModes Test01"}
 ELEMENTS = (200, 400, 800)  # about; whole numbers between neighbouring stations
 MODES = 5
+TOLERANCE = 1e-7  # of ours: far below what is compared
 STIFFNESS = 1e3  # G J over E I, and E A L^2 over E I: the frequencies do not change from 0.1 to 1e14
 GYRATION = 1e-6  # square of the radius of gyration of the sections for torsion, over L^2
 HEAD = """Blade
@@ -29,7 +30,7 @@ sec_loc str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff a
 
 def our_frequencies(name: str, rpm: float) -> np.ndarray:
     """First five frequencies [Hz]."""
-    return bd.natural_modes(blade_scene(name), rpm * math.pi / 30, MODES).frequency
+    return bd.natural_modes(blade_scene(name), rpm * math.pi / 30, MODES, tolerance=TOLERANCE).frequency
 
 
 def their_frequencies(name: str, rpm: float, elements: int) -> np.ndarray:
