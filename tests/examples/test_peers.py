@@ -150,23 +150,24 @@ def test_blade_turns_about_its_thickness_on_the_hub():
     assert "2.1e+11, 0.3\n" in text and "CENTRIF" not in tapered.deck(Blade(), (4, 1, 2), 0.0)
 
 
-def test_weights_of_the_root_are_those_of_the_mean():
-    """The mean over half the face is that of any displacement linear in the position."""
+def test_root_held_axially():
+    """Means over the face and either half of it, exact for quadratic displacements; in half elements."""
     counts = (1, 2, 4)
     number = hexahedra.numbers(counts)
     place = {n: p for p, n in number.items()}
     lines = list(tapered.root_lines(HELD_AXIALLY, counts, number))
     assert lines[:2] == ["*BOUNDARY", "ROOT, 1, 1"]
-    equations = "\n".join(lines[2:]).split("*EQUATION\n")[1:]
-    firsts = set()
-    for equation, middle in zip(equations, (4, 2, 6), strict=True):  # the whole face, either half
-        terms = [[float(value) for value in line.split(",")] for line in equation.splitlines()[1:]]
-        assert len(terms) == int(equation.splitlines()[0])
-        weights = np.array([term[2] for term in terms])
-        places = np.array([place[int(term[0])] for term in terms])
-        assert weights @ places / weights.sum() == pytest.approx([0, 2, middle], rel=1e-14)
-        firsts.add((terms[0][0], terms[0][1]))
-    assert len(firsts) == 3
+    equations = [text.splitlines() for text in "\n".join(lines[2:]).split("*EQUATION\n")[1:]]
+    terms = [np.array([line.split(",") for line in equation[1:]], dtype=float) for equation in equations]
+    assert [int(equation[0]) for equation in equations] == list(map(len, terms))
+    assert [set(own[:, 1]) for own in terms] == [{3}, {2}, {2}]
+    for own, (start, end) in zip(terms, ((0, 8), (0, 4), (4, 8)), strict=True):
+        _, y, z = np.array([place[int(n)] for n in own[:, 0]]).T
+        weight = own[:, 2] / own[:, 2].sum()
+        mean_square = (end**3 - start**3) / (3 * (end - start))
+        assert weight @ np.column_stack([y, z, z * z]) == pytest.approx([2, (start + end) / 2, mean_square])
+    # The first term is eliminated: no other equation of its direction may contain it.
+    assert terms[1][0, 0] not in terms[2][:, 0] and terms[2][0, 0] not in terms[1][:, 0]
 
 
 def test_shear_coefficient_of_a_rectangle():
