@@ -50,6 +50,17 @@ CASES = [
 ]
 
 
+def test_a_scene_with_all_physics_comes_back():
+    beam = bd.Beam.rectangular(
+        0.05, 0.01, 0.0002, 200e9, 7850.0, twist=bd.Table((0, 0.4, 1), (0.1, 0.1, -0.3)), poissons_ratio=0.3
+    )
+    physics = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
+    scene = bd.Scene(beam, bd.Mount(0.2, root_stiffness=3.0), physics=physics)
+    back = decode(json.loads(json.dumps(encode(scene), allow_nan=False)))
+    assert back == scene
+    assert back.mount.second_root_stiffness == math.inf
+
+
 @pytest.fixture(scope="module")
 def made():
     kept = {}
