@@ -31,11 +31,21 @@ def modes_table(result: Modes) -> Group:
     for i, status in enumerate(result.status):
         frequency = supported(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
         growth = "0" if result.growth_rate[i] == 0 else supported(result.growth_rate[i], size[i])
-        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, str(status)))
+        shares = [f"{share:.3f}" for share in _shares(result)[i]]
+        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, *shares, str(status)))
     title = f"Natural modes at {result.speed:.10g} rad/s, by {result.provenance.method}"
-    return table(
-        title, ("mode", "frequency [Hz]", "relative error", "growth rate [1/s]", "status"), rows, (4,)
-    )
+    heads = "mode", "frequency [Hz]", "relative error", "growth rate [1/s]"
+    heads = *heads, *(("share in bending direction", "across") if _has_two_planes(result) else ()), "status"
+    return table(title, heads, rows, (len(heads) - 1,))
+
+
+def _has_two_planes(result: Modes | Locus) -> bool:
+    return result.scene.physics.planes == 2
+
+
+def _shares(result: Modes | Locus) -> np.ndarray:
+    """Shares of the energy of modes in the two directions of bending: none where one plane is modelled."""
+    return result.plane_share if _has_two_planes(result) else result.plane_share[..., :0]
 
 
 def locus_table(result: Locus) -> Group:
@@ -220,18 +230,24 @@ def _selection_note(shown: np.ndarray, all_: np.ndarray) -> str:
 # Rows of CSV files, with their heads ----------------------------------------------------------------
 
 
+_SHARES = ("share_in_bending_direction", "share_across")
+
+
 def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate and status of each mode."""
-    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status"
-    columns = result.frequency, result.error, result.growth_rate, result.status
+    """Frequency, error, growth rate, status and, of two planes, the share of each in every mode."""
+    names = "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status"
+    yield *names, *(_SHARES if _has_two_planes(result) else ())
+    columns = result.frequency, result.error, result.growth_rate, result.status, *_shares(result).T
     for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
         yield mode, result.speed, *row
 
 
 def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate, status and tracking confidence of each mode, one row per speed."""
+    """Frequency, error, growth rate, status, confidence and shares of each mode, one row per speed."""
     names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
+    names = *names, *(_SHARES if _has_two_planes(result) else ())
     columns = result.frequency, result.error, result.growth_rate, result.status, result.confidence
+    columns = *columns, *np.moveaxis(_shares(result), -1, 0)
     numbers = range(1, result.frequency.shape[1] + 1)
     yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
     for speed, *rows in zip(result.speeds.tolist(), *(column.tolist() for column in columns), strict=True):
