@@ -138,7 +138,8 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
 
 def _ritz_family(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
     """Family of a Ritz basis, over its number of functions."""
-    each = "functions a segment" if basis == "legendre" and len(scene.modelled_beam.breakpoints) > 2 else "functions"
+    segmented = basis == "legendre" and len(scene.modelled_beam.breakpoints) > 2
+    each = "functions a segment" if segmented else "functions"
     cases = (Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
     return Family(f"Ritz, {basis}", tuple(cases))
 
