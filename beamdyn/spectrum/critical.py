@@ -34,6 +34,7 @@ from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.modes import static_load
+from beamdyn.spectrum.planes import separate_planes
 
 _SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
 _TO_HALF = 4  # steps from a basis to one of about half its size
@@ -49,12 +50,14 @@ class CriticalPoint(Result):
     Parameters
     ----------
     speed : float
-        Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which.
+        Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which; 0 if the
+        rotation turns the beam about a hinge at every speed.
     error : float
-        Its estimated relative error; 0 if there is none, inf if it is unresolved.
+        Its estimated relative error; 0 where an argument decides, inf if it is unresolved.
     none_below : float
         No critical speed lies below this [rad/s]: `speed` itself where it was found, a guaranteed bound
-        where not, inf if there is none.
+        where not, inf if there is none.  With an error of 0, only the inertia of tilting sections can
+        buckle the beam past this bound, where linear theory has long ended.
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
@@ -126,9 +129,8 @@ def critical_point(
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
-    if buckling.exists is False and not scene.physics.stretch:
-        none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
-        return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
+    if buckling.speed == 0 or (not _can_be_sought(buckling) and not scene.physics.stretch):
+        return _argued(buckling, start)
     found, reason = _search(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = _search(models(scene, "ritz"), target)
@@ -147,6 +149,19 @@ def critical_point(
     )
 
 
+def _can_be_sought(buckling: Buckling) -> bool:
+    """Whether bending may have a critical speed within the reach of the theory."""
+    return buckling.exists is not False and not buckling.none_below
+
+
+def _argued(buckling: Buckling, start: float) -> CriticalPoint:
+    """The answer that follows from an argument alone."""
+    provenance = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
+    speed = np.inf if buckling.speed is None else buckling.speed
+    none_below = speed if not buckling.none_below else buckling.none_below
+    return CriticalPoint(speed, 0.0, none_below, buckling.why, (), provenance)
+
+
 def _compare_with_bending(
     both: _Found, without_stretch: Iterator[Model], buckling: Buckling, target: float
 ) -> tuple[_Found, str]:
@@ -154,7 +169,7 @@ def _compare_with_bending(
 
     A basis that resolves the stretch may not see that of bending.
     """
-    if buckling.exists is not False:
+    if _can_be_sought(buckling):
         bending = _search(without_stretch, target)
         same = min(bending.error + both.error, UNRESOLVED)
         if np.isfinite(bending.speed) and bending.speed <= both.speed * (1 + same):
@@ -163,11 +178,11 @@ def _compare_with_bending(
 
 
 def _none_below(scene: Scene, found: _Found) -> float:
-    """Speed below which there is no critical one [rad/s]; it is bounded for a slender beam in one plane."""
+    """Speed below which there is no critical one [rad/s]; it is bounded for a slender beam by planes."""
     if np.isfinite(found.error):
         return found.speed
-    bounded = scene.is_slender_beam_in_one_plane and not scene.physics.stretch
-    return bound_critical_speed(scene) if bounded else 0.0
+    planes = () if scene.physics.stretch else separate_planes(scene)
+    return min((bound_critical_speed(plane) for plane in planes), default=0.0)
 
 
 def _without_stretch(scene: Scene) -> Scene:

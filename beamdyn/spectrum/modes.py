@@ -52,7 +52,7 @@ class Modes(Result):
     growth_rate : ndarray, shape (m,)
         Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
     status : ndarray of str, shape (m,)
-        "stable", "divergence", "flutter" or "overdamped".
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (m,)
         s in exp(s t) [1/s].
     tip, tip_across : ndarray, shape (m,)
@@ -225,14 +225,12 @@ def _coordinates(equations: Equations, direction: int) -> np.ndarray:
 
 def _status(s: np.ndarray) -> np.ndarray:
     growing, oscillating = np.real(s) > 0, np.imag(s) != 0
-    names = ["flutter", "divergence", "stable"]
-    return np.select(
-        [growing & oscillating, growing, oscillating], names, np.where(s == 0, "divergence", "overdamped")
-    )
+    names = ["flutter", "divergence", "stable", "neutral"]
+    return np.select([growing & oscillating, growing, oscillating, s == 0], names, "overdamped")
 
 
 def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
-    return np.where(status == "stable", np.imag(s) / (2 * np.pi), np.nan)
+    return np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -309,7 +307,7 @@ class Locus(Result):
     error : ndarray, shape (S, m)
         Estimated relative error of the eigenvalues.
     status : ndarray of str, shape (S, m)
-        "stable", "divergence", "flutter" or "overdamped".
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (S, m)
         s in exp(s t) [1/s].
     plane_share : ndarray, shape (S, m, 2)
