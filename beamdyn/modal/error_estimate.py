@@ -73,13 +73,11 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
-    return EstimatedModes(
-        model, coarse, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf)
-    )
+    return EstimatedModes(model, coarse, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
 
 
 def _integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
-    """Relative error of eigenvalues by rounding of the integrals: relative to the stiffness of a clamped beam.
+    """Relative error of eigenvalues by rounding of the integrals, which is that of a clamped beam's.
 
     A root that turns on soft springs has lower frequencies of the same absolute error.
     """

@@ -14,7 +14,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
-_SMALLEST_TRIAL = 1e-12  # speed squared, over that at which rotation matters, below which it is sought in vain
+_SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
 def remove_shift(

@@ -57,7 +57,11 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import FRACTION, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
-from beamdyn.spectrum.toppling import least_toppling_speed, topples_in_slender_limit
+from beamdyn.spectrum.toppling import (
+    least_toppling_speed,
+    tears_before_toppling,
+    topples_in_slender_limit,
+)
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
@@ -75,7 +79,8 @@ class Buckling:
     why : str
         The argument, in words.
     speed : float or None
-        Critical speed [rad/s], where the argument supplies it: 0 if the beam is unstable at every speed.
+        Critical speed [rad/s], where the argument supplies it: 0 if the beam is unstable at every speed, inf
+        if it is torn apart first; None if it is to be sought.
     none_below : float
         Where only the inertia of tilting sections can buckle the beam: a speed [rad/s] below which it does
         not; else 0.
@@ -112,7 +117,7 @@ def _decide_toppling(scene: Scene, none_below: float) -> Buckling:
         "the rotation stiffens the beam; only the rotary inertia of what tilts out of the plane can buckle it"
     )
     exists = True if topples_in_slender_limit(scene) else None
-    return Buckling(exists, why, none_below=none_below)
+    return Buckling(exists, why, math.inf if tears_before_toppling(scene) else None, none_below)
 
 
 def _decide_in_plane(form: _SpinForm) -> Buckling:

@@ -13,7 +13,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import positive, within
+from beamdyn.common.checks import InvalidValue, positive, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.choice import (
@@ -137,7 +137,7 @@ def critical_point(
     if scene.physics.stretch:
         without_stretch = models(_without_stretch(scene), discretization)
         found, reason = _compare_with_bending(found, without_stretch, buckling, target)
-    none_below = _none_below(scene, found)
+    none_below = _none_below(scene, found, buckling)
     names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
@@ -151,7 +151,7 @@ def critical_point(
 
 def _can_be_sought(buckling: Buckling) -> bool:
     """Whether bending may have a critical speed within the reach of the theory."""
-    return buckling.exists is not False and not buckling.none_below
+    return buckling.exists is not False and buckling.speed is None
 
 
 def _argued(buckling: Buckling, start: float) -> CriticalPoint:
@@ -177,12 +177,14 @@ def _compare_with_bending(
     return both, "the rotation softens the stretch by more than the axial stiffness"
 
 
-def _none_below(scene: Scene, found: _Found) -> float:
+def _none_below(scene: Scene, found: _Found, buckling: Buckling) -> float:
     """Speed below which there is no critical one [rad/s]; it is bounded for a slender beam by planes."""
     if np.isfinite(found.error):
         return found.speed
-    planes = () if scene.physics.stretch else separate_planes(scene)
-    return min((bound_critical_speed(plane) for plane in planes), default=0.0)
+    if scene.physics.stretch:
+        return 0.0
+    by_plane = (bound_critical_speed(plane) for plane in separate_planes(scene))
+    return min(by_plane, default=buckling.none_below)
 
 
 def _without_stretch(scene: Scene) -> Scene:
@@ -317,7 +319,8 @@ def setting_angle_limits(
     Parameters
     ----------
     scene : Scene
-        The scene; its setting angle, motion, damping and stretch are not used.
+        The scene; its setting angle, motion, damping and stretch are not used.  In two planes the first
+        frequency is the lowest of both.
     top_speed : float
         Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
     discretization : {"ritz", "fem"} or Discretization
@@ -330,10 +333,11 @@ def setting_angle_limits(
     Raises
     ------
     ValueError
-        If the top speed is not positive, or infinite without a basis of given size.
+        If the top speed is not positive, or infinite without a basis of given size, or the root is a hinge.
     """
     start = perf_counter()
     check_scene(scene)
+    _refuse_hinge(scene)
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     scene = replace(_without_stretch(scene), damping_ratio=0.0)
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
@@ -354,6 +358,15 @@ def setting_angle_limits(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),
     )
+
+
+def _refuse_hinge(scene: Scene) -> None:
+    """Refuse a root that turns freely: there is no first frequency at rest that rises or falls."""
+    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
+    for name in names:
+        if getattr(scene.mount, name) == 0:
+            bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
+            raise InvalidValue(name, 0.0, bound, "give a spring", "N m/rad")
 
 
 def _check_top_speed(top_speed: float, bounded: bool) -> float:

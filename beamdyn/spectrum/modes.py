@@ -27,6 +27,7 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
+from beamdyn.spectrum.planes import first_drawn, name_directions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,8 +109,13 @@ class Modes(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
         from beamdyn.output.plots import plot_shapes
+        from beamdyn.output.plots_by_plane import plot_shapes_by_plane
 
         x = np.linspace(0, self.scene.beam.length, 201)
+        if self.scene.physics.planes == 2:
+            order, words = _drawn_order(self.scene)
+            shapes = np.stack([np.real(self.shape(x, direction)) for direction in order], axis=1)
+            return plot_shapes_by_plane(x, shapes, self.labels(), words, ax)
         return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax)
 
     def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
@@ -124,6 +130,12 @@ class Modes(Result):
         return [
             _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
         ]
+
+
+def _drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
+    """Directions that are drawn solid and dashed, and their names."""
+    solid, names = first_drawn(scene.mount), name_directions(scene.mount)
+    return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
 
 def _label(i: int, frequency: float, growth: float) -> str:
@@ -339,7 +351,11 @@ class Locus(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
         from beamdyn.output.plots import plot_locus
+        from beamdyn.output.plots_by_plane import plot_locus_by_plane
 
+        if self.scene.physics.planes == 2:
+            (solid, _), words = _drawn_order(self.scene)
+            return plot_locus_by_plane(self.speeds, self.frequency, self.plane_share[:, :, solid], words, ax)
         return plot_locus(self.speeds, self.frequency, ax)
 
 

@@ -15,15 +15,20 @@ the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what is added i
 with the smaller EI at x.  **If F0 >= 0, no speed below r^(-1/2) is critical.**  For a uniform beam that is
 2^(1/2) times the speed of sound in its material, over the length.
 
-At a hinge C is infinite.  Out of the plane, where F0 >= int N u'^2, split theta into its mean with the weight N
-and the rest, at most (E int 1/EI)^(1/2).  Where int N >= 2 int I33, this gives r = 2 int I33 int 1/EI; with
-shear, of which u' has a part, where int N >= 4 int I33, and r is at least N / (kappa G A) everywhere.
+At a hinge C is infinite.  If it turns out of the plane only, where F0 >= int N u'^2, split theta3 into its
+mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If S = int N - 2 int I33 > 0,
+
+    r = 2 e int I33 + A^2 / (4 S) + A e^(1/2) + G,    G = (int g^2 C22 / EI)^(1/2),
+    A = int |I23| C22^(1/2) + |B23| C22^(1/2) + (int g^2 / EI)^(1/2).
+
+With shear, of which u' has a part, S = int N / 2 - 2 int I33, and r is at least N / (kappa G A) everywhere.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -36,6 +41,7 @@ from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
 _CELLS = 2000  # of the midpoint rule on all segments together
 _MARGIN = 1.01  # for its error
+_LARGE_STRAIN = 0.01
 _ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
 
 
@@ -55,12 +61,17 @@ def least_toppling_speed(scene: Scene) -> float:
     inertia = _Inertia(scene)
     if not inertia.topples:
         return np.inf
-    ratio = inertia.ratio_at_hinge if inertia.hinged else inertia.ratio
-    return float((_MARGIN * ratio) ** -0.5)
+    return float((_MARGIN * min(inertia.ratio, inertia.ratio_at_hinge)) ** -0.5)
+
+
+def tears_before_toppling(scene: Scene) -> bool:
+    """Whether `least_toppling_speed` is one at which rotation would stretch a beam of one material by 1 %."""
+    inertia = _Inertia(scene)
+    return inertia.topples and least_toppling_speed(scene) >= _LARGE_STRAIN**0.5 * inertia.sound_speed
 
 
 def topples_in_slender_limit(scene: Scene) -> bool:
-    """Whether sections or a tip body topple whatever the stiffness, in a short bend at the tip or a short helix."""
+    """Whether sections or a tip body topple whatever the stiffness, in a bend of no length."""
     inertia = _Inertia(scene)
     free_end = inertia.tension[-1] < inertia.moments[-1] * (inertia.components[1] ** 2).sum()
     return inertia.topples and bool(scene.physics.shear or inertia.oblique or free_end)
@@ -84,9 +95,7 @@ class _Inertia:
         """Midpoints x/L (n,) and widths [m] (n,)."""
         ends = np.array(self.beam.breakpoints)
         per_segment = max(20, _CELLS // (len(ends) - 1))
-        edges = np.unique(
-            np.concatenate([np.linspace(a, b, per_segment + 1) for a, b in zip(ends, ends[1:])])
-        )
+        edges = np.unique(np.concatenate([np.linspace(a, b, per_segment + 1) for a, b in pairwise(ends)]))
         return (edges[1:] + edges[:-1]) / 2, np.diff(edges) * self.beam.length
 
     @cached_property
@@ -115,7 +124,7 @@ class _Inertia:
 
     @cached_property
     def body(self) -> float:
-        """Product of inertia B23 of the tip body [kg m2]; 0 within rounding, or where one plane is modelled."""
+        """Product of inertia B23 of the tip body [kg m2]; 0 within rounding, or in one plane."""
         if self.planes == 1:
             return 0.0
         B = self._turned(centrifugal_inertia(self.beam.tip or TipMass(0.0), self.beam.tip_twist))
@@ -123,7 +132,7 @@ class _Inertia:
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Rotary inertia (n,) that multiplies theta3^2 [kg m]: I33; in one plane, where theta3 turns it, all."""
+        """Rotary inertia (n,) that multiplies theta3^2 [kg m]: I33, or all of it in one plane."""
         if self.planes == 2:
             return self.tensors[:, 1, 1]
         return self._tensor("rotary_inertia")[:, 0, 0] * bool(self.components[1, 0])
@@ -165,29 +174,60 @@ class _Inertia:
         return self._turned(root + np.cumsum(by_bending, axis=0))
 
     @property
+    def sound_speed(self) -> float:
+        """Speed of sound in the material over the length [rad/s]; 0 for sections without rotary inertia."""
+        inertia = float(self.cells[1] @ self._tensor("rotary_inertia")[:, 0, 0])
+        compliance = float(self.cells[1] @ (1 / self._tensor("bending_stiffness")[:, 0, 0]))
+        return (inertia * compliance) ** -0.5 if inertia else 0.0
+
+    @property
     def ratio(self) -> float:
-        """The ratio r [s2]."""
+        """The ratio r of a root that is clamped or on springs [s2]; inf at a hinge."""
+        if self.hinged:
+            return np.inf
         width, C, product = self.cells[1], self.compliance, self.products
         both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
         ratio = width @ (self.moments * C[:, 1, 1] + np.abs(product) * both)
-        g = np.cumsum((width * product)[::-1])[::-1] - self.body
-        twisting = np.sqrt(width @ (g**2 * np.trace(C, axis1=1, axis2=2) * self.flexibility))
+        twisting = np.sqrt(width @ (self.torque**2 * np.trace(C, axis1=1, axis2=2) * self.flexibility))
         return float(ratio + abs(self.body) * both[-1] + twisting)
 
     @property
     def ratio_at_hinge(self) -> float:
-        """The ratio r where the root is a hinge [s2]; inf if the argument does not hold."""
+        """The ratio r by the argument for a hinge, which soft springs do not harm [s2]; inf if it fails."""
         width, shear = self.cells[1], self.scene.physics.shear
-        total = float(width @ self.moments)
-        out_of_plane = self.planes == 2 or not self.components[0].any()
-        heavy = width @ self.tension >= (4 if shear else 2) * total
-        if self.oblique or not (out_of_plane and heavy and (self.tension >= 0).all()):
+        tilting = float(width @ self.moments)
+        spare = float(width @ self.tension) / (2 if shear else 1) - 2 * tilting
+        if spare <= 0 or (self.tension < 0).any() or self._turns_in_plane:
             return np.inf
-        ratio = 2 * total * float(width @ self.flexibility)
+        bending, by_mean, by_rest = float(width @ self.flexibility), *self._products_at_hinge
+        ratio = 2 * tilting * bending + by_mean**2 / (4 * spare) + by_mean * bending**0.5 + by_rest
         if not shear:
             return ratio
         smaller = np.linalg.eigvalsh(self._tensor("shear_stiffness"))[:, 0]
         return max(ratio, float((self.tension / smaller).max()))
+
+    @property
+    def _turns_in_plane(self) -> bool:
+        """Whether bending in one plane, or a hinge that matters, turns the beam in the plane of rotation."""
+        if self.planes == 1:
+            return bool(self.components[0].any())
+        springs = np.array(self.scene.mount.root_stiffnesses)
+        return self.oblique and bool(self.components[0][springs == 0].any())
+
+    @property
+    def _products_at_hinge(self) -> tuple[float, float]:
+        """The numbers A [kg^(1/2) m s] and G [s2] of the docstring of this module."""
+        if not self.oblique:
+            return 0.0, 0.0
+        width, slope = self.cells[1], np.sqrt(self.compliance[:, 0, 0])
+        g2 = self.torque**2 * self.flexibility * width
+        direct = width @ (np.abs(self.products) * slope) + abs(self.body) * slope[-1]
+        return float(direct + np.sqrt(g2.sum())), float(np.sqrt(g2 @ slope**2))
+
+    @cached_property
+    def torque(self) -> np.ndarray:
+        """Torque g per squared speed (n,) [kg m2]."""
+        return np.cumsum((self.cells[1] * self.products)[::-1])[::-1] - self.body
 
     @cached_property
     def tension(self) -> np.ndarray:
