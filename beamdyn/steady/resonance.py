@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _HIGHEST_ORDER = 20  # that may be asked for: ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
 _ROUNDING = 4 * np.finfo(float).eps
-_COINCIDENT = 1e-9  # distance of a line from a frequency at all speeds, over it: rounding
+_COINCIDENT = 1e-8  # largest distance of a line from a frequency over the speeds, over it: rounding
 _FURTHER_MODES = 2  # of other parts, which may come below those that are sought
 
 
@@ -382,7 +382,7 @@ class _Loci:
     def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
         """Whether a line equals a natural frequency, or the sum of two, at every speed: a hinged beam's."""
         distance, own = self._detunings(line, indices), self.values[:, indices].sum(axis=1)
-        return bool((np.abs(distance) <= _COINCIDENT * own).all())
+        return bool(np.abs(distance).max() <= _COINCIDENT * own.max())
 
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:
         """A sentence on a line that equals a natural frequency at every speed."""
