@@ -225,7 +225,7 @@ def test_critical_speed_on_springs_is_where_the_lowest_eigenvalue_vanishes(sprin
         return float(np.linalg.eigvalsh(scale[:, None] * (pencil.K0 + v**2 * pencil.K2) * scale)[0])
 
     assert lowest(speed * (1 - 1e-3)) > 0 > lowest(speed * (1 + 1e-3))
-    root = brentq(lowest, speed * (1 - 1e-3), speed * (1 + 1e-3), xtol=0.0, rtol=1e-12)
+    root = brentq(lowest, speed * (1 - 1e-3), speed * (1 + 1e-3), xtol=1e-12 * speed, rtol=1e-12)
     assert speed == pytest.approx(root, rel=1e-7)
 
 
