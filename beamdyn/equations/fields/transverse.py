@@ -232,9 +232,7 @@ def term_of(
 
 
 def _transposed(term: Term) -> Term:
-    return Term(
-        term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor
-    )
+    return Term(term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor)
 
 
 def _mass(pair: Pair) -> Iterator[Term]:
@@ -297,9 +295,7 @@ def _tilting_factors(i: int, j: int, n: tuple[float, float]) -> Iterator[tuple[i
             yield p, q, float(factor)
 
 
-def _twisting(
-    pair: Pair, body: np.ndarray, d: tuple[float, float], n: tuple[float, float]
-) -> Iterator[Term]:
+def _twisting(pair: Pair, body: np.ndarray, d: tuple[float, float], n: tuple[float, float]) -> Iterator[Term]:
     """Work of rotation on sections and tip body that bending in both planes turns about the beam."""
     beam = pair.rows.beam
     product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
