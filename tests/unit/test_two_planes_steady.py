@@ -199,6 +199,26 @@ def test_tongues_of_both_planes_and_between_them() -> None:
         assert abs(rates[fastest] - expected) < errors[fastest] + 1e-6 * expected
 
 
+def test_the_plane_that_grows_decides_where_nothing_couples_the_two() -> None:
+    scene = replace(
+        FLAT, mount=bd.Mount(0.02, math.pi), motion=rolling(4, 1.0), damping_ratio=0.0, gravity=0.0
+    )
+    crossings = bd.resonance_speeds(scene, 450.0, modes=2)
+    tongues = [c for c in crossings if c.kind == "parametric" and c.line.name == "road +"]
+    assert [int(np.argmax(c.plane_share)) for c in tongues] == [0, 1]
+    out = replace(
+        scene, physics=bd.Physics(), beam=stiff_way(scene), mount=bd.Mount(0.02, math.pi, math.pi / 2)
+    )
+    for c in tongues:
+        alone = out if np.argmax(c.plane_share) else replace(scene, physics=bd.Physics())
+        found, expected = (
+            bd.steady_response(s, [c.speed], modes=2, harmonics=1, discretization=bd.Ritz(14))
+            for s in (scene, alone)
+        )
+        assert found.status[0] == "parametric instability" and np.isnan(found.amplitude[0])
+        np.testing.assert_allclose(found.growth_rate, expected.growth_rate, rtol=1e-9)
+
+
 # Crossings ----------------------------------------------------------------------------------------
 
 
