@@ -103,9 +103,10 @@ def _solve_single(request: SweepRequest, motion: Motion) -> CaseResult:
 
 
 def _case_result(request: SweepRequest, path: Trajectory, error: float) -> CaseResult:
-    """Result of a case from a trajectory whose only coordinate is the tip deflection."""
+    """Result of a case from a trajectory whose coordinates are the tip deflections in each direction."""
+    outputs = np.eye(path.segments[0].acceleration.shape[2])
     windows = request.window, (path.start, path.end)
-    peak, largest = (largest_deflection(np.ones(1), path, *window) for window in windows)
+    peak, largest = (largest_deflection(outputs, path, *window) for window in windows)
     return CaseResult(peak, max(peak, largest), float(error), DONE)
 
 

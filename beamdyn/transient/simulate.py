@@ -58,12 +58,15 @@ class Transient(Result):
     t : ndarray, shape (n,)
         Times [s].
     tip : ndarray, shape (n,)
-        Tip deflection [m].
+        Tip deflection [m] in the direction of bending at the root.
+    tip_across : ndarray, shape (n,)
+        Tip deflection [m] in the direction across; zeros where one plane is modelled.
     coordinates, velocities : ndarray, shape (n, m)
         Modal coordinates [kg^1/2 m] and their rates.
     time_error : float
         Largest estimated time-integration error of the tip deflection [m]; nan for the methods
-        of `solve_ivp`, which only bound the error of each step.
+        of `solve_ivp`, which only bound the error of each step.  Where two planes are modelled, this is the
+        magnitude of the error of a vector, as `largest`, `peak` and `mode_error` are magnitudes.
     largest : float
         Largest |tip deflection| of the run [m].
     warnings : tuple of str
@@ -78,6 +81,7 @@ class Transient(Result):
 
     t: np.ndarray
     tip: np.ndarray
+    tip_across: np.ndarray
     coordinates: np.ndarray
     velocities: np.ndarray
     time_error: float
@@ -126,7 +130,8 @@ class Transient(Result):
     def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
         t, q, _ = (x[:: 1 + len(x) // _TIMES_COMPARED] for x in self.path.samples)
-        return float(np.abs(q @ self.system.tip - other.deflection(t)).max())
+        each = (q @ tip - other.deflection(t, i) for i, tip in enumerate(self.system.tips))
+        return float(np.hypot.reduce([np.abs(difference) for difference in each]).max())
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, `mode_error` included."""
@@ -149,9 +154,16 @@ class Transient(Result):
             raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")
         return t
 
-    def shape(self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x))."""
-        return self.at(t)[0] @ self.system.equations.deflection(np.asarray(x) / self.scene.beam.length)
+    def shape(
+        self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float], direction: int = 0
+    ) -> np.ndarray:
+        """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
+
+        The direction is 0 for that of bending at the root, 1 for that across, in which a beam of one plane
+        is rigid.
+        """
+        direction, xi = _direction(direction), np.asarray(x) / self.scene.beam.length
+        return self.at(t)[0] @ self.system.equations.deflection(xi, direction=direction)
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Bending strain of the outer fibre at the root at times t [s]: shape (len(t),).
@@ -189,9 +201,9 @@ class Transient(Result):
     def _root_strain(self) -> RootStrain:
         return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
-    def deflection(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Tip deflection [m] at times t [s]: shape (len(t),)."""
-        return self.shape([self.scene.beam.length], t)[:, 0]
+    def deflection(self, t: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
+        """Tip deflection [m] at times t [s]: shape (len(t),); the direction as for `shape`."""
+        return self.shape([self.scene.beam.length], t, direction)[:, 0]
 
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are."""
@@ -203,7 +215,7 @@ class Transient(Result):
     def peak(self, start: float, end: float) -> float:
         """Largest |tip deflection| [m] from `start` to `end` [s], also between samples."""
         _check_window(start, end, self.path)
-        return largest_deflection(self.system.tip, self.path, start, end)
+        return largest_deflection(self.system.tips, self.path, start, end)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
@@ -221,6 +233,14 @@ class Transient(Result):
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)
         write_series(path, x, t, self.shape(x, t), force=force)
+
+
+def _direction(direction: int) -> int:
+    """Refuse what is no direction of deflection."""
+    if direction not in (0, 1):
+        bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
+        raise InvalidValue("direction", direction, bound)
+    return direction
 
 
 def _check_window(start: float, end: float, path: Path) -> None:
@@ -336,7 +356,7 @@ class TransientRequest(FieldsOnly):
         system = ModalSystem(model.modal_equations(self.basis), motion)
         path, error, name = self._integrate(system, _initial_state(self.initial, system))
         t, q, v = path.samples
-        largest = largest_deflection(system.tip, path, path.start, path.end)
+        largest = largest_deflection(system.tips, path, path.start, path.end)
         _check_growth(self.scene, largest)
         if self.t_eval is not None:
             t = self.t_eval
@@ -344,6 +364,7 @@ class TransientRequest(FieldsOnly):
         return Transient(
             t=t,
             tip=q @ system.tip,
+            tip_across=q @ system.equations.tip_across,
             coordinates=q,
             velocities=v,
             time_error=error,

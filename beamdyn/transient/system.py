@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
@@ -34,10 +35,15 @@ class ModalSystem:
         """Number n of coordinates."""
         return self.equations.size
 
+    @cached_property
+    def tips(self) -> np.ndarray:
+        """Tip deflection per unit of each coordinate [kg^-1/2] in each direction, shape (1 or 2, n)."""
+        return self.equations.tips
+
     @property
     def tip(self) -> np.ndarray:
-        """Tip deflection per unit of each coordinate [kg^-1/2], shape (n,)."""
-        return self.equations.tip
+        """Tip deflection per unit of each coordinate [kg^-1/2] in the direction of bending, shape (n,)."""
+        return self.tips[0]
 
     def root(self, t: np.ndarray) -> RootMotion:
         """Motion of the root at times t [s]."""

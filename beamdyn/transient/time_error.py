@@ -9,6 +9,7 @@ import numpy as np
 
 from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import magnitude
 
 STAGES = 8  # of the Gauss collocation that is checked
 ERROR_ORDER = 2 * STAGES  # of its error, in the step size
@@ -84,8 +85,10 @@ class TimeError:
         return _MARGIN * (float(self.modes.sum()) + self.interpolation)
 
 
-def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps], output: np.ndarray) -> TimeError:
-    """Estimate the time-integration error of an output from the local errors of some steps.
+def estimate_time_error(
+    system: ModalSystem, checks: Sequence[CheckedSteps], outputs: np.ndarray
+) -> TimeError:
+    """Estimate the time-integration error of a quantity from the local errors of some steps.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
@@ -97,8 +100,9 @@ def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps], out
         The equations.
     checks : sequence of CheckedSteps
         Checked steps of each segment.
-    output : ndarray, shape (n,)
-        The quantity whose error is sought, such as the tip deflection, per unit of each coordinate.
+    outputs : ndarray, shape (d, n)
+        The quantity whose error is sought, such as the tip deflection, per unit of each coordinate: the d
+        components of a vector, whose error is the magnitude of that of the vector.
 
     Returns
     -------
@@ -114,8 +118,13 @@ def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps], out
         unresolved |= delta > UNRESOLVED_PHASE
         accelerations = [(m.acceleration @ check.state[:, None, :, None])[..., 0] for m in (maps, finer)]
         q = [interpolate(check.h, check.state, a, _INTERPOLATION_POINTS)[0] for a in accelerations]
-        interpolation = max(interpolation, float(np.abs((q[0] - q[1]) @ output).max()))
-    return TimeError(total * np.abs(output), interpolation, unresolved)
+        interpolation = max(interpolation, float(magnitude(q[0] - q[1], outputs).max()))
+    return TimeError(total * size_per_coordinate(outputs), interpolation, unresolved)
+
+
+def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
+    """Magnitude of a vector of d components per unit of each coordinate, (n,), from the components (d, n)."""
+    return np.hypot.reduce(np.abs(outputs))
 
 
 def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
