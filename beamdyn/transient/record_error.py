@@ -16,6 +16,7 @@ from beamdyn.transient.time_error import (
     phase_errors,
     size_per_coordinate,
     total_of_local_errors,
+    vibration_frequencies,
 )
 from beamdyn.transient.trajectory import magnitude
 
@@ -54,7 +55,8 @@ def estimate_record_error(system: ModalSystem, segment: RecordSegment, outputs: 
         total += total_of_local_errors(local, delta, represented)
         unresolved |= delta > UNRESOLVED_PHASE
         interpolation = max(interpolation, between)
-    return TimeError(total * size_per_coordinate(outputs), interpolation, unresolved)
+    modes = total * size_per_coordinate(outputs)
+    return TimeError.of_coordinates(system, modes, interpolation, unresolved)
 
 
 def _find_worst(system: ModalSystem, steps: RecordSteps) -> np.ndarray:
@@ -89,8 +91,9 @@ def _check_batch(
     q, _ = interpolate(steps.piece_width[:, None, None], at_pieces, a, _POINTS)
     t = steps.piece_start[:, None] + steps.piece_width[:, None] * _POINTS
     between = magnitude(segment.at(t.ravel())[0] - q.reshape(t.size, -1), outputs).max()
-    local = local_errors(system, step, fine, state, segment.state[chosen + 1, 1:])
-    return local, phase_errors(system, fine - step), float(between)
+    frequencies = vibration_frequencies(system, segment.end - segment.start)
+    local = local_errors(step, fine, state, segment.state[chosen + 1, 1:], frequencies)
+    return local, phase_errors(fine - step, frequencies), float(between)
 
 
 def _compose(steps: RecordSteps, pieces: StepMaps, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
