@@ -19,6 +19,7 @@ from beamdyn.scene.motion import Motion
 FEWEST_MODES = 2  # size of the first basis where no number is given
 SPEED_SAMPLES = 2001  # times of a motion at which its slowest and fastest speed are sought
 _MOST_MODES = 60  # with more, the time steps that the fastest modes need are too small
+_MASSLESS = 1e-14  # pivot of the mass, over the largest, that rounding makes of 0
 _DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
 
 
@@ -112,6 +113,9 @@ def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     try:
         L = np.linalg.cholesky(M)
     except np.linalg.LinAlgError:
+        return _orthonormal_of_massless(M, shapes)
+    pivots = np.diag(L) ** 2
+    if pivots.min() < _MASSLESS * pivots.max():
         return _orthonormal_of_massless(M, shapes)
     directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
     return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
