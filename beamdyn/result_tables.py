@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.critical import SettingAngleLimits
     from beamdyn.spectrum.modes import Locus, Modes
-    from beamdyn.steady.resonance import Crossings
+    from beamdyn.steady.resonance import Crossing, Crossings
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
@@ -33,11 +33,34 @@ def modes_table(result: Modes) -> Group:
     for i, status in enumerate(result.status):
         frequency = supported(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
         growth = "0" if result.growth_rate[i] == 0 else supported(result.growth_rate[i], size[i])
-        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, str(status)))
+        shares = _share_cells(result.scene, result.plane_share[i])
+        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, *shares, str(status)))
     title = f"Natural modes at {result.speed:.10g} rad/s, by {result.provenance.method}"
-    return table(
-        title, ("mode", "frequency [Hz]", "relative error", "growth rate [1/s]", "status"), rows, (4,)
+    heads = (
+        "mode",
+        "frequency [Hz]",
+        "relative error",
+        "growth rate [1/s]",
+        *_share_heads(result.scene),
+        "status",
     )
+    return table(title, heads, rows, (len(heads) - 1,))
+
+
+def _share_heads(scene: Scene) -> list[str]:
+    """Head of the column of the shares of a plane; none where one plane is modelled."""
+    from beamdyn.spectrum.planes import first_drawn, name_directions
+
+    if scene.physics.planes == 1:
+        return []
+    return [f"share of {name_directions(scene.mount)[first_drawn(scene.mount)][1]}"]
+
+
+def _share_cells(scene: Scene, share: np.ndarray) -> list[str]:
+    """Share of a mode's energy in the direction that `_share_heads` names."""
+    from beamdyn.spectrum.planes import first_drawn
+
+    return [] if scene.physics.planes == 1 else [f"{share[first_drawn(scene.mount)]:.3f}"]
 
 
 def locus_table(result: Locus) -> Group:
@@ -63,9 +86,17 @@ def _select_speeds(result: Locus) -> np.ndarray:
 
 def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
     """Frequency of a mode at speed s, or its status and growth rate; `size` is the absolute error [rad/s]."""
-    if result.status[s, mode] == "stable":
-        return supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
-    return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
+    if result.status[s, mode] not in ("stable", "neutral"):
+        return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
+    frequency = supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
+    return " ".join([frequency, *_direction_cells(result.scene, result.plane_share[s, mode])])
+
+
+def _direction_cells(scene: Scene, share: np.ndarray) -> list[str]:
+    """Name of the direction in which a mode mostly bends; none where one plane is modelled."""
+    from beamdyn.spectrum.planes import name_directions
+
+    return [] if scene.physics.planes == 1 else [name_directions(scene.mount)[int(share.argmax())][1]]
 
 
 def limits_table(result: SettingAngleLimits) -> Group:
@@ -150,12 +181,13 @@ def _describe_errors(run: Transient) -> str:
 
 
 def crossings_table(result: Crossings) -> Group:
-    """Table of resonance speeds."""
+    """Table of resonance speeds, with the plane of each mode where two are modelled."""
     rows = [
         (
             supported(c.speed, c.error * c.speed),
             f"{c.line.name}: {c.line.multiple:.6g} times the speed",
             str(c.mode) if c.second_mode is None else f"{c.mode} and {c.second_mode}",
+            *_plane_cells(result, c),
             supported(c.frequency, c.error * c.frequency),
             c.kind,
         )
@@ -163,7 +195,16 @@ def crossings_table(result: Crossings) -> Group:
     ]
     number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
     title = f"{number}, by {result.provenance.method}. {result.extent}"
-    return table(title, ("speed [rad/s]", "line", "mode", "frequency [Hz]", "kind"), rows, (1, 4))
+    plane = ["along, across [%]"] * (result.scene.physics.planes == 2)
+    heads = ("speed [rad/s]", "line", "mode", *plane, "frequency [Hz]", "kind")
+    return table(title, heads, rows, (1, len(heads) - 1))
+
+
+def _plane_cells(result: Crossings, crossing: Crossing) -> Iterator[str]:
+    """Share of the energy of each mode in the two directions, where two are modelled."""
+    if result.scene.physics.planes == 2:
+        shares = [s for s in (crossing.plane_share, crossing.second_plane_share) if s is not None]
+        yield " and ".join(f"{100 * along:.0f}, {100 * across:.0f}" for along, across in shares)
 
 
 def steady_table(result: SteadyResponse) -> Group:
@@ -172,11 +213,22 @@ def steady_table(result: SteadyResponse) -> Group:
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
     shown = _select_response_speeds(result.status, peaks_at)
     error = result.error * result.bound
-    sizes = [_millimetres(values, error) for values in (result.amplitude, result.bound)]
-    columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
+    by_direction = _largest_by_direction(result)
+    sizes = result.amplitude, *by_direction.values(), result.bound
+    cells = [_millimetres(values, error) for values in sizes]
+    columns = [_speed_cells(result.speeds), *cells, _status_cells(result.status, peaks_at)]
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
-    heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
-    return table(title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (3,))
+    largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in by_direction))
+    heads = ("speed [rad/s]", *largest, "sum of the lines [mm]", "status")
+    return table(
+        title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
+    )
+
+
+def _largest_by_direction(result: SteadyResponse) -> dict[str, np.ndarray]:
+    """Largest tip deflection in the direction of bending and across, where both are modelled."""
+    names = ("along", "across") if result.scene.physics.planes == 2 else ()
+    return {name: result.largest_tip(direction) for direction, name in enumerate(names)}
 
 
 def sweep_table(result: Sweep) -> Group:
@@ -248,17 +300,28 @@ def _selection_note(shown: np.ndarray, all_: np.ndarray) -> str:
 
 
 def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate and status of each mode."""
-    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status"
-    columns = result.frequency, result.error, result.growth_rate, result.status
+    """Frequency, error, growth rate and status of each mode; of two planes the share of each."""
+    names, shares = _share_columns(result)
+    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status", *names
+    columns = result.frequency, result.error, result.growth_rate, result.status, *shares
     for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
         yield mode, result.speed, *row
 
 
+def _share_columns(result: Modes | Locus) -> tuple[list[str], list[np.ndarray]]:
+    """Names and values of the shares of the two directions of bending; none where one plane is modelled."""
+    if result.scene.physics.planes == 1:
+        return [], []
+    names = ["share_in_direction_of_bending", "share_across"]
+    return names, [result.plane_share[..., 0], result.plane_share[..., 1]]
+
+
 def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate, status and tracking confidence of each mode, one row per speed."""
+    """Frequency, error, growth rate, status, confidence, shares of planes of each mode, one row per speed."""
     names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
-    columns = result.frequency, result.error, result.growth_rate, result.status, result.confidence
+    columns = [result.frequency, result.error, result.growth_rate, result.status, result.confidence]
+    further, shares = _share_columns(result)
+    names, columns = (*names, *further), [*columns, *shares]
     numbers = range(1, result.frequency.shape[1] + 1)
     yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
     for speed, *rows in zip(result.speeds.tolist(), *(column.tolist() for column in columns), strict=True):
@@ -283,18 +346,23 @@ def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
 
 
 def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
-    """Resonance speeds, one row each."""
+    """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
     first = "speed_rad_per_s", "relative_error", "frequency_Hz"
-    yield *first, "line", "multiple", "mode", "second_mode", "kind"
+    planes = ("share_across", "second_share_across") if result.scene.physics.planes == 2 else ()
+    yield *first, "line", "multiple", "mode", "second_mode", "kind", *planes
     for c in result:
         second = "" if c.second_mode is None else c.second_mode
-        yield c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
+        shares = c.plane_share[1], "" if c.second_plane_share is None else c.second_plane_share[1]
+        row = c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
+        yield *row, *shares[: len(planes)]
 
 
 def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
-    """Steady amplitude, growth rate, their errors, and status over speed."""
+    """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
     growth = "growth_rate_per_s", "growth_rate_error_per_s"
-    yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", *growth, "status"
-    sizes = result.speeds, result.amplitude, result.bound, result.error
+    by_direction = _largest_by_direction(result)
+    heads = "amplitude_m", *(f"largest_{name}_m" for name in by_direction), "sum_of_lines_m"
+    yield "speed_rad_per_s", *heads, "relative_error", *growth, "status"
+    sizes = result.speeds, result.amplitude, *by_direction.values(), result.bound, result.error
     columns = *sizes, result.growth_rate, result.growth_rate_error, result.status
     yield from zip(*(column.tolist() for column in columns), strict=True)

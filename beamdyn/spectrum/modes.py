@@ -15,7 +15,6 @@ from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
-from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -24,9 +23,11 @@ from beamdyn.modal.choice import (
 )
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
+from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
+from beamdyn.spectrum.planes import first_drawn, name_directions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +53,7 @@ class Modes(Result):
     growth_rate : ndarray, shape (m,)
         Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
     status : ndarray of str, shape (m,)
-        "stable", "divergence", "flutter" or "overdamped".
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (m,)
         s in exp(s t) [1/s].
     tip, tip_across : ndarray, shape (m,)
@@ -108,8 +109,13 @@ class Modes(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
         from beamdyn.output.plots import plot_shapes
+        from beamdyn.output.plots_by_plane import plot_shapes_by_plane
 
         x = np.linspace(0, self.scene.beam.length, 201)
+        if self.scene.physics.planes == 2:
+            order, words = _drawn_order(self.scene)
+            shapes = np.stack([np.real(self.shape(x, direction)) for direction in order], axis=1)
+            return plot_shapes_by_plane(x, shapes, self.labels(), words, ax)
         return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax)
 
     def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
@@ -124,6 +130,12 @@ class Modes(Result):
         return [
             _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
         ]
+
+
+def _drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
+    """Directions that are drawn solid and dashed, and their names."""
+    solid, names = first_drawn(scene.mount), name_directions(scene.mount)
+    return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
 
 def _label(i: int, frequency: float, growth: float) -> str:
@@ -208,31 +220,14 @@ def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return vectors / phase
 
 
-def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Share of the kinetic energy of modes (S, n, k) in the two directions of deflection: (S, k, 2)."""
-    if equations.planes == 1:
-        return np.tile([1.0, 0.0], (len(vectors), vectors.shape[2], 1))
-    energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
-    by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
-    total = energy.sum(axis=1)
-    return np.stack(by_plane, axis=2) / np.where(total == 0, 1.0, total)[..., None]
-
-
-def _coordinates(equations: Equations, direction: int) -> np.ndarray:
-    """Indices of the coordinates, before a reduction, that deflect the beam in a direction."""
-    return equations.places(n for n, d in equations.deflections.items() if d.direction == direction)
-
-
 def _status(s: np.ndarray) -> np.ndarray:
     growing, oscillating = np.real(s) > 0, np.imag(s) != 0
-    names = ["flutter", "divergence", "stable"]
-    return np.select(
-        [growing & oscillating, growing, oscillating], names, np.where(s == 0, "divergence", "overdamped")
-    )
+    names = ["flutter", "divergence", "stable", "neutral"]
+    return np.select([growing & oscillating, growing, oscillating, s == 0], names, "overdamped")
 
 
 def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
-    return np.where(status == "stable", np.imag(s) / (2 * np.pi), np.nan)
+    return np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -309,7 +304,7 @@ class Locus(Result):
     error : ndarray, shape (S, m)
         Estimated relative error of the eigenvalues.
     status : ndarray of str, shape (S, m)
-        "stable", "divergence", "flutter" or "overdamped".
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (S, m)
         s in exp(s t) [1/s].
     plane_share : ndarray, shape (S, m, 2)
@@ -341,7 +336,11 @@ class Locus(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
         from beamdyn.output.plots import plot_locus
+        from beamdyn.output.plots_by_plane import plot_locus_by_plane
 
+        if self.scene.physics.planes == 2:
+            (solid, _), words = _drawn_order(self.scene)
+            return plot_locus_by_plane(self.speeds, self.frequency, self.plane_share[:, :, solid], words, ax)
         return plot_locus(self.speeds, self.frequency, ax)
 
 
