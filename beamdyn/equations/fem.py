@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
@@ -40,7 +40,7 @@ class Fem:
 
     elements: int = 80
     mesh: Literal["graded", "uniform"] = "graded"
-    on_each: int = 2
+    on_each: int = field(default=2, repr=False)
 
     def __post_init__(self) -> None:
         remedy = "discretization='ritz' needs far fewer"
