@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 import beamdyn as bd
 from beamdyn.scene.motion import MotionSample
+from beamdyn.transient.trajectory import Trajectory
 
 LENGTH, MASS, STIFFNESS, SECOND = 1.2, 2.0, 60.0, 900.0
 TWIST = P([0.3, 0.8])
@@ -157,6 +158,7 @@ def test_second_route() -> None:
 def test_energy_is_constant_at_steady_speed(physics: bd.Physics) -> None:
     scene = replace(SCENE, physics=physics, motion=bd.SteadyRotation(7.0), gravity=0.0)
     run = bd.simulate(scene, 2.0, 5)
+    assert isinstance(run.path, Trajectory)
     segment = run.path.segments[0]
     ends = segment.start + segment.h * np.arange(0, len(segment.acceleration), 3)
     kinetic = (run.velocities**2).sum(axis=1).max() / 2
