@@ -72,7 +72,10 @@ def locus_table(result: Locus) -> Group:
         confidence = f"{result.confidence[s].min():.2f}"
         rows.append((f"{result.speeds[s]:.8g}", *cells, f"{result.error[s].max():.0e}", confidence))
     heads = [f"mode {mode} [Hz]" for mode in range(1, result.frequency.shape[1] + 1)]
-    title = f"Natural frequencies, by {result.provenance.method}{_selection_note(shown, result.speeds)}"
+    title = (
+        f"Natural frequencies{_direction_note(result.scene)}, by {result.provenance.method}"
+        f"{_selection_note(shown, result.speeds)}"
+    )
     return table(title, ("speed [rad/s]", *heads, "largest error", "tracking"), rows, ())
 
 
@@ -93,10 +96,19 @@ def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
 
 
 def _direction_cells(scene: Scene, share: np.ndarray) -> list[str]:
-    """Name of the direction in which a mode mostly bends; none where one plane is modelled."""
-    from beamdyn.spectrum.planes import name_directions
+    """Letter of the direction in which a mode mostly bends; none where one plane is modelled."""
+    from beamdyn.equations.directions import name_directions
 
-    return [] if scene.physics.planes == 1 else [name_directions(scene.mount)[int(share.argmax())][1]]
+    return [] if scene.physics.planes == 1 else [name_directions(scene.mount)[int(share.argmax())][1][0]]
+
+
+def _direction_note(scene: Scene) -> str:
+    """What the letters beside frequencies mean; empty where one plane is modelled."""
+    from beamdyn.equations.directions import name_directions
+
+    words = [word for _, word in name_directions(scene.mount)]
+    note = "; ".join(f"{word[0]}: mostly {word}" for word in words)
+    return "" if scene.physics.planes == 1 else f" ({note})"
 
 
 def limits_table(result: SettingAngleLimits) -> Group:
