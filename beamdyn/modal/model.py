@@ -8,9 +8,8 @@ from functools import cached_property
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
-from beamdyn.modal.eigen import Solver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modal.uncoupled import UncoupledSolver, solver_of
+from beamdyn.modal.uncoupled import AnySolver, solver_of
 from beamdyn.scene.scene import Scene
 
 
@@ -35,7 +34,7 @@ class Model(FieldsOnly):
         return assemble_equations(self.scene, self.discretization)
 
     @cached_property
-    def solver(self) -> Solver | UncoupledSolver:
+    def solver(self) -> AnySolver:
         """Solver of the eigenproblem at steady speeds."""
         return solver_of(self.equations)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from beamdyn.modal.large import LargeSolver
 LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 
 
-def solver_of(equations: Equations) -> Solver | LargeSolver | UncoupledSolver:
+def solver_of(equations: Equations) -> AnySolver:
     """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart."""
     pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
     return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
@@ -105,3 +106,6 @@ def _order(eigenvalue: np.ndarray) -> np.ndarray:
     """Order (S, k) of eigenvalues by squared frequency, that of a growing mode being negative."""
     sign = np.where((np.imag(eigenvalue) == 0) & (np.real(eigenvalue) > 0), -1.0, 1.0)
     return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")
+
+
+AnySolver: TypeAlias = Solver | LargeSolver | UncoupledSolver

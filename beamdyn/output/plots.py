@@ -16,6 +16,7 @@ _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "osD^vXP"
 _MOST_THICK = 2000  # samples above which a line over time is drawn thin
 _MOST_INSIDE = 6  # entries above which the legend stands beside the axes
+_LONGEST_INSIDE = 28  # letters of an entry above which it stands below them
 SPEED_LABEL = "angular speed [rad/s]"
 
 
@@ -445,9 +446,12 @@ def is_isolated(y: np.ndarray) -> np.ndarray:
 
 
 def add_legend(ax: Axes) -> Axes:
-    """Add a legend, beside the axes if it is long."""
-    count = len(ax.get_legend_handles_labels()[1])
-    beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
-    place: dict[str, Any] = beside if count > _MOST_INSIDE else {"loc": "best"}
+    """Add a legend: beside the axes if it has many entries, below them if these are long."""
+    labels = ax.get_legend_handles_labels()[1]
+    place: dict[str, Any] = {"loc": "best"}
+    if max(map(len, labels), default=0) > _LONGEST_INSIDE:
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
+    elif len(labels) > _MOST_INSIDE:
+        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
     ax.legend(fontsize=10, **place)
     return ax

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from beamdyn.common.pictures import COLOURS
-from beamdyn.output.plots import SPEED_LABEL, is_isolated, set_up_axes
+from beamdyn.output.plots import SPEED_LABEL, add_legend, is_isolated, set_up_axes
 
 
 def plot_locus_by_plane(
@@ -114,7 +114,4 @@ def _name_colour(ax: Axes, label: str, i: int) -> None:
 def _name_planes(ax: Axes, words: Sequence[str]) -> Axes:
     for dashes, text in zip(("-", "--"), words, strict=True):
         ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=text)
-    ax.legend(
-        fontsize=10, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2
-    )  # as its entries are long
-    return ax
+    return add_legend(ax)
