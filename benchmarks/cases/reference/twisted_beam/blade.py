@@ -1,0 +1,102 @@
+"""The beam: plain functions and numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+Function = Callable[[np.ndarray], np.ndarray]
+Pair = tuple[Function, Function]
+
+
+def constant(value: float) -> Function:
+    return lambda x: np.full(np.shape(x), float(value))
+
+
+_ONE, _NONE = constant(1), constant(0)
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body at the tip, its axes those of the tip's section (angle psi(1)).
+
+    Parameters
+    ----------
+    mass, offset
+        Mass, and distance of its centre of gravity beyond the tip along the normal of the last section.
+    inertia, transverse, axial
+        Moments of inertia about the axis of the first bending, about its direction, about the beam axis.
+    """
+
+    mass: float = 0.0
+    offset: float = 0.0
+    inertia: float = 0.0
+    transverse: float = 0.0
+    axial: float = 0.0
+
+    def moments(self, psi: float) -> tuple[np.ndarray, np.ndarray]:
+        """Kinetic matrix J_t of the rates of p, and the matrix W_t of the spin."""
+        c, s = math.cos(psi), math.sin(psi)
+        about_2 = self.transverse * c**2 + self.inertia * s**2
+        about_3 = self.transverse * s**2 + self.inertia * c**2
+        product = self.product(psi)
+        spin = np.array([[0.0, -product / 2], [-product / 2, about_3 - self.axial]])
+        return np.array([[about_3, product], [product, about_2]]), spin
+
+    def product(self, psi: float) -> float:
+        """E23."""
+        return (self.inertia - self.transverse) * math.cos(psi) * math.sin(psi)
+
+
+@dataclass(frozen=True)
+class Blade:
+    """A beam on a rotating hub; functions are of x/L, pairs of (first bending direction, second).
+
+    Parameters
+    ----------
+    mass, stiffness
+        Mass per length; bending stiffnesses.
+    twist
+        Of the section, added to `bending_angle` [rad].
+    flexibility
+        1/(kappa G A): 0 is a beam that does not shear.
+    rotary
+        Second moments of mass per length, rho I.
+    springs
+        Stiffness of the root's rotation springs along e1 and e2: infinite is clamped, 0 a hinge.
+    planes
+        1: bends along e1 only, and has no twist.
+    breakpoints
+        Where properties may jump or have a kink.
+    """
+
+    mass: Function = _ONE
+    stiffness: Pair = (_ONE, _ONE)
+    twist: Function = _NONE
+    flexibility: Pair = (_NONE, _NONE)
+    rotary: Pair = (_NONE, _NONE)
+    hub: float = 0.0
+    bending_angle: float = 0.0
+    springs: tuple[float, float] = (math.inf, math.inf)
+    body: Body = Body()
+    planes: int = 2
+    breakpoints: Sequence[float] = ()
+
+    def directions(self, x: np.ndarray | float) -> np.ndarray:
+        """Unit vectors of the first and second direction of bending in b2, b3: columns, shape (..., 2, 2)."""
+        psi = self.bending_angle + self.twist(np.asarray(x, dtype=float))
+        c, s = np.cos(psi), np.sin(psi)
+        return np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
+
+    @property
+    def tip_angle(self) -> float:
+        return self.bending_angle + float(self.twist(np.asarray(1.0)))
+
+    @property
+    def basis(self) -> np.ndarray:
+        """Columns: the directions in which the beam may bend."""
+        c, s = math.cos(self.bending_angle), math.sin(self.bending_angle)
+        return np.eye(2) if self.planes == 2 else np.array([[c], [s]])
