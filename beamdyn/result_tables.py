@@ -14,6 +14,7 @@ from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
+    from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.critical import SettingAngleLimits
     from beamdyn.spectrum.modes import Locus, Modes
     from beamdyn.steady.resonance import Crossings
@@ -31,11 +32,34 @@ def modes_table(result: Modes) -> Group:
     for i, status in enumerate(result.status):
         frequency = supported(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
         growth = "0" if result.growth_rate[i] == 0 else supported(result.growth_rate[i], size[i])
-        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, str(status)))
+        shares = _share_cells(result.scene, result.plane_share[i])
+        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, *shares, str(status)))
     title = f"Natural modes at {result.speed:.10g} rad/s, by {result.provenance.method}"
-    return table(
-        title, ("mode", "frequency [Hz]", "relative error", "growth rate [1/s]", "status"), rows, (4,)
+    heads = (
+        "mode",
+        "frequency [Hz]",
+        "relative error",
+        "growth rate [1/s]",
+        *_share_heads(result.scene),
+        "status",
     )
+    return table(title, heads, rows, (len(heads) - 1,))
+
+
+def _share_heads(scene: Scene) -> list[str]:
+    """Head of the column of the shares of a plane; none where one plane is modelled."""
+    from beamdyn.spectrum.planes import first_drawn, name_directions
+
+    if scene.physics.planes == 1:
+        return []
+    return [f"share of {name_directions(scene.mount)[first_drawn(scene.mount)][1]}"]
+
+
+def _share_cells(scene: Scene, share: np.ndarray) -> list[str]:
+    """Share of a mode's energy in the direction that `_share_heads` names."""
+    from beamdyn.spectrum.planes import first_drawn
+
+    return [] if scene.physics.planes == 1 else [f"{share[first_drawn(scene.mount)]:.3f}"]
 
 
 def locus_table(result: Locus) -> Group:
@@ -61,9 +85,17 @@ def _select_speeds(result: Locus) -> np.ndarray:
 
 def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
     """Frequency of a mode at speed s, or its status and growth rate; `size` is the absolute error [rad/s]."""
-    if result.status[s, mode] == "stable":
-        return supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
-    return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
+    if result.status[s, mode] not in ("stable", "neutral"):
+        return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
+    frequency = supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
+    return " ".join([frequency, *_direction_cells(result.scene, result.plane_share[s, mode])])
+
+
+def _direction_cells(scene: Scene, share: np.ndarray) -> list[str]:
+    """Name of the direction in which a mode mostly bends; none where one plane is modelled."""
+    from beamdyn.spectrum.planes import name_directions
+
+    return [] if scene.physics.planes == 1 else [name_directions(scene.mount)[int(share.argmax())][1]]
 
 
 def limits_table(result: SettingAngleLimits) -> Group:
@@ -221,17 +253,28 @@ def _selection_note(shown: np.ndarray, all_: np.ndarray) -> str:
 
 
 def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate and status of each mode."""
-    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status"
-    columns = result.frequency, result.error, result.growth_rate, result.status
+    """Frequency, error, growth rate and status of each mode; of two planes the share of each."""
+    names, shares = _share_columns(result)
+    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status", *names
+    columns = result.frequency, result.error, result.growth_rate, result.status, *shares
     for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
         yield mode, result.speed, *row
 
 
+def _share_columns(result: Modes | Locus) -> tuple[list[str], list[np.ndarray]]:
+    """Names and values of the shares of the two directions of bending; none where one plane is modelled."""
+    if result.scene.physics.planes == 1:
+        return [], []
+    names = ["share_in_direction_of_bending", "share_across"]
+    return names, [result.plane_share[..., 0], result.plane_share[..., 1]]
+
+
 def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate, status and tracking confidence of each mode, one row per speed."""
+    """Frequency, error, growth rate, status, confidence, shares of planes of each mode, one row per speed."""
     names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
-    columns = result.frequency, result.error, result.growth_rate, result.status, result.confidence
+    columns = [result.frequency, result.error, result.growth_rate, result.status, result.confidence]
+    further, shares = _share_columns(result)
+    names, columns = (*names, *further), [*columns, *shares]
     numbers = range(1, result.frequency.shape[1] + 1)
     yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
     for speed, *rows in zip(result.speeds.tolist(), *(column.tolist() for column in columns), strict=True):

@@ -226,10 +226,14 @@ def _describe_critical(result: CriticalPoint) -> str:
     from beamdyn.common.digits import supported
 
     if not isinf(result.speed):
+        if not result.speed:
+            return f"critical speed: 0 rad/s; the beam is unstable at every speed: {result.reason}"
         value = supported(result.speed, result.error * result.speed, 12)
         return f"critical speed: {value} rad/s; above it the beam buckles: {result.reason}"
     if isinf(result.none_below):
         return f"no critical speed: {result.reason}"
+    if not result.error:
+        return f"no critical speed below {result.none_below:.4g} rad/s: {result.reason}"
     return f"no critical speed found; there is certainly none below {result.none_below:.4g} rad/s"
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -90,7 +91,7 @@ class Solver:
     def softening(self) -> float:
         """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
         if self.pencil.shift:
-            return softening_on_springs(self.mass, self.growth, self.pencil.shift)
+            return self._softening_on_springs[0]
         lowest = -float(self.growth[0])
         return lowest if lowest > 2 * _BACKWARD * np.abs(self.growth).max() else 0.0
 
@@ -102,8 +103,14 @@ class Solver:
     @property
     def critical_rounding(self) -> float:
         """Estimated relative rounding error of the critical speed."""
+        if self.pencil.shift:
+            return self._softening_on_springs[1]
         softening = self.softening
         return float(2 * _BACKWARD * np.abs(self.growth).max() / softening) if softening else np.inf
+
+    @cached_property
+    def _softening_on_springs(self) -> tuple[float, float]:
+        return softening_on_springs(self.mass, self.growth, self.pencil.shift)
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """Compute the `count` lowest modes at each speed [rad/s].

@@ -68,10 +68,30 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         truncation = relative / 3 if order is not None else _ritz_error(distance, squared, model)
-    error = truncation + fine.rounding[:, :modes] + model.discretization.rounding
+    error = truncation + fine.rounding[:, :modes] + _integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
+    neutral = (s == 0) & _is_hinged(model)
+    resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
-    return EstimatedModes(model, coarse, fine, np.where(resolved, error, np.inf))
+    return EstimatedModes(model, coarse, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
+
+
+def _integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
+    """Relative error of eigenvalues by rounding of the integrals, which is that of a clamped beam's.
+
+    A root that turns on soft springs has lower frequencies of the same absolute error.
+    """
+    rounding, shift = model.discretization.rounding, model.solver.pencil.shift
+    if not (rounding and shift):
+        return rounding
+    size = np.abs(squared)
+    return rounding * (shift + size) / np.where(size == 0, 1.0, size)
+
+
+def _is_hinged(model: Model) -> bool:
+    """Whether the root turns without a spring: then a frequency within rounding of 0 is 0."""
+    planes = model.scene.physics.planes
+    return 0.0 in model.scene.mount.root_stiffnesses[:planes]
 
 
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
-_SMALLEST_TRIAL = 1e-12  # speed squared, over that at which rotation matters, below which it is sought in vain
+_SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
 def remove_shift(
@@ -45,7 +45,9 @@ def remove_shift(
         Relative rounding error of the frequencies.
     """
     spin = speeds[:, None, None] ** 2
-    K, size = pencil.K0 + spin * pencil.K2, np.abs(pencil.K0) + spin * np.abs(pencil.K2)
+    K = pencil.K0 + spin * pencil.K2
+    # K2 of a turn about the root is a small difference of tension and spin softening, each as large as M.
+    size = np.abs(pencil.K0) + spin * (np.abs(pencil.K2) + np.abs(pencil.M))
     quotient = np.einsum("snk,snk->sk", v, K @ v)
     lost = _BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
     difference = squared - pencil.shift
@@ -55,7 +57,7 @@ def remove_shift(
     return removed, np.where(low, lost / nonzero, rounding * squared / nonzero)
 
 
-def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> float:
+def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> tuple[float, float]:
     """Find 1/speed^2 at which the stiffness I - shift mass + speed^2 diag(growth) becomes singular.
 
     Its lowest eigenvalue is a concave function of the squared speed: once positive, it vanishes at most
@@ -72,25 +74,29 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
 
     Returns
     -------
-    float
+    softening : float
         Inverse of the squared critical speed [s2]; 0 if there is none.
+    rounding : float
+        Relative rounding error of the softening; inf if it is 0.
     """
     at_rest, spin = np.eye(len(growth)) - shift * mass, np.diag(growth)
     squared = 1 / np.abs(growth).max()
     while squared > _SMALLEST_TRIAL / np.abs(growth).max():
         stiffness = at_rest + squared * spin
-        if _is_definite(stiffness):
-            loss = scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1]
-            return float(loss / (1 + squared * loss)) if loss > _EPS else 0.0
+        if lowest := _lowest_if_definite(stiffness):
+            loss = float(scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1])
+            lost = 2 * _BACKWARD * float(np.abs(growth).max()) / lowest
+            return (loss / (1 + squared * loss), lost / loss) if loss > lost else (0.0, np.inf)
         squared /= 4
-    lowest = np.linalg.eigh(at_rest)[1][:, 0]
-    softened = lowest @ spin @ lowest < -len(growth) * _EPS * np.abs(growth).max()
-    return np.inf if softened else 0.0
+    turn = np.linalg.eigh(at_rest)[1][:, 0]
+    softened = turn @ spin @ turn < -len(growth) * _EPS * np.abs(growth).max()
+    return (np.inf, 0.0) if softened else (0.0, np.inf)
 
 
-def _is_definite(A: np.ndarray) -> bool:
+def _lowest_if_definite(A: np.ndarray) -> float:
+    """Lowest eigenvalue of a symmetric matrix; 0 if it is not positive beyond rounding."""
     values = np.linalg.eigvalsh(A)
-    return bool(values[0] > len(A) * _EPS * values[-1])
+    return float(values[0]) if values[0] > len(A) * _EPS * values[-1] else 0.0
 
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Eigensolver of equations that fall into parts without coupling, such as the two planes of a straight beam."""
+"""Eigensolver of equations that fall into parts without coupling, such as two planes of a straight beam."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "osD^vXP"
 _MOST_THICK = 2000  # samples above which a line over time is drawn thin
 _MOST_INSIDE = 6  # entries above which the legend stands beside the axes
-_SPEED = "angular speed [rad/s]"
+SPEED_LABEL = "angular speed [rad/s]"
 
 
 def plot_locus(
@@ -126,10 +126,10 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
     """
     largest = np.abs(shapes).max(axis=1, keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = _set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
+    ax = set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
     ax.axhline(0, color="0.4", linewidth=0.8)
     _draw_lines(ax, x, scaled, labels)
-    return _add_legend(ax)
+    return add_legend(ax)
 
 
 def plot_campbell(
@@ -174,7 +174,7 @@ def plot_campbell(
                 zorder=3,
             )
     ax.set_ylim(0, top)
-    return _add_legend(ax)
+    return add_legend(ax)
 
 
 def plot_response(
@@ -197,7 +197,7 @@ def plot_response(
     -------
     Axes
     """
-    ax = _set_up_axes(ax, _SPEED, "largest tip deflection [mm]")
+    ax = set_up_axes(ax, SPEED_LABEL, "largest tip deflection [mm]")
     rows = {"largest over both phases": np.asarray(amplitude)}
     if bound is not None:
         rows["sum of the lines"] = np.asarray(bound)
@@ -206,7 +206,7 @@ def plot_response(
         line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
-    return _add_legend(ax)
+    return add_legend(ax)
 
 
 def plot_transient(t: np.ndarray, tip: np.ndarray, ax: Axes | None = None) -> Axes:
@@ -225,7 +225,7 @@ def plot_transient(t: np.ndarray, tip: np.ndarray, ax: Axes | None = None) -> Ax
     -------
     Axes
     """
-    ax = _set_up_axes(ax, "time [s]", "tip deflection [mm]")
+    ax = set_up_axes(ax, "time [s]", "tip deflection [mm]")
     ax.plot(t, 1e3 * np.asarray(tip), color=COLOURS[0], linewidth=0.8 if len(t) > _MOST_THICK else 1.8)
     ax.margins(x=0)
     return ax
@@ -247,7 +247,7 @@ def plot_sweep(speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None) ->
     -------
     Axes
     """
-    ax = _set_up_axes(ax, _SPEED, "peak of the tip deflection [mm]")
+    ax = set_up_axes(ax, SPEED_LABEL, "peak of the tip deflection [mm]")
     _draw_lines(ax, speeds, [1e3 * np.asarray(peaks)], ["peak"])
     ax.set_ylim(bottom=0)
     return ax
@@ -276,7 +276,7 @@ def plot_work_precision(
     -------
     Axes
     """
-    ax = _set_up_axes(ax, "time [s]", "relative error")
+    ax = set_up_axes(ax, "time [s]", "relative error")
     ax.set(xscale="log", yscale="log")
     ax.set_title(title, fontsize=11)
     ax.tick_params(which="minor", labelsize=8)
@@ -292,7 +292,7 @@ def plot_work_precision(
             label=name,
             **_line_style(i),
         )
-    return _add_legend(ax)
+    return add_legend(ax)
 
 
 def _clip(points: np.ndarray) -> np.ndarray:
@@ -350,7 +350,7 @@ def mark_points(
     Axes
     """
     ax.plot(x, y, "o", color="black", markerfacecolor="white", markersize=7, zorder=3, label=label)
-    return _add_legend(ax)
+    return add_legend(ax)
 
 
 def mark_critical(ax: Axes, speed: float) -> Axes:
@@ -372,7 +372,7 @@ def mark_critical(ax: Axes, speed: float) -> Axes:
         ax.axvline(speed, color="0.3", linestyle="--", linewidth=1, label=f"critical speed {speed:.5g} rad/s")
         ax.axvspan(speed, right, color="0.93", zorder=0)
         ax.set_xlim(left, right)
-    return _add_legend(ax)
+    return add_legend(ax)
 
 
 def _plot_over_speed(
@@ -384,13 +384,13 @@ def _plot_over_speed(
     critical_speed: float | None,
 ) -> Axes:
     values = np.asarray(values)
-    ax = _set_up_axes(ax, _SPEED, quantity)
+    ax = set_up_axes(ax, SPEED_LABEL, quantity)
     _draw_lines(ax, speeds, values.T, labels or [f"mode {i}" for i in range(1, values.shape[1] + 1)])
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
-    return _add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
+    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
 
 
-def _set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
+def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
     """Label the axes, new ones if none are given, with a grid and plain numbers."""
     ax = _new_axes() if ax is None else ax
     ax.set_xlabel(xlabel, fontsize=12)
@@ -412,7 +412,7 @@ def _new_axes() -> Axes:
 def _draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
     for i, (y, label) in enumerate(zip(rows, labels, strict=True)):
         (line,) = ax.plot(x, y, label=label, linewidth=1.8, **_line_style(i))
-        if (isolated := _is_isolated(y)).any():
+        if (isolated := is_isolated(y)).any():
             line.set(marker=".", markevery=isolated)
 
 
@@ -422,13 +422,14 @@ def _line_style(i: int) -> dict[str, Any]:
     return {"color": COLOURS[colour], "linestyle": _DASHES[cycle % len(_DASHES)]}
 
 
-def _is_isolated(y: np.ndarray) -> np.ndarray:
+def is_isolated(y: np.ndarray) -> np.ndarray:
     """Whether each value lies between gaps: a line does not show it, so that it needs a marker."""
     known = np.pad(np.isfinite(y), 1)
     return known[1:-1] & ~known[:-2] & ~known[2:]
 
 
-def _add_legend(ax: Axes) -> Axes:
+def add_legend(ax: Axes) -> Axes:
+    """Add a legend, beside the axes if it is long."""
     count = len(ax.get_legend_handles_labels()[1])
     beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
     place: dict[str, Any] = beside if count > _MOST_INSIDE else {"loc": "best"}

@@ -57,10 +57,10 @@ from beamdyn.equations.root_motion import root_motion
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
-from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
+from beamdyn.spectrum.planes import refuse_coupled_planes, separate_planes
 
 _EPS = float(np.finfo(float).eps)
 _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
@@ -71,6 +71,7 @@ _PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of t
 _CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
 # The parts of the squared Ritz value that are tried as such a bound.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
+_SPRINGS = "root_stiffness", "second_root_stiffness"
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
 _FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility over 1/EI: aimed at, and accepted
 
@@ -113,7 +114,8 @@ class FrequencyBounds(Result):
 def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
     """Compute guaranteed lower and upper bounds of the natural frequencies of bending at a steady speed.
 
-    They hold for the Euler-Bernoulli model without stretch and damping, see docs/bounds.md.
+    They hold for the Euler-Bernoulli model without damping, in one plane or in two that nothing couples; see
+    docs/bounds.md.
 
     Parameters
     ----------
@@ -131,15 +133,17 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     Raises
     ------
     ValueError
-        If an argument is out of its range, or the scene has stretch or damping.
+        If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
+        rotary inertia, damping, springs at the root, or planes that the twist or the bending angle couples.
     """
     start = perf_counter()
     check_scene(scene)
     speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
     _check_input(scene, speed, modes)
-    scaled, time = _nondimensional(scene)
-    lower, upper, functions = _enclose(scaled, speed * time, modes)
-    lower, upper = _widen(lower, -8) / time**2, _widen(upper, 8) / time**2
+    enclosed = [_enclose_plane(plane, speed, modes) for plane in separate_planes(scene, speed != 0)]
+    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
+    lower, upper = (np.sort(np.concatenate(b))[:modes] for b in ([e[i] for e in enclosed] for i in (0, 1)))
+    functions = max(e[2] for e in enclosed)
     low, high = _frequency(lower, -8), _frequency(upper, 8)
     return FrequencyBounds(
         speed=speed,
@@ -155,10 +159,19 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     )
 
 
+def _enclose_plane(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Bounds of the squared angular frequencies in one plane, and the functions of the last basis."""
+    scaled, time = _nondimensional(scene)
+    lower, upper, functions = _enclose(scaled, speed * time, modes)
+    return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, functions
+
+
 def _check_input(scene: Scene, speed: float, modes: int) -> None:
     _check_model(scene)
+    refuse_coupled_planes(scene, speed)
     check_speeds(speed, "speed")
-    most = _most_functions(scene.beam) * (len(scene.beam.breakpoints) - 1)
+    planes = separate_planes(scene, speed != 0)
+    most = min(_most_functions(plane.beam) * (len(plane.beam.breakpoints) - 1) for plane in planes)
     if modes > most:
         raise ValueError(
             f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
@@ -168,15 +181,16 @@ def _check_input(scene: Scene, speed: float, modes: int) -> None:
 
 def _check_model(scene: Scene) -> None:
     """Refuse, by name, what the theorem does not cover."""
-    bound = "bounds are known for an undamped slender beam on a clamped root that bends in one plane"
-    physics, plain = scene.physics, Physics()
-    for name in ("planes", "shear", "rotary_inertia", "stretch"):
-        if (value := getattr(physics, name)) != getattr(plain, name):
-            raise InvalidValue(f"physics.{name}", value, bound, "leave it out of physics")
+    bound = "bounds are known for an undamped slender beam on a clamped root"
+    for name in ("shear", "rotary_inertia", "stretch"):
+        if getattr(scene.physics, name):
+            raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
     if scene.damping_ratio:
         raise InvalidValue("damping_ratio", scene.damping_ratio, bound, "give 0")
-    if not scene.is_slender_beam_in_one_plane:
-        raise InvalidValue("root_stiffness", scene.mount.root_stiffness, bound, "leave it out", "N m/rad")
+    springs = {name: getattr(scene.mount, name) for name in _SPRINGS[: scene.physics.planes]}
+    for name, value in springs.items():
+        if np.isfinite(value):
+            raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
 
 
 def _widen(values: np.ndarray, units: int) -> np.ndarray:

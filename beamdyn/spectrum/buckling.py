@@ -18,6 +18,23 @@ whatever its slope there, and D does not depend on it: a short bend at the tip g
 If T_22 < 0, or T_22 = 0 and T_12 is not, the tip body topples, however stiff the beam.  If a <= 0 and
 T >= 0, then F >= 0.
 
+**Two planes.**  Neither bending stiffness nor twist is in F, which in the directions in the plane of
+rotation (c = 1) and out of it (s = 1) falls into two forms of this kind: a critical speed exists if it does
+in either.  A tip body has J_e - J_1 out of the plane, of the axes of its section.
+
+**Shear** frees the slope of the sections, hence D, from that of the deflection: F is the same.
+
+**Springs** at the root are stiffness, and change nothing.  At a hinge, a rigid turn u = x has no stiffness:
+
+    F(x) = s^2 (I_0 + J_e - J_1 - int rho I) - a S_1,  I_0 = int rho A x^2 + m (L + eps)^2,
+
+with S_1 = int rho A x + m (L + eps).  If F(x) < 0, the beam is unstable at every speed, if F(x) = 0, neutral.
+
+**Rotary inertia** of sections that tilt out of the plane of rotation, and a tip body with a product of
+inertia between both planes, may lower F without limit in a bend of no length.  Where F without them is
+positive, `beamdyn.spectrum.toppling` says below which speed they buckle nothing, usually one at which the
+beam would long have been torn apart.
+
 **String.**  Else, least over D, F is the form of a string with a mass at its end.  Its lowest eigenvalue
 decides; it converges fast, as without bending stiffness there are no thin layers.
 """
@@ -25,6 +42,7 @@ decides; it converges fast, as without bending stiffness there are no thin layer
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,10 +50,18 @@ from scipy.linalg import eigh
 
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import FIXED
+from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.ritz import Ritz
 from beamdyn.equations.root_motion import exact_cos_sin
-from beamdyn.scene.beam import TipMass
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.profile import FRACTION, Profile
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import centrifugal_inertia, section_tensor
+from beamdyn.spectrum.toppling import (
+    least_toppling_speed,
+    tears_before_toppling,
+    topples_in_slender_limit,
+)
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
@@ -52,17 +78,50 @@ class Buckling:
         None if this could not be decided.
     why : str
         The argument, in words.
+    speed : float or None
+        Critical speed [rad/s], where the argument supplies it: 0 if the beam is unstable at every speed, inf
+        if it is torn apart first; None if it is to be sought.
+    none_below : float
+        Where only the inertia of tilting sections can buckle the beam: a speed [rad/s] below which it does
+        not; else 0.
     """
 
     exists: bool | None
     why: str
+    speed: float | None = None
+    none_below: float = 0.0
 
 
 def decide_buckling(scene: Scene) -> Buckling:
     """Decide whether bending has a critical speed, by the arguments in the docstring of this module."""
-    if not scene.is_slender_beam_in_one_plane:
-        return Buckling(None, "the argument that decides it is known for a slender beam in one plane")
-    form = _SpinForm.of(scene)
+    if (turning := _least_turning(scene)) < 0:
+        return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
+    by_plane = [_decide_in_plane(form) for form in _SpinForm.of_planes(scene)]
+    found = next((b for b in by_plane if b.exists), None) or next(
+        (b for b in by_plane if b.exists is None), None
+    )
+    if found is not None:
+        return found
+    if math.isfinite(toppling := least_toppling_speed(scene)):
+        return _decide_toppling(scene, toppling)
+    if turning == 0:
+        return Buckling(
+            False, "the rotation stiffens the beam against every deflection but a turn about its hinge"
+        )
+    return by_plane[0]
+
+
+def _decide_toppling(scene: Scene, none_below: float) -> Buckling:
+    """Decide where the rotation stiffens the beam, but for the inertia of what tilts."""
+    why = (
+        "the rotation stiffens the beam; only the rotary inertia of what tilts out of the plane can buckle it"
+    )
+    exists = True if topples_in_slender_limit(scene) else None
+    return Buckling(exists, why, math.inf if tears_before_toppling(scene) else None, none_below)
+
+
+def _decide_in_plane(form: _SpinForm) -> Buckling:
+    """Decide for a slender beam in one plane."""
     if form.tension_at_root < 0 or form.tension_at_tip < 0:
         return Buckling(True, "the rotation compresses a part of the beam")
     if form.toppling < 0 or (form.toppling == 0 and form.coupling):
@@ -78,8 +137,8 @@ class _SpinForm:
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    beam : Beam
+        The beam.
     inward : float
         a [m].
     cos_squared : float
@@ -96,7 +155,7 @@ class _SpinForm:
         Determinant of T, times L / m [kg m3].
     """
 
-    scene: Scene
+    beam: Beam
     inward: float
     cos_squared: float
     tip_mass: float
@@ -107,16 +166,26 @@ class _SpinForm:
     tip_determinant: float
 
     @classmethod
-    def of(cls, scene: Scene) -> _SpinForm:
-        """Compute the numbers of a scene."""
-        beam, L, tip = scene.beam, scene.beam.length, scene.beam.tip or TipMass(0.0)
-        a = scene.mount.radius * exact_cos_sin(scene.mount.setting_angle)[0]
-        cos2, sin2 = (v**2 for v in exact_cos_sin(scene.mount.bending_angle))
+    def of_planes(cls, scene: Scene) -> Iterator[_SpinForm]:
+        """Yield the form of a beam in one plane, or those in the plane of rotation and out of it."""
+        beam, tip, a = scene.modelled_beam, scene.beam.tip or TipMass(0.0), _inward(scene)
+        if scene.physics.planes == 1:
+            cos2, sin2 = (v**2 for v in exact_cos_sin(scene.mount.bending_angle))
+            tilt = sin2 * (tip.inertia_about_bending_direction - tip.axial_inertia)
+            yield cls.of(beam, a, cos2, sin2, tilt)
+            return
+        n = np.array(plane_components(scene)[1])
+        yield cls.of(beam, a, 1.0, 0.0, 0.0)
+        yield cls.of(beam, a, 0.0, 1.0, float(n @ centrifugal_inertia(tip, beam.tip_twist) @ n))
+
+    @classmethod
+    def of(cls, beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> _SpinForm:
+        """Compute the numbers of a beam that bends in one plane; `tilt` is s^2 (J_e - J_1)."""
+        L, tip = beam.length, beam.tip or TipMass(0.0)
         m, eps, reach = tip.mass, tip.offset, L + tip.offset - a
         n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
-        tilt = sin2 * (tip.inertia_about_bending_direction - tip.axial_inertia)
         return cls(
-            scene=scene,
+            beam=beam,
             inward=a,
             cos_squared=cos2,
             tip_mass=m,
@@ -154,6 +223,47 @@ def _sum(*terms: float) -> float:
     return total if abs(total) > _ROUNDING * math.fsum(map(abs, terms)) else 0.0
 
 
+def _inward(scene: Scene) -> float:
+    """Distance a of the root from the axis of rotation, against the direction of the beam [m]."""
+    return scene.mount.radius * exact_cos_sin(scene.mount.setting_angle)[0]
+
+
+def _least_turning(scene: Scene) -> float:
+    """Least of the form F over rigid turns about a hinge, of unit angle [kg m2]; inf without a hinge."""
+    springs = scene.mount.root_stiffnesses[: scene.physics.planes]
+    hinges = np.flatnonzero(np.array(springs) == 0)
+    if not hinges.size:
+        return math.inf
+    tip, L = scene.beam.tip or TipMass(0.0), scene.beam.length
+    mass = scene.beam.mass_per_length
+    first, second = (
+        L ** (1 + k) * _integral(mass * weight) for k, weight in ((1, FRACTION), (2, FRACTION * FRACTION))
+    )
+    reach = L + tip.offset
+    out = np.array(plane_components(scene)[1])
+    tilting = _tilting_resistance(scene) + np.outer(out, out) * (second + tip.mass * reach**2)
+    form = tilting - _inward(scene) * (first + tip.mass * reach) * np.eye(2)
+    least = float(np.linalg.eigvalsh(form[np.ix_(hinges, hinges)])[0])
+    size = float(np.abs(tilting).max() + abs(_inward(scene)) * (first + tip.mass * reach))
+    return least if abs(least) > _ROUNDING * size else 0.0
+
+
+def _tilting_resistance(scene: Scene) -> np.ndarray:
+    """Form (2, 2) of u3' (B u')_3 of tip body and sections in a rigid turn [kg m2]."""
+    beam = scene.modelled_beam
+    B = centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist)
+    for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
+        B[i, j] -= beam.length * _integral(inertia)
+    n = np.array(plane_components(scene)[1])
+    turned = np.outer(n, n @ B)
+    return (turned + turned.T) / 2
+
+
+def _integral(profile: Profile) -> float:
+    """Integral over x/L."""
+    return float(profile.outboard_integral()(np.zeros(1))[0])
+
+
 # The string ---------------------------------------------------------------------------------------
 
 
@@ -169,7 +279,7 @@ def _decide_by_string(form: _SpinForm) -> Buckling:
 
 def _lowest_of_string(form: _SpinForm, size: int) -> float:
     """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
-    beam, segments = form.scene.beam, len(form.scene.beam.breakpoints) - 1
+    beam, segments = form.beam, len(form.beam.breakpoints) - 1
     space = Ritz(max(2, size // segments)).spaces(beam).functions(FIXED)
     n_a, n_b = axial_tension(beam)
     tension = space.gram(n_b, 1) - form.inward * space.gram(n_a, 1)

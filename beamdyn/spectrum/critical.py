@@ -13,7 +13,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import positive, within
+from beamdyn.common.checks import InvalidValue, positive, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.choice import (
@@ -34,6 +34,7 @@ from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.modes import static_load
+from beamdyn.spectrum.planes import separate_planes
 
 _SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
 _TO_HALF = 4  # steps from a basis to one of about half its size
@@ -49,12 +50,14 @@ class CriticalPoint(Result):
     Parameters
     ----------
     speed : float
-        Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which.
+        Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which; 0 if the
+        rotation turns the beam about a hinge at every speed.
     error : float
-        Its estimated relative error; 0 if there is none, inf if it is unresolved.
+        Its estimated relative error; 0 where an argument decides, inf if it is unresolved.
     none_below : float
         No critical speed lies below this [rad/s]: `speed` itself where it was found, a guaranteed bound
-        where not, inf if there is none.
+        where not, inf if there is none.  With an error of 0, only the inertia of tilting sections can
+        buckle the beam past this bound, where linear theory has long ended.
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
@@ -126,16 +129,15 @@ def critical_point(
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
-    if buckling.exists is False and not scene.physics.stretch:
-        none = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
-        return CriticalPoint(np.inf, 0.0, np.inf, buckling.why, (), none)
+    if buckling.speed == 0 or (not _can_be_sought(buckling) and not scene.physics.stretch):
+        return _argued(buckling, start)
     found, reason = _search(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = _search(models(scene, "ritz"), target)
     if scene.physics.stretch:
         without_stretch = models(_without_stretch(scene), discretization)
         found, reason = _compare_with_bending(found, without_stretch, buckling, target)
-    none_below = _none_below(scene, found)
+    none_below = _none_below(scene, found, buckling)
     names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
@@ -147,6 +149,19 @@ def critical_point(
     )
 
 
+def _can_be_sought(buckling: Buckling) -> bool:
+    """Whether bending may have a critical speed within the reach of the theory."""
+    return buckling.exists is not False and buckling.speed is None
+
+
+def _argued(buckling: Buckling, start: float) -> CriticalPoint:
+    """The answer that follows from an argument alone."""
+    provenance = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
+    speed = np.inf if buckling.speed is None else buckling.speed
+    none_below = speed if not buckling.none_below else buckling.none_below
+    return CriticalPoint(speed, 0.0, none_below, buckling.why, (), provenance)
+
+
 def _compare_with_bending(
     both: _Found, without_stretch: Iterator[Model], buckling: Buckling, target: float
 ) -> tuple[_Found, str]:
@@ -154,7 +169,7 @@ def _compare_with_bending(
 
     A basis that resolves the stretch may not see that of bending.
     """
-    if buckling.exists is not False:
+    if _can_be_sought(buckling):
         bending = _search(without_stretch, target)
         same = min(bending.error + both.error, UNRESOLVED)
         if np.isfinite(bending.speed) and bending.speed <= both.speed * (1 + same):
@@ -162,12 +177,14 @@ def _compare_with_bending(
     return both, "the rotation softens the stretch by more than the axial stiffness"
 
 
-def _none_below(scene: Scene, found: _Found) -> float:
-    """Speed below which there is no critical one [rad/s]; it is bounded for a slender beam in one plane."""
+def _none_below(scene: Scene, found: _Found, buckling: Buckling) -> float:
+    """Speed below which there is no critical one [rad/s]; it is bounded for a slender beam by planes."""
     if np.isfinite(found.error):
         return found.speed
-    bounded = scene.is_slender_beam_in_one_plane and not scene.physics.stretch
-    return bound_critical_speed(scene) if bounded else 0.0
+    if scene.physics.stretch:
+        return 0.0
+    by_plane = (bound_critical_speed(plane) for plane in separate_planes(scene))
+    return min(by_plane, default=buckling.none_below)
 
 
 def _without_stretch(scene: Scene) -> Scene:
@@ -302,7 +319,8 @@ def setting_angle_limits(
     Parameters
     ----------
     scene : Scene
-        The scene; its setting angle, motion, damping and stretch are not used.
+        The scene; its setting angle, motion, damping and stretch are not used.  In two planes the first
+        frequency is the lowest of both.
     top_speed : float
         Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
     discretization : {"ritz", "fem"} or Discretization
@@ -315,10 +333,11 @@ def setting_angle_limits(
     Raises
     ------
     ValueError
-        If the top speed is not positive, or infinite without a basis of given size.
+        If the top speed is not positive, or infinite without a basis of given size, or the root is a hinge.
     """
     start = perf_counter()
     check_scene(scene)
+    _refuse_hinge(scene)
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     scene = replace(_without_stretch(scene), damping_ratio=0.0)
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
@@ -339,6 +358,15 @@ def setting_angle_limits(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),
     )
+
+
+def _refuse_hinge(scene: Scene) -> None:
+    """Refuse a root that turns freely: there is no first frequency at rest that rises or falls."""
+    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
+    for name in names:
+        if getattr(scene.mount, name) == 0:
+            bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
+            raise InvalidValue(name, 0.0, bound, "give a spring", "N m/rad")
 
 
 def _check_top_speed(top_speed: float, bounded: bool) -> float:

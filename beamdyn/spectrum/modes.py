@@ -27,6 +27,7 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
+from beamdyn.spectrum.planes import first_drawn, name_directions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +53,7 @@ class Modes(Result):
     growth_rate : ndarray, shape (m,)
         Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
     status : ndarray of str, shape (m,)
-        "stable", "divergence", "flutter" or "overdamped".
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (m,)
         s in exp(s t) [1/s].
     tip, tip_across : ndarray, shape (m,)
@@ -108,8 +109,13 @@ class Modes(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
         from beamdyn.output.plots import plot_shapes
+        from beamdyn.output.plots_by_plane import plot_shapes_by_plane
 
         x = np.linspace(0, self.scene.beam.length, 201)
+        if self.scene.physics.planes == 2:
+            order, words = _drawn_order(self.scene)
+            shapes = np.stack([np.real(self.shape(x, direction)) for direction in order], axis=1)
+            return plot_shapes_by_plane(x, shapes, self.labels(), words, ax)
         return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax)
 
     def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
@@ -124,6 +130,12 @@ class Modes(Result):
         return [
             _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
         ]
+
+
+def _drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
+    """Directions that are drawn solid and dashed, and their names."""
+    solid, names = first_drawn(scene.mount), name_directions(scene.mount)
+    return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
 
 def _label(i: int, frequency: float, growth: float) -> str:
@@ -225,14 +237,12 @@ def _coordinates(equations: Equations, direction: int) -> np.ndarray:
 
 def _status(s: np.ndarray) -> np.ndarray:
     growing, oscillating = np.real(s) > 0, np.imag(s) != 0
-    names = ["flutter", "divergence", "stable"]
-    return np.select(
-        [growing & oscillating, growing, oscillating], names, np.where(s == 0, "divergence", "overdamped")
-    )
+    names = ["flutter", "divergence", "stable", "neutral"]
+    return np.select([growing & oscillating, growing, oscillating, s == 0], names, "overdamped")
 
 
 def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
-    return np.where(status == "stable", np.imag(s) / (2 * np.pi), np.nan)
+    return np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -309,7 +319,7 @@ class Locus(Result):
     error : ndarray, shape (S, m)
         Estimated relative error of the eigenvalues.
     status : ndarray of str, shape (S, m)
-        "stable", "divergence", "flutter" or "overdamped".
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (S, m)
         s in exp(s t) [1/s].
     plane_share : ndarray, shape (S, m, 2)
@@ -341,7 +351,11 @@ class Locus(Result):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
         from beamdyn.output.plots import plot_locus
+        from beamdyn.output.plots_by_plane import plot_locus_by_plane
 
+        if self.scene.physics.planes == 2:
+            (solid, _), words = _drawn_order(self.scene)
+            return plot_locus_by_plane(self.speeds, self.frequency, self.plane_share[:, :, solid], words, ax)
         return plot_locus(self.speeds, self.frequency, ax)
 
 

@@ -160,7 +160,7 @@ def test_guaranteed_bound_is_below_the_critical_speed_and_close() -> None:
 
 def test_stretch_has_a_critical_speed_of_its_own() -> None:
     """K_S - omega^2 M11 of a uniform rod is singular at pi/2 sqrt(EA / rho A) / L."""
-    point = bd.critical_point(replace(steel_strip(hub=1.0), stretch=True))
+    point = bd.critical_point(replace(steel_strip(hub=1.0), physics=bd.Physics(stretch=True)))
     assert point.speed == pytest.approx(math.pi / 2 * math.sqrt(200e9 / 7850), rel=1e-12)
     assert "softens the stretch" in point.reason and not point.warnings
 
@@ -168,6 +168,6 @@ def test_stretch_has_a_critical_speed_of_its_own() -> None:
 def test_bending_is_found_below_the_critical_speed_of_stretch() -> None:
     """A basis that resolves the stretch sees no bending that buckles, at a seventh of its speed."""
     for tolerance in (None, 1e-2):
-        point = bd.critical_point(replace(TANGENTIAL, stretch=True), tolerance=tolerance)
+        point = bd.critical_point(replace(TANGENTIAL, physics=bd.Physics(stretch=True)), tolerance=tolerance)
         assert abs(point.speed / HIGH["nearly tangential"][1] - 1) <= point.error <= (tolerance or 1e-9)
         assert "softens the beam" in point.reason

@@ -10,6 +10,7 @@ from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
 import beamdyn as bd
+from beamdyn.common.checks import InvalidValue
 from beamdyn.spectrum.bounds import Split, _flexibility, _reciprocal, frequency_bounds
 from benchmarks.cases.enclosure import (
     NondimensionalScene,
@@ -120,7 +121,53 @@ def test_too_many_modes_are_refused() -> None:
         frequency_bounds(HARVESTER, 0.0, 200)
 
 
-@pytest.mark.parametrize("other", [{"damping_ratio": 0.01}, {"stretch": True}])
-def test_other_models_are_refused(other: dict) -> None:
-    with pytest.raises(ValueError, match="undamped bending only"):
-        frequency_bounds(replace(HARVESTER, **other))
+BLADE = bd.Beam.rectangular(
+    1.0, 0.1, 0.03, 70e9, 2700.0, bd.TipMass(0.5, 0.02, 2e-3, 1.5e-3, 1e-3), poissons_ratio=0.3
+)
+TWISTED = replace(BLADE, twist=bd.Beam.rectangular(1, 0.1, 0.03, 70e9, 2700, twist=0.2).twist)
+
+
+@pytest.mark.parametrize(
+    "scene, speed, field",
+    [
+        (replace(HARVESTER, damping_ratio=0.01), 0.0, "damping_ratio"),
+        (replace(HARVESTER, physics=bd.Physics(stretch=True)), 0.0, "physics.stretch"),
+        (bd.Scene(BLADE, physics=bd.Physics(shear=True)), 0.0, "physics.shear"),
+        (bd.Scene(BLADE, physics=bd.Physics(rotary_inertia=True)), 0.0, "physics.rotary_inertia"),
+        (bd.Scene(BLADE, bd.Mount(root_stiffness=1.0)), 0.0, "root_stiffness"),
+        (
+            bd.Scene(BLADE, bd.Mount(second_root_stiffness=0.0), physics=bd.Physics(2)),
+            0.0,
+            "second_root_stiffness",
+        ),
+        (bd.Scene(TWISTED, physics=bd.Physics(2)), 0.0, "twist"),
+        (bd.Scene(BLADE, bd.Mount(bending_angle=0.3), physics=bd.Physics(2)), 1.0, "bending_angle"),
+    ],
+)
+def test_what_the_theorem_does_not_cover_is_refused_by_name(
+    scene: bd.Scene, speed: float, field: str
+) -> None:
+    with pytest.raises(InvalidValue, match="bounds") as caught:
+        frequency_bounds(scene, speed)
+    assert caught.value.field == field and caught.value.remedy
+
+
+@pytest.mark.parametrize("quarters", [0, 1, 3])
+@pytest.mark.parametrize("bending", [0.0, np.pi / 2, -np.pi])
+def test_bounds_of_two_planes_apart_enclose_the_modes(bending: float, quarters: int) -> None:
+    """Also with sections that are turned by quarter turns, which exchanges the planes, tip body included."""
+    twist = (
+        bd.Beam.rectangular(1, 0.1, 0.03, 70e9, 2700, twist=quarters * np.pi / 2).twist if quarters else None
+    )
+    scene = bd.Scene(replace(BLADE, twist=twist), bd.Mount(0.3, np.pi, bending), physics=bd.Physics(planes=2))
+    found, modes = frequency_bounds(scene, 150.0, 6), bd.natural_modes(scene, 150.0, 6)
+    assert (found.width < 1e-9).all()
+    assert (found.lower * (1 - modes.error) <= modes.frequency).all()
+    assert (modes.frequency <= found.upper * (1 + modes.error)).all()
+
+
+def test_at_rest_no_bending_angle_couples_the_planes() -> None:
+    scene = bd.Scene(BLADE, bd.Mount(bending_angle=0.3), physics=bd.Physics(planes=2))
+    found, modes = frequency_bounds(scene, 0.0, 4), bd.natural_modes(scene, 0.0, 4)
+    assert (found.lower * (1 - modes.error) <= modes.frequency).all()
+    assert (modes.frequency <= found.upper * (1 + modes.error)).all()

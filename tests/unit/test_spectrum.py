@@ -16,7 +16,7 @@ from benchmarks.cases.scenes import HARVESTER
 COUPLED = bd.Scene(
     bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=20.0**2),
     bd.Mount(0.5, np.pi, np.pi / 2 - 0.02),
-    stretch=True,
+    physics=bd.Physics(stretch=True),
 )
 
 

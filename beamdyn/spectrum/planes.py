@@ -1,0 +1,119 @@
+"""Two planes of bending: their names, and those that nothing couples, each as a scene in one plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.root_motion import exact_cos_sin
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.scene import Scene
+
+# Directions in words, and in a word.
+_EDGE = "in the plane of rotation (edge)", "edge"
+_FLAP = "out of the plane of rotation (flap)", "flap"
+_BENDING = "in the direction of bending", "bending"
+_ACROSS = "across the direction of bending", "across"
+_QUARTER = math.pi / 2
+_ROUNDING = 1e-15  # of the number of quarter turns of a twist
+
+
+def name_directions(mount: Mount) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Name the direction of bending at the root, and that across, each in words and in a word.
+
+    They are edge and flap where the bending angle is a whole number of quarter turns.
+    """
+    c, s = exact_cos_sin(mount.bending_angle)
+    if s == 0:
+        return _EDGE, _FLAP
+    return (_FLAP, _EDGE) if c == 0 else (_BENDING, _ACROSS)
+
+
+def first_drawn(mount: Mount) -> int:
+    """Direction that is drawn solid: flap if one is, else the direction of bending."""
+    return 1 if name_directions(mount)[1] is _FLAP else 0
+
+
+def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
+    """Split a scene into scenes of slender beams in one plane.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    spinning : bool
+        Whether the carrier turns; if it does not, no bending angle couples the planes of a straight section.
+
+    Returns
+    -------
+    tuple of Scene
+        The scene itself if it is of a slender beam in one plane.  Of one in two planes that nothing couples,
+        that of the direction of bending at the root, and that across; else nothing.
+    """
+    if scene.is_slender_beam_in_one_plane:
+        return (scene,)
+    slender = replace(scene.physics, planes=1, stretch=False) == Physics()
+    clamped = min(scene.mount.root_stiffnesses[: scene.physics.planes]) == math.inf
+    if not (slender and clamped) or (quarters := _quarter_turns(scene.beam)) is None:
+        return ()
+    if spinning and 0.0 not in exact_cos_sin(scene.mount.bending_angle):
+        return ()
+    angle = scene.mount.bending_angle
+    across = angle - math.copysign(_QUARTER, angle)
+    section = _one_plane(scene.beam), _other_plane(scene.beam)
+    first, second = section if quarters % 2 == 0 else reversed(section)
+    return _bending(scene, first, angle), _bending(scene, second, across)
+
+
+def refuse_coupled_planes(scene: Scene, speed: float) -> None:
+    """Refuse two planes of bending that the twist couples, or the bending angle at a speed other than 0.
+
+    Raises
+    ------
+    InvalidValue
+        With the remedy.
+    """
+    bound = "bounds of two planes are known where nothing couples them"
+    if scene.physics.planes == 2 and _quarter_turns(scene.beam) is None:
+        remedy = "leave it out, or model one plane"
+        raise InvalidValue("twist", scene.beam.tip_twist, bound, remedy, "rad", where=" at the tip")
+    angle = scene.mount.bending_angle
+    if scene.physics.planes == 2 and speed and 0.0 not in exact_cos_sin(angle):
+        remedy = "give 0 or a quarter turn, or speed = 0, or model one plane"
+        raise InvalidValue("bending_angle", angle, bound, remedy, "rad")
+
+
+def _quarter_turns(beam: Beam) -> int | None:
+    """Number of quarter turns by which all sections are turned; None if that is not a whole number."""
+    if beam.twist is None:
+        return 0
+    if any(any(row[1:]) for row in beam.twist.coefficients):
+        return None
+    turned = {row[0] / _QUARTER for row in beam.twist.coefficients}
+    whole = {round(c) for c in turned if abs(c - round(c)) <= _ROUNDING * max(1.0, abs(c))}
+    return whole.pop() if len(whole) == len(turned) == 1 else None
+
+
+def _one_plane(beam: Beam) -> Beam:
+    """The beam as it bends in the first direction of its section."""
+    unread = ("second_bending_stiffness", "twist", "shear_stiffness", "second_shear_stiffness")
+    inertia = ("rotary_inertia", "second_rotary_inertia")
+    return replace(beam, **dict.fromkeys((*unread, *inertia)))
+
+
+def _other_plane(beam: Beam) -> Beam:
+    """The beam as it bends in the second direction, where the tip body turns about another axis."""
+    assert beam.second_bending_stiffness is not None
+    tip = beam.tip
+    if tip is not None:
+        moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
+        tip = TipMass(tip.mass, tip.offset, *moments)
+    stiffness = beam.second_bending_stiffness
+    return replace(_one_plane(beam), bending_stiffness=stiffness, tip=tip, outer_fibre=None)
+
+
+def _bending(scene: Scene, beam: Beam, angle: float) -> Scene:
+    return replace(scene, beam=beam, mount=replace(scene.mount, bending_angle=angle), physics=Physics())
