@@ -14,6 +14,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
+_VECTOR = 4 * _EPS  # error of each coordinate of a vector, which the quotient has squared
 _SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
@@ -50,6 +51,7 @@ def remove_shift(
     size = np.abs(pencil.K0) + spin * (np.abs(pencil.K2) + np.abs(pencil.M))
     quotient = np.einsum("snk,snk->sk", v, K @ v)
     lost = _BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
+    lost += len(K[0]) * _VECTOR**2 * pencil.shift
     difference = squared - pencil.shift
     low = np.abs(difference) < _LOW * pencil.shift
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
