@@ -87,7 +87,7 @@ def answer(
     time = perf_counter() - start
     with np.errstate(divide="ignore", invalid="ignore"):
         true = np.abs(modes.eigenvalue / (1j * known.omega) - 1)
-    true = np.where(known.omega == 0, np.inf, true)
+    true = np.where(known.omega == 0, np.where(modes.eigenvalue == 0, 0.0, np.inf), true)
     return Answer(
         number, tolerance, time, *(tuple(v.tolist()) for v in (modes.error, true, known.uncertainty))
     )

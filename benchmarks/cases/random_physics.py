@@ -20,7 +20,7 @@ MOST_TENSION = 1e4  # largest tension, over the smallest EI / L^2
 _QUARTER = np.pi / 2
 _STEEL = 200e9, 7850.0
 _POISSONS_RATIO = 0.3
-_FUNCTIONS = 20  # for the critical speed
+_FUNCTIONS = 20  # for the critical speed, over all segments
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,8 @@ def _random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
     share = rng.choice([0.0, rng.uniform(0, 0.999), 1 - 10 ** rng.uniform(-3, 0)], p=[0.1, 0.45, 0.45])
     gamma = rng.uniform(0, 50)
     fastest = np.sqrt(MOST_TENSION / largest_tension(scene))
-    critical = Model(scene, bd.Ritz(_FUNCTIONS)).solver.critical_speed
+    functions = max(6, _FUNCTIONS // (len(scene.beam.breakpoints) - 1))
+    critical = Model(scene, bd.Ritz(functions)).solver.critical_speed
     limits = gamma / time_unit(scene.beam), share * critical, share * fastest
     return float(min(limits))
 

@@ -47,6 +47,7 @@ def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
         settled = (error <= _ROUNDING * np.abs(squares)) | (ratio == 1.0) | (np.abs(squares) < _REST)
         if settled.all() and np.isfinite(before).all():
             break
+    error = np.maximum.accumulate(error)  # rounding changes no frequency less than a lower one
     still = np.abs(squares) < _REST
     relative = np.maximum(error / np.where(still, np.inf, np.abs(squares)), _ROUNDING)
     return Known(np.sqrt(np.where(still, 0.0, squares)) / unit, np.where(still, 0.0, relative))
