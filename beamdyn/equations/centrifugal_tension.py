@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import FRACTION, Profile
 
 
+@lru_cache(maxsize=64)
 def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
     """Tension N_A [kg] per root acceleration and N_B [kg m] per squared speed, over x/L.
 

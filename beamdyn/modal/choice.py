@@ -151,7 +151,10 @@ def _refine(model: Model) -> Model | None:
     finer, segments = model.discretization.finer(), len(model.scene.beam.breakpoints) - 1
     if finer is None or (isinstance(finer, Ritz) and finer.functions * segments > _MOST_IN_ALL):
         return None
-    return Model(model.scene, finer)
+    refined = Model(model.scene, finer)
+    if refined.coarser.discretization == model.discretization:  # it is there already
+        refined.__dict__["coarser"] = model
+    return refined
 
 
 def _find_first(name: str, segments: int, modes: int, target: float, cheapest: bool) -> Discretization:

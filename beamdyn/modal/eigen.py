@@ -23,7 +23,7 @@ _EPS = np.finfo(float).eps
 # Rounding errors, fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of random scenes.  The
 # matrices are graded, so that the errors are smaller than their norms suggest.
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms and to its norm
-_CANCELLED = 0.5 * _EPS  # error of the frequency, relative to the entries of the stiffness that cancel in two planes
+_CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 _LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
 _LARGEST_SHIFT = 256  # largest exponent of 4 of a shift: beyond it numbers overflow
@@ -191,7 +191,7 @@ class Solver:
         return rounding if self.pencil.planes == 1 else rounding + self._cancelled(speeds, squared, vector)
 
     def _cancelled(self, speeds: np.ndarray, squared: np.ndarray, vector: np.ndarray) -> np.ndarray:
-        """Error (S, k) by rounding of the entries of the stiffness, of which a twisted stiff plane leaves little."""
+        """Error (S, k) by rounding of the entries of the stiffness, which a stiff plane makes large."""
         K = np.abs(self.pencil.K0) + speeds[:, None, None] ** 2 * np.abs(self.pencil.K2)
         with np.errstate(divide="ignore", invalid="ignore"):
             return _CANCELLED * (vector * (K @ vector)).sum(axis=1) / np.abs(squared)

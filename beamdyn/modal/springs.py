@@ -13,8 +13,8 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
+_ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
-_VECTOR = 4 * _EPS  # error of each coordinate of a vector, which the quotient has squared
 _SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
@@ -50,8 +50,9 @@ def remove_shift(
     # K2 of a turn about the root is a small difference of tension and spin softening, each as large as M.
     size = np.abs(pencil.K0) + spin * (np.abs(pencil.K2) + np.abs(pencil.M))
     quotient = np.einsum("snk,snk->sk", v, K @ v)
-    lost = _BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
-    lost += len(K[0]) * _VECTOR**2 * pencil.shift
+    count = max(1.0, len(K[0]) / _ROUNDING_SIZE)
+    lost = count * _BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
+    lost += pencil.shift * (count * _BACKWARD) ** 2  # the quotient has the error of the vector squared
     difference = squared - pencil.shift
     low = np.abs(difference) < _LOW * pencil.shift
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)

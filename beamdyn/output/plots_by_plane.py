@@ -45,7 +45,8 @@ def plot_locus_by_plane(
     labels = labels or [f"mode {i}" for i in range(1, np.shape(frequency)[1] + 1)]
     columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, labels, strict=True)
     for i, (y, solid, label) in enumerate(columns):
-        _draw_by_plane(ax, np.asarray(speeds), y, solid, label, _style_by_plane(i))
+        _draw_by_plane(ax, np.asarray(speeds), y, solid, _style_by_plane(i))
+        _name_colour(ax, label, i)
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
     return _name_planes(ax, [f"mostly {direction}" for direction in directions])
 
@@ -81,29 +82,33 @@ def plot_shapes_by_plane(
     ax = set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
     ax.axhline(0, color="0.4", linewidth=0.8)
     for i, (both, label) in enumerate(zip(scaled, labels, strict=True)):
-        ax.plot(x, both[0], "-", label=label, **_style_by_plane(i))
+        ax.plot(x, both[0], "-", **_style_by_plane(i))
         ax.plot(x, both[1], "--", **_style_by_plane(i))
+        _name_colour(ax, label, i)
     return _name_planes(ax, directions)
 
 
-def _draw_by_plane(
-    ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, label: str, style: dict[str, Any]
-) -> None:
+def _draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
     """Draw a line whose dashes change from sample to sample; its pieces meet at a sample."""
     starts = [0, *(np.flatnonzero(np.diff(solid)) + 1).tolist()]
     isolated = is_isolated(y)
     for start, stop in zip(starts, [*(s + 1 for s in starts[1:]), len(x)], strict=True):
         dashes = "-" if solid[start] else "--"
-        (line,) = ax.plot(x[start:stop], y[start:stop], dashes, label=label, **style)
+        (line,) = ax.plot(x[start:stop], y[start:stop], dashes, **style)
         if (alone := isolated[start:stop]).any():
             line.set(marker=".", markevery=alone)
-        label = "_"  # only the first piece is in the legend
 
 
 def _style_by_plane(i: int) -> dict[str, Any]:
     """Colour of line i, and its width, which changes when the colours are used up."""
     cycle, colour = divmod(i, len(COLOURS))
     return {"color": COLOURS[colour], "linewidth": max(1.8 - 0.6 * cycle, 0.6)}
+
+
+def _name_colour(ax: Axes, label: str, i: int) -> None:
+    """Name line i in the legend by its colour, as its dashes may change."""
+    style = _style_by_plane(i)
+    ax.plot([], [], label=label, color=style["color"], linewidth=3 * style["linewidth"])
 
 
 def _name_planes(ax: Axes, words: Sequence[str]) -> Axes:

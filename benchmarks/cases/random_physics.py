@@ -42,7 +42,7 @@ class Section:
     ratio: float
 
     def properties(self) -> dict[str, float]:
-        """Arguments of `Beam.from_stiffness`; shear stiffness and rotary inertia fit the bending stiffness."""
+        """Arguments of `Beam.from_stiffness`; shear stiffness and rotary inertia fit the bending."""
         (E, rho), h = _STEEL, self.length / self.slenderness
         area, nu = h**2 * np.sqrt(self.ratio), _POISSONS_RATIO
         inertia = area * h**2 / 12
@@ -115,7 +115,7 @@ def _stations(rng: np.random.Generator, section: dict[str, float]) -> dict[str, 
 
 
 def _random_stations(rng: np.random.Generator, count: int, jump: bool) -> list[float]:
-    """Stations x/L, rounded to 1 %, apart by at least that; with a jump, one between the ends stands twice."""
+    """Stations x/L, apart by at least 1 %; with a jump, one between the ends stands twice."""
     inner = np.sort(rng.choice(np.arange(1, 100), count - 2, replace=False)) / 100
     twice = rng.choice(inner, 1) if jump else []
     return np.sort(np.concatenate([[0.0, 1.0], inner, twice])).tolist()
