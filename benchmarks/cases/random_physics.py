@@ -62,12 +62,17 @@ def random_physics_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     Stiffness ratios 0.05 to 1e4, slenderness 5 to 1000 of the stockier plane where it shears or has rotary
     inertia, springs 1e-6 to 1e6 EI/L, hinges, gamma <= 50.
     """
+    scene = random_still_scene(rng)
+    return scene, _random_speed(rng, scene)
+
+
+def random_still_scene(rng: np.random.Generator) -> bd.Scene:
+    """Such a scene without its speed; two planes in three of four scenes."""
     planes, shear, rotary = int(rng.integers(1, 3)), bool(rng.integers(2)), bool(rng.integers(2))
-    planes = 2 if rng.random() < 0.5 else planes  # three of four scenes
+    planes = 2 if rng.random() < 0.5 else planes
     beam = random_physics_beam(rng, stocky=shear or rotary)
     mount = _random_mount(rng, beam)
-    scene = bd.Scene(beam, mount, physics=bd.Physics(planes, shear=shear, rotary_inertia=rotary))
-    return scene, _random_speed(rng, scene)
+    return bd.Scene(beam, mount, physics=bd.Physics(planes, shear=shear, rotary_inertia=rotary))
 
 
 def random_physics_beam(rng: np.random.Generator, stocky: bool) -> bd.Beam:
@@ -170,8 +175,7 @@ def _random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
     fastest = np.sqrt(MOST_TENSION / largest_tension(scene))
     functions = max(6, _FUNCTIONS // (len(scene.beam.breakpoints) - 1))
     critical = Model(scene, bd.Ritz(functions)).solver.critical_speed
-    limits = gamma / time_unit(scene.beam), share * critical, share * fastest
-    return float(min(limits))
+    return float(min(gamma / time_unit(scene.beam), share * min(critical, fastest)))
 
 
 def largest_tension(scene: bd.Scene) -> float:
