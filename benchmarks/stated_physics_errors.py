@@ -57,9 +57,9 @@ class Answer:
 
     @property
     def resolved(self) -> np.ndarray:
-        """Whether each true error is above the uncertainty of what is known, and the stated one finite."""
+        """Whether each true error is above the uncertainty of what is known, and the stated one meaningful."""
         stated, true, known = map(np.array, (self.stated, self.true, self.known))
-        return np.isfinite(stated) & (true > known)
+        return np.isfinite(stated) & (true > known) & (stated > 0)
 
 
 def measure(number: int, seed: int, discretization: str, tolerances: Sequence[float | None]) -> list[Answer]:
@@ -135,7 +135,7 @@ def _summarize_tolerance(answers: Sequence[Answer]) -> Iterator[Row]:
     yield "... stated to be unresolved", f"{unresolved:.2%}", ""
     bound = f"{_OVER_ESTIMATE:g}" if answers[0].tolerance is None else ""
     yield "... median over-estimate", f"{np.median(stated / true):.1f}", bound
-    yield "... largest ratio of true to stated error", f"{(true / stated).max(initial=0):.2g}", "1"
+    yield "... largest ratio of true to stated error", f"{np.max(true / stated, initial=0):.2g}", "1"
     yield "... largest true error, where one is stated", f"{true.max(initial=0):.1e}", ""
     times = np.array([a.time for a in found])
     yield "... median and longest time", f"{time_text(np.median(times))}, {time_text(times.max())}", ""
