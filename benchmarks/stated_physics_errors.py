@@ -57,7 +57,7 @@ class Answer:
 
     @property
     def resolved(self) -> np.ndarray:
-        """Whether each true error is above the uncertainty of what is known, and the stated one meaningful."""
+        """Whether each true error is above the uncertainty of the reference, and one is stated."""
         stated, true, known = map(np.array, (self.stated, self.true, self.known))
         return np.isfinite(stated) & (true > known) & (stated > 0)
 
