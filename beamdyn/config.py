@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any
 
 from numpy.polynomial import Polynomial
-from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
+from pydantic import BaseModel, BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema, core_schema
 
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.edge.columns import read_columns
 from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
-from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import one_of_kinds, section_of
-from beamdyn.common.edge.units import quantity
+from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.edge.wording import of_file
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 
@@ -68,7 +74,7 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     Parameters
     ----------
     data : mapping
-        Tables "beam" and "mount", and where wanted "motion" and "model", as tomllib reads them.
+        Tables "beam" and "mount", and where wanted "motion", "model" and "physics", as tomllib reads them.
     source : str
         Name of its origin, for messages.
 
@@ -114,6 +120,7 @@ class Varying(Quantity):
                 "<constant>": constant,
                 "<polynomial>": _table(_polynomial, polynomial=coefficient),
                 "<table>": _table(_stations, stations=station, values=constant),
+                "<column>": core_schema.is_instance_schema(Table),
             },
             discriminator=_kind_of_variation,
             custom_error_type="variation",
@@ -141,6 +148,8 @@ def _stations(given: dict[str, list[float]]) -> Table:
 
 
 def _kind_of_variation(given: Any) -> str | None:
+    if isinstance(given, Table):  # a column of beam.stations
+        return "<column>"
     if not isinstance(given, dict):
         return None if isinstance(given, list) else "<constant>"
     kinds = {"<polynomial>": {"polynomial"}, "<table>": {"stations", "values"}}
@@ -156,9 +165,9 @@ _ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
 MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}
 
 if TYPE_CHECKING:
-    _TipInput = _MountInput = _MotionInput = CoreSection
+    _TipInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
 else:
-    _TipInput, _MountInput = section_of(TipMass), section_of(Mount)
+    _TipInput, _MountInput, _PhysicsInput = section_of(TipMass), section_of(Mount), section_of(Physics)
     _MotionInput = one_of_kinds(MOTIONS)
 
 
@@ -166,10 +175,23 @@ class _BeamInput(CoreSection):
     length: Annotated[float, Quantity("m", "L", "length", above=0)]
     tip: _TipInput | None = None
     breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
+    stations: Annotated[
+        list[list[Any]] | None,
+        Field(
+            description="table of the sections: a row of heads such as x/L and twist [deg], then numbers, "
+            "a row a station; linear between stations, one given twice is a jump"
+        ),
+    ] = None
+    twist: Annotated[
+        Along | None,
+        Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
+    ] = None
 
+    @property
     def _arguments(self) -> dict[str, Any]:
         """What the constructors of `Beam` take."""
-        given = {name: _to_fractions(value, self.length) for name, value in self if value is not None}
+        given = {name: value for name, value in self if value is not None and name != "stations"}
+        given = {name: _to_fractions(value, self.length) for name, value in given.items()}
         return given | {"tip": self.tip and self.tip.core}
 
 
@@ -180,11 +202,16 @@ class RectangularInput(_BeamInput):
     thickness: Annotated[Along, Varying("m", "h", "thickness, in the direction of bending", above=0)]
     youngs_modulus: Annotated[float, Quantity("Pa", "E", "Young's modulus", above=0)]
     density: Annotated[float, Quantity("kg/m3", "rho", "density", above=0)]
+    poissons_ratio: Annotated[
+        float | None,
+        Quantity("", "nu", "Poisson's ratio, for shear", above=-1, most=0.5, remedy="steel has 0.3"),
+    ] = None
 
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        return Beam.rectangular(**self._arguments())
+        with _of_stations(self.stations):
+            return Beam.rectangular(**self._arguments)
 
 
 class StiffnessInput(_BeamInput):
@@ -199,11 +226,30 @@ class StiffnessInput(_BeamInput):
         Along | None,
         Varying("m", "c", "distance of the outer fibre from the neutral axis, for strain", above=0),
     ] = None
+    second_bending_stiffness: Annotated[
+        Along | None,
+        Varying("N m2", "E I2", "bending stiffness in the direction across, for two planes", above=0),
+    ] = None
+    shear_stiffness: Annotated[
+        Along | None, Varying("N", "kappa G A", "shear stiffness, for shear", above=0)
+    ] = None
+    second_shear_stiffness: Annotated[
+        Along | None,
+        Varying("N", "kappa G A2", "shear stiffness in the direction across; else as the first", above=0),
+    ] = None
+    rotary_inertia: Annotated[
+        Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
+    ] = None
+    second_rotary_inertia: Annotated[
+        Along | None,
+        Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0),
+    ] = None
 
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        return Beam.from_stiffness(**self._arguments())
+        with _of_stations(self.stations), _naming_missing_key(StiffnessInput):
+            return Beam.from_stiffness(**self._arguments)
 
 
 def _to_fractions(given: Any, length: float) -> Any:
@@ -214,6 +260,60 @@ def _to_fractions(given: Any, length: float) -> Any:
         # Rounded, or 20 mm of 50 mm would lie beside the fraction 0.4, with a sliver between them.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
+
+
+@contextmanager
+def _naming_missing_key(beam: type[BaseModel]) -> Iterator[None]:
+    """Within it, a refusal for lack of a property says which key of the beam brings it."""
+    try:
+        yield
+    except InvalidValue as error:
+        if not error.other:
+            raise
+        key = error.other if error.other in beam.model_fields else "poissons_ratio"
+        raise replace(error, remedy=f"give beam.{key}") from None
+
+
+# A table of stations ------------------------------------------------------------------------------
+
+
+_PLACES = {"x/L": Position(meaning="position"), "x": Position("m", meaning="position")}
+_VARYING = {
+    entry.name: entry.quantity
+    for section in (RectangularInput, StiffnessInput)
+    for entry in describe(section)
+    if isinstance(entry.quantity, Varying)
+}
+
+
+def _with_columns(given: Any) -> Any:
+    """Add the columns of `stations` to the keys of the beam, each as the table of the property it names."""
+    if not isinstance(given, dict) or given.get("stations") is None:
+        return given
+    rows = given["stations"]
+    columns = read_columns("stations", rows, _PLACES | _VARYING)
+    places = [name for name in columns if name in _PLACES]
+    if len(places) != 1 or len(columns) < 2:
+        remedy = 'give the position in one column, "x/L" or "x [m]", and properties in others'
+        raise InvalidInput("stations[0]", rows[0], remedy)
+    if twice := [name for name in columns if name in given]:
+        raise InvalidInput("stations[0]", rows[0], f"{twice[0]} is a key of its own, too; give it once")
+    x = tuple(columns.pop(places[0]))
+    return given | {name: Table(x, tuple(values)) for name, values in columns.items()}
+
+
+@contextmanager
+def _of_stations(rows: list[Any] | None) -> Iterator[None]:
+    """Within it, what the core says about a property's stations is said of the cells of the table."""
+    keys: dict[str, str] = {}
+    if rows:
+        place = next(c for c, head in enumerate(rows[0]) if head.partition("[")[0].strip() in _PLACES)
+        cells = {f"[{r - 1}]": f"stations[{r}][{place}]" for r in range(1, len(rows))}
+        for name in _VARYING:
+            keys |= {f"{name}.stations": "stations", f"{name}.values": "stations"}
+            keys |= {f"{name}.stations{index}": cell for index, cell in cells.items()}
+    with of_file(keys):
+        yield
 
 
 def _own(section: type[Section]) -> list[str]:
@@ -240,6 +340,7 @@ BeamInput = Annotated[
     Annotated[RectangularInput, Tag("<rectangular>")] | Annotated[StiffnessInput, Tag("<stiffness>")],
     Discriminator(_kind_of_beam),
     BeforeValidator(_one_kind_of_beam),
+    BeforeValidator(_with_columns),
 ]
 
 
@@ -251,20 +352,22 @@ class ModelInput(Section):
         Quantity("", "zeta", "modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"),
     ] = Scene.damping_ratio
     gravity: Annotated[float, Quantity("m/s2", "g", "gravity")] = Scene.gravity
-    stretch: Annotated[bool, Field(description="keep the stretch of the beam and its Coriolis coupling")] = (
-        Scene.stretch
-    )
 
 
 class SceneInput(CoreSection):
-    """A scene: the tables [beam], [mount], and where wanted [motion] and [model]."""
+    """A scene: the tables [beam], [mount], and where wanted [motion], [model] and [physics]."""
 
     beam: BeamInput
     mount: _MountInput
     motion: _MotionInput | None = None
     model: ModelInput = ModelInput()
+    physics: _PhysicsInput = _PhysicsInput()
 
     @cached_property
     def core(self) -> Scene:
         """The scene."""
-        return Scene(self.beam.core, self.mount.core, self.motion and self.motion.core, **dict(self.model))
+        motion = self.motion and self.motion.core
+        with _naming_missing_key(type(self.beam)):
+            return Scene(
+                self.beam.core, self.mount.core, motion, **dict(self.model), physics=self.physics.core
+            )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.critical import SettingAngleLimits
     from beamdyn.spectrum.modes import Locus, Modes
-    from beamdyn.steady.resonance import Crossings
+    from beamdyn.steady.resonance import Crossing, Crossings
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
@@ -164,12 +164,13 @@ def _describe_errors(run: Transient) -> str:
 
 
 def crossings_table(result: Crossings) -> Group:
-    """Table of resonance speeds."""
+    """Table of resonance speeds, with the plane of each mode where two are modelled."""
     rows = [
         (
             supported(c.speed, c.error * c.speed),
             f"{c.line.name}: {c.line.multiple:.6g} times the speed",
             str(c.mode) if c.second_mode is None else f"{c.mode} and {c.second_mode}",
+            *_plane_cells(result, c),
             supported(c.frequency, c.error * c.frequency),
             c.kind,
         )
@@ -177,7 +178,16 @@ def crossings_table(result: Crossings) -> Group:
     ]
     number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
     title = f"{number}, by {result.provenance.method}. {result.extent}"
-    return table(title, ("speed [rad/s]", "line", "mode", "frequency [Hz]", "kind"), rows, (1, 4))
+    plane = ["along, across [%]"] * (result.scene.physics.planes == 2)
+    heads = ("speed [rad/s]", "line", "mode", *plane, "frequency [Hz]", "kind")
+    return table(title, heads, rows, (1, len(heads) - 1))
+
+
+def _plane_cells(result: Crossings, crossing: Crossing) -> Iterator[str]:
+    """Share of the energy of each mode in the two directions, where two are modelled."""
+    if result.scene.physics.planes == 2:
+        shares = [s for s in (crossing.plane_share, crossing.second_plane_share) if s is not None]
+        yield " and ".join(f"{100 * along:.0f}, {100 * across:.0f}" for along, across in shares)
 
 
 def steady_table(result: SteadyResponse) -> Group:
@@ -186,11 +196,22 @@ def steady_table(result: SteadyResponse) -> Group:
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
     shown = _select_response_speeds(result.status, peaks_at)
     error = result.error * result.bound
-    sizes = [_millimetres(values, error) for values in (result.amplitude, result.bound)]
-    columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
+    by_direction = _largest_by_direction(result)
+    sizes = result.amplitude, *by_direction.values(), result.bound
+    cells = [_millimetres(values, error) for values in sizes]
+    columns = [_speed_cells(result.speeds), *cells, _status_cells(result.status, peaks_at)]
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
-    heads = ("speed [rad/s]", "largest tip deflection [mm]", "sum of the lines [mm]", "status")
-    return table(title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (3,))
+    largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in by_direction))
+    heads = ("speed [rad/s]", *largest, "sum of the lines [mm]", "status")
+    return table(
+        title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
+    )
+
+
+def _largest_by_direction(result: SteadyResponse) -> dict[str, np.ndarray]:
+    """Largest tip deflection in the direction of bending and across, where both are modelled."""
+    names = ("along", "across") if result.scene.physics.planes == 2 else ()
+    return {name: result.largest_tip(direction) for direction, name in enumerate(names)}
 
 
 def sweep_table(result: Sweep) -> Group:
@@ -294,18 +315,23 @@ def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
 
 
 def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
-    """Resonance speeds, one row each."""
+    """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
     first = "speed_rad_per_s", "relative_error", "frequency_Hz"
-    yield *first, "line", "multiple", "mode", "second_mode", "kind"
+    planes = ("share_across", "second_share_across") if result.scene.physics.planes == 2 else ()
+    yield *first, "line", "multiple", "mode", "second_mode", "kind", *planes
     for c in result:
         second = "" if c.second_mode is None else c.second_mode
-        yield c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
+        shares = c.plane_share[1], "" if c.second_plane_share is None else c.second_plane_share[1]
+        row = c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
+        yield *row, *shares[: len(planes)]
 
 
 def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
-    """Steady amplitude, growth rate, their errors, and status over speed."""
+    """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
     growth = "growth_rate_per_s", "growth_rate_error_per_s"
-    yield "speed_rad_per_s", "amplitude_m", "sum_of_lines_m", "relative_error", *growth, "status"
-    sizes = result.speeds, result.amplitude, result.bound, result.error
+    by_direction = _largest_by_direction(result)
+    heads = "amplitude_m", *(f"largest_{name}_m" for name in by_direction), "sum_of_lines_m"
+    yield "speed_rad_per_s", *heads, "relative_error", *growth, "status"
+    sizes = result.speeds, result.amplitude, *by_direction.values(), result.bound, result.error
     columns = *sizes, result.growth_rate, result.growth_rate_error, result.status
     yield from zip(*(column.tolist() for column in columns), strict=True)

@@ -221,7 +221,9 @@ def check_with_stretch(rng: np.random.Generator) -> Outcome:
         beam.bending_stiffness,
         axial_stiffness=ratio * float(beam.bending_stiffness(np.zeros(1))[0]) / beam.length**2,
     )
-    scene = bd.Scene(soft, bd.Mount(beam.length * 10 ** rng.uniform(-2, 1), np.pi), stretch=True)
+    scene = bd.Scene(
+        soft, bd.Mount(beam.length * 10 ** rng.uniform(-2, 1), np.pi), physics=bd.Physics(stretch=True)
+    )
     speed = min(10 ** rng.uniform(-2, 1.5), 0.3 * np.sqrt(ratio)) / time_unit(beam)
     modes, other = (bd.natural_modes(scene, speed, 2, discretization) for discretization in ("ritz", "fem"))
     apart = np.abs(modes.eigenvalue - other.eigenvalue) / np.abs(modes.eigenvalue)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, get_args
 
@@ -17,7 +18,8 @@ from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, de
 from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
 from beamdyn.scene.scene import Scene
 
-TABLES = ("options", "mount", "beam", "motion", "model")  # on the form of each screen, in this order
+# On the form of each screen, in this order.
+TABLES = ("options", "mount", "beam", "motion", "model", "physics")
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
@@ -63,6 +65,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
 
 def _beam(entries: Mapping[str, str]) -> type[Section]:
     given = {path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text}
+    given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns among others
     own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
     return StiffnessInput if given & own else RectangularInput
 

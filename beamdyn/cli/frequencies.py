@@ -219,6 +219,8 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
     heads = ("", "term", "symbol", "largest", "reason")
     console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
     console().print(result.excited())
+    for effect in result.left_out:
+        console().print(f"Left out: {effect.name}: {effect.reason}.")
 
 
 def _describe_critical(result: CriticalPoint) -> str:

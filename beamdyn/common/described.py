@@ -36,6 +36,8 @@ class Described:
         Whether files must give it, even where the argument has a default.
     default : object, optional
         Value where files leave it out, though the argument has no default.
+    infinite : str
+        What an infinite value stands for, such as "clamped"; where it is empty, none is allowed.
     """
 
     unit: str = ""
@@ -50,6 +52,7 @@ class Described:
     key: str = ""
     required: bool = False
     default: object = None
+    infinite: str = ""
 
     @property
     def bounds(self) -> str:

@@ -1,7 +1,8 @@
 """Objects made of data as JSON's types, and back, to the bit: how results are kept in files.
 
-Numbers, strings, arrays, containers and dataclasses of this package are data.  What is not (a function, an
-object of another package's class) is left out, and stands in the object that comes back as a `LeftOut`.
+Numbers, strings, arrays, containers, dataclasses and named tuples of this package are data.  What is not
+(a function, an object of another package's class) is left out, and stands in the object that comes back as a
+`LeftOut`.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ def encode(value: Any) -> Any:
     Parameters
     ----------
     value : object
-        None, number, string, array, slice, container, or dataclass of this package.
+        None, number, string, array, slice, container, or dataclass or named tuple of this package.
 
     Returns
     -------
@@ -66,14 +67,13 @@ def encode(value: Any) -> Any:
         return {"array": [value.dtype.str, list(value.shape), base64.b64encode(value.tobytes()).decode()]}
     if isinstance(value, complex | slice):
         return {type(value).__name__: [encode(part) for part in _PARTS[type(value)](value)]}
+    kind: Any = type(value)
+    if _is_known(kind):
+        return {"object": [_name(kind), {name: encode(getattr(value, name)) for name in _fields(kind)}]}
     if isinstance(value, tuple | list):
         return {"list" if isinstance(value, list) else "tuple": [encode(item) for item in value]}
     if isinstance(value, dict) and all(isinstance(key, str) for key in value):
         return {"dict": {key: encode(item) for key, item in value.items()}}
-    kind: Any = type(value)
-    if _is_known(kind):
-        values = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(kind)}
-        return {"object": [_name(kind), values]}
     return {"left out": _describe(value)}
 
 
@@ -106,8 +106,10 @@ def _decode_object(content: list[Any]) -> Any:
     """An object with the fields as they were, without the checks and conversions of its construction."""
     name, values = content
     kind = _find_class(name)
-    if {f.name for f in dataclasses.fields(kind)} != set(values):
+    if {*_fields(kind)} != {*values}:
         raise ValueError(f"in this version {kind.__name__} has other fields")
+    if issubclass(kind, tuple):
+        return kind(*(decode(values[name]) for name in _fields(kind)))
     made = object.__new__(kind)
     for key, item in values.items():
         object.__setattr__(made, key, decode(item))
@@ -128,7 +130,13 @@ _DECODERS: dict[str, Any] = {
 
 
 def _is_known(kind: type) -> bool:
-    return dataclasses.is_dataclass(kind) and kind.__module__.partition(".")[0] in _PACKAGES
+    has_fields = dataclasses.is_dataclass(kind) or hasattr(kind, "_fields")
+    return has_fields and kind.__module__.partition(".")[0] in _PACKAGES
+
+
+def _fields(kind: Any) -> tuple[str, ...]:
+    named: tuple[str, ...] | None = getattr(kind, "_fields", None)
+    return tuple(f.name for f in dataclasses.fields(kind)) if named is None else named
 
 
 def _name(kind: type) -> str:

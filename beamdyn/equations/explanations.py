@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn.equations.root_motion import RootMotion, exact_cos_sin, root_motion
 from beamdyn.scene.motion import Motion, MotionSample, SteadyRotation
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
 _ROUNDING = 1e-15  # relative to the largest acceleration of the root: rounding error of pi
 _SAMPLES = 501  # times in each of the two parts of a motion: until the speed is steady, and at steady speed
@@ -39,10 +40,9 @@ class SampledScene:
     def root(self) -> RootMotion:
         """Motion of the root at these times, with accelerations below rounding set to 0."""
         root = root_motion(self.scene.mount, self.sample, self.scene.gravity)
-        axial, transverse = (
-            np.where(np.abs(a) > self.rounding, a, 0.0) for a in (root.root_axial, root.root_transverse)
-        )
-        return replace(root, root_axial=axial, root_transverse=transverse)
+        names = ("root_axial", "root_transverse", "root_across")
+        above = {name: np.abs(getattr(root, name)) > self.rounding for name in names}
+        return replace(root, **{name: np.where(above[name], getattr(root, name), 0.0) for name in names})
 
     @cached_property
     def rounding(self) -> float:
@@ -133,9 +133,14 @@ def say_tension(scene: SampledScene) -> str:
 
 def say_static_load(scene: SampledScene) -> str:
     """Say what accelerates the root in the direction of bending."""
-    return (
-        f"the root accelerates in the direction of bending by {_enumerate(scene.sources('root_transverse'))}"
-    )
+    sources = [source for name in _transverse(scene) for source in scene.sources(name)]
+    where = "across the beam" if scene.scene.physics.planes == 2 else "in the direction of bending"
+    return f"the root accelerates {where} by {_enumerate([*dict.fromkeys(sources)])}"
+
+
+def _transverse(scene: SampledScene) -> tuple[str, ...]:
+    """Quantities of the root's motion that load the beam transversely."""
+    return ("root_transverse", "root_across")[: scene.scene.physics.planes]
 
 
 def _say_unloaded(scene: SampledScene) -> str:
@@ -155,8 +160,29 @@ def _enumerate(words: list[str]) -> str:
 
 
 def _has_different_inertias(scene: SampledScene) -> bool:
-    tip = scene.scene.beam.tip
-    return tip is not None and tip.inertia_about_bending_direction != tip.axial_inertia
+    """Whether the tip body's energy of rotation changes as it tilts out of the plane of rotation."""
+    tip, planes = scene.scene.beam.tip, scene.scene.physics.planes
+    if tip is None:
+        return False
+    inertia = centrifugal_inertia(tip, scene.scene.modelled_beam.tip_twist)
+    c, s = exact_cos_sin(scene.scene.mount.bending_angle)
+    out_of_plane = np.array([s, c]) if planes == 2 else np.array([s or 1.0, 0.0])
+    return bool((inertia @ out_of_plane)[:planes].any())
+
+
+def _has_oblique_inertia(scene: SampledScene) -> bool:
+    """Whether sections or tip body have a product of inertia about the axis of rotation and the beam."""
+    (c, s), beam = exact_cos_sin(scene.scene.mount.bending_angle), scene.scene.modelled_beam
+    d, n, xi = np.array([c, -s]), np.array([s, c]), np.linspace(0, 1, 101)
+    sections = (d[p] * n[q] * E(xi) for (p, q), E in section_tensor(beam, "rotary_inertia").items())
+    tip = beam.tip and d @ centrifugal_inertia(beam.tip, beam.tip_twist) @ n
+    return bool(np.any(sum(sections, np.zeros(1))) or tip)
+
+
+def _is_on_springs(scene: SampledScene) -> bool:
+    """Whether a spring holds the root in a direction that is modelled."""
+    springs = scene.scene.mount.root_stiffnesses[: scene.scene.physics.planes]
+    return any(0 < k < math.inf for k in springs)
 
 
 # Conditions of terms in several fields.
@@ -164,11 +190,11 @@ def _has_different_inertias(scene: SampledScene) -> bool:
 TURNS = Condition(lambda s: s.is_nonzero("speed"), "the carrier does not turn")
 ACCELERATES = Condition(lambda s: s.is_nonzero("acceleration"), "constant speed: no angular acceleration")
 IN_PLANE = Condition(
-    lambda s: exact_cos_sin(s.scene.mount.bending_angle)[0] != 0,
+    lambda s: s.scene.physics.planes == 2 or exact_cos_sin(s.scene.mount.bending_angle)[0] != 0,
     "the bending angle is 90 deg: the beam bends out of the plane of rotation",
 )
 OUT_OF_PLANE = Condition(
-    lambda s: exact_cos_sin(s.scene.mount.bending_angle)[1] != 0,
+    lambda s: s.scene.physics.planes == 2 or exact_cos_sin(s.scene.mount.bending_angle)[1] != 0,
     "the bending angle is 0: the beam bends in the plane of rotation",
 )
 DAMPED = Condition(lambda s: s.scene.damping_ratio > 0, "no damping: the damping ratio is 0")
@@ -178,4 +204,9 @@ TIP_INERTIA = Condition(
     "the tip body's inertias about the beam and about the direction of bending are the same",
 )
 TENSIONED = Condition(lambda s: s.is_nonzero("root_axial"), _say_untensioned)
-LOADED = Condition(lambda s: s.is_nonzero("root_transverse"), _say_unloaded)
+LOADED = Condition(lambda s: any(map(s.is_nonzero, _transverse(s))), _say_unloaded)
+OBLIQUE = Condition(
+    _has_oblique_inertia,
+    "sections and tip body have no product of inertia about the axis of rotation",
+)
+ON_SPRINGS = Condition(_is_on_springs, "no spring holds the root")

@@ -17,8 +17,9 @@ the spring.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -88,14 +89,19 @@ def _combine(moments: list[RootMoment], factors: list[float]) -> RootMoment:
     """Sum of moments times factors."""
     if factors == [1.0]:
         return moments[0]
-    load: dict[Quantity, float] = {}
-    position: dict[Quantity, np.ndarray] = {}
-    velocity: dict[Quantity, np.ndarray] = {}
-    for moment, factor in zip(moments, factors, strict=True):
-        for total, part in ((load, moment.load), (position, moment.position), (velocity, moment.velocity)):
-            for name, value in part.items():
-                total[name] = total.get(name, 0.0) + factor * value
-    return RootMoment(load, position, velocity)
+    return RootMoment(
+        _weighted_sum([m.load for m in moments], factors),
+        _weighted_sum([m.position for m in moments], factors),
+        _weighted_sum([m.velocity for m in moments], factors),
+    )
+
+
+def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
+    """Sum of values by quantity, times factors; quantities may be missing in some parts."""
+    names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
+    return {
+        name: sum(f * part.get(name, 0.0) for f, part in zip(factors, parts, strict=True)) for name in names
+    }
 
 
 def _spring_moment(scene: Scene, equations: Equations, direction: int) -> RootMoment:

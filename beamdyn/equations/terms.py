@@ -15,6 +15,7 @@ from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.explanations import Explanation, SampledScene
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Load, Term
+from beamdyn.equations.left_out import LeftOut, list_left_out
 from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
@@ -32,6 +33,8 @@ class Entry:
         Name of the term.
     symbol : str
         The term as written in docs/conventions.md.
+    fields : tuple of str
+        The fields in whose equations it stands.
     quantity : str
         The quantity of the root's motion that multiplies it.
     largest : float
@@ -44,6 +47,7 @@ class Entry:
 
     name: str
     symbol: str
+    fields: tuple[str, ...]
     quantity: str
     largest: float
     present: bool
@@ -57,7 +61,9 @@ class Terms(Result):
     Parameters
     ----------
     entries : tuple of Entry
-        All terms of all fields.
+        All terms of the fields that are modelled.
+    left_out : tuple of LeftOut
+        Effects that the model leaves out, by name and reason.
     lines : tuple of Line
         Frequencies that translation and gravity excite, as multiples of the speed.
     provenance : Provenance
@@ -65,6 +71,7 @@ class Terms(Result):
     """
 
     entries: tuple[Entry, ...]
+    left_out: tuple[LeftOut, ...]
     lines: tuple[Line, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
@@ -76,7 +83,10 @@ class Terms(Result):
         return len(self.entries)
 
     def __getitem__(self, name: str) -> Entry:
-        return next(entry for entry in self.entries if entry.name == name)
+        found = {entry.name: entry for entry in self.entries}
+        if name not in found:
+            raise KeyError(f"{name!r} is no term of this model; its terms are {', '.join(found)}")
+        return found[name]
 
     @property
     def present(self) -> tuple[str, ...]:
@@ -99,7 +109,8 @@ class Terms(Result):
         rows = [("", "term", "symbol", "largest", "reason"), *self.rows()]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         cells = [[c.ljust(w) for c, w in zip(row, widths, strict=True)] for row in rows]
-        return "\n".join(["  ".join(row).rstrip() for row in cells] + [self.excited()])
+        left_out = [f"Left out: {effect.name}: {effect.reason}." for effect in self.left_out]
+        return "\n".join(["  ".join(row).rstrip() for row in cells] + [self.excited(), *left_out])
 
 
 def terms(scene: Scene) -> Terms:
@@ -118,26 +129,40 @@ def terms(scene: Scene) -> Terms:
     """
     start = perf_counter()
     check_scene(scene)
-    sampled, assembled = SampledScene(scene), {term.name: term for term in _list_terms(scene)}
-    complete = reduce(lambda scene, field: field.complete(scene), FIELDS, scene)
-    entries = tuple(_describe(t, assembled.get(t.name), sampled) for t in _list_terms(complete))
+    sampled, assembled = SampledScene(scene), _terms_by_name(scene)
+    modelled = (field for field in FIELDS if field.is_modelled(scene))
+    complete = reduce(lambda scene, field: field.complete(scene), modelled, scene)
+    entries = (
+        _describe(every, assembled.get(name, []), sampled) for name, every in _terms_by_name(complete).items()
+    )
     lines = scene.motion.lines if scene.motion is not None else ()
     gravity = (Line("gravity", 1.0),) if scene.gravity else ()
     provenance = Provenance(__version__, str(_BASIS), "", perf_counter() - start)
-    return Terms(entries, (*lines, *gravity), provenance, scene)
+    return Terms(tuple(entries), (*list_left_out(scene),), (*lines, *gravity), provenance, scene)
 
 
-def _list_terms(scene: Scene) -> tuple[Term | Load, ...]:
-    equations = assemble_equations(scene, _BASIS)
-    return (*equations.terms, *equations.loads)
+def _terms_by_name(scene: Scene) -> dict[str, list[Term | Load]]:
+    """Terms and loads of a scene; those of one name stand in the equations of several fields."""
+    equations, found = assemble_equations(scene, _BASIS), {}
+    for term in (*equations.terms, *equations.loads):
+        found.setdefault(term.name, []).append(term)
+    return found
 
 
-def _describe(term: Term | Load, assembled: Term | Load | None, scene: SampledScene) -> Entry:
-    """Describe a term, given as it is assembled for the scene; None if it is not."""
-    largest = 0.0 if assembled is None else float(np.abs(assembled.coefficient(scene.root)).max())
-    explanation = _EXPLANATIONS.get(term.name, Explanation(term.name, "it is assembled"))
-    sentence = explanation.sentence(scene, present=bool(largest))
-    return Entry(term.name, explanation.symbol, _QUANTITY[term.quantity], largest, bool(largest), sentence)
+def _describe(every: list[Term | Load], assembled: list[Term | Load], scene: SampledScene) -> Entry:
+    """Describe the terms of one name, given as they are in general and as assembled for the scene."""
+    sizes = [float(np.abs(term.coefficient(scene.root)).max()) for term in assembled]
+    largest, name = max(sizes, default=0.0), every[0].name
+    explanation = _EXPLANATIONS.get(name, Explanation(name, "it is assembled"))
+    return Entry(
+        name=name,
+        symbol=explanation.symbol,
+        fields=tuple(dict.fromkeys(term.rows for term in assembled)),
+        quantity=" and ".join(dict.fromkeys(_QUANTITY[term.quantity] for term in every)),
+        largest=largest,
+        present=bool(largest),
+        reason=explanation.sentence(scene, present=bool(largest)),
+    )
 
 
 _EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
@@ -149,4 +174,5 @@ _QUANTITY = {
     "speed_squared": "speed squared [rad2/s2]",
     "root_axial": "root acceleration along the beam [m/s2]",
     "root_transverse": "root acceleration in the direction of bending [m/s2]",
+    "root_across": "root acceleration in the direction across [m/s2]",
 }

@@ -127,7 +127,7 @@ def list_models(
 
     The other parameters and what is raised are those of `choose_model`.
     """
-    segments = len(scene.beam.breakpoints) - 1
+    segments = len(scene.modelled_beam.breakpoints) - 1
     if segments > _MOST_SEGMENTS:
         raise ValueError(
             f"the beam has {segments} segments between its stations and breakpoints: at most "
@@ -148,7 +148,7 @@ def _list_from(model: Model | None, refining: bool) -> Iterator[Model]:
 
 def _refine(model: Model) -> Model | None:
     """The next finer model; None if there is none that is affordable."""
-    finer, segments = model.discretization.finer(), len(model.scene.beam.breakpoints) - 1
+    finer, segments = model.discretization.finer(), len(model.scene.modelled_beam.breakpoints) - 1
     if finer is None or (isinstance(finer, Ritz) and finer.functions * segments > _MOST_IN_ALL):
         return None
     refined = Model(model.scene, finer)
@@ -187,7 +187,7 @@ _FIRST_CANDIDATE: dict[str, Callable[[int, int, float, bool], Discretization]] =
 
 def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
     """Replace a discretization that has too few functions for the modes of a scene by "ritz"."""
-    segments = len(scene.beam.breakpoints) - 1
+    segments = len(scene.modelled_beam.breakpoints) - 1
     fits = isinstance(discretization, str) or _fits(discretization, modes, segments)
     return discretization if fits else "ritz"
 

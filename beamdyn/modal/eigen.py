@@ -17,7 +17,13 @@ import scipy.linalg
 from scipy.linalg import solve_triangular
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.modal.springs import remove_shift, softening_on_springs, solve_definite, solve_first_order
+from beamdyn.modal.springs import (
+    remove_shift,
+    softening_of_graded,
+    softening_on_springs,
+    solve_definite,
+    solve_first_order,
+)
 
 _EPS = np.finfo(float).eps
 # Rounding errors, fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of random scenes.  The
@@ -111,6 +117,8 @@ class Solver:
 
     @cached_property
     def _softening_on_springs(self) -> tuple[float, float]:
+        if (found := softening_of_graded(self.pencil)) is not None:
+            return found
         return softening_on_springs(self.mass, self.growth, self.pencil.shift)
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:

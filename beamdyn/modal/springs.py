@@ -15,6 +15,7 @@ _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
 _ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
+_GRADED = 1e-6  # lowest eigenvalue of a stiffness of unit diagonal, above which it is well-conditioned
 _SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
@@ -57,7 +58,33 @@ def remove_shift(
     low = np.abs(difference) < _LOW * pencil.shift
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
     nonzero = np.where(removed == 0, 1.0, np.abs(removed))
-    return removed, np.where(low, lost / nonzero, rounding * squared / nonzero)
+    return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
+
+
+def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
+    """Find what `softening_on_springs` does, from a stiffness that is graded, but not singular.
+
+    The springs' entries may be far smaller than others and still have all their digits, as in a Ritz basis,
+    whose other functions do not turn the root.
+
+    Returns
+    -------
+    tuple of float, or None
+        Softening and rounding; None if the stiffness at rest is singular, or not graded so.
+    """
+    diagonal = np.diag(pencil.K0)
+    if diagonal.min() <= 0:
+        return None
+    scale = 1 / np.sqrt(diagonal)
+    K0, K2, size = (
+        scale[:, None] * A * scale for A in (pencil.K0, pencil.K2, np.abs(pencil.K2) + np.abs(pencil.M))
+    )
+    if np.linalg.eigvalsh(K0)[0] < _GRADED:
+        return None
+    n = len(K0)
+    loss, v = scipy.linalg.eigh(-K2, K0, subset_by_index=(n - 1, n - 1))
+    lost = 2 * _BACKWARD * float(np.abs(v[:, 0]) @ size @ np.abs(v[:, 0]))
+    return (float(loss[0]), lost / float(loss[0])) if loss[0] > lost else (0.0, np.inf)
 
 
 def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> tuple[float, float]:
@@ -89,7 +116,9 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
         if lowest := _lowest_if_definite(stiffness):
             loss = float(scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1])
             lost = 2 * _BACKWARD * float(np.abs(growth).max()) / lowest
-            return (loss / (1 + squared * loss), lost / loss) if loss > lost else (0.0, np.inf)
+            if loss <= lost:
+                return 0.0, np.inf
+            return loss / (1 + squared * loss), lost / loss + 2 * _BACKWARD / lowest
         squared /= 4
     turn = np.linalg.eigh(at_rest)[1][:, 0]
     softened = turn @ spin @ turn < -len(growth) * _EPS * np.abs(growth).max()

@@ -96,5 +96,5 @@ class UncoupledSolver:
 
 def _order(eigenvalue: np.ndarray) -> np.ndarray:
     """Order (S, k) of eigenvalues by squared frequency, that of a growing mode being negative."""
-    sign = np.where((eigenvalue.imag == 0) & (eigenvalue.real > 0), -1.0, 1.0)
+    sign = np.where((np.imag(eigenvalue) == 0) & (np.real(eigenvalue) > 0), -1.0, 1.0)
     return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")

@@ -178,7 +178,11 @@ def plot_campbell(
 
 
 def plot_response(
-    speeds: np.ndarray, amplitude: np.ndarray, bound: np.ndarray | None = None, ax: Axes | None = None
+    speeds: np.ndarray,
+    amplitude: np.ndarray,
+    bound: np.ndarray | None = None,
+    ax: Axes | None = None,
+    by_direction: Mapping[str, np.ndarray] | None = None,
 ) -> Axes:
     """Draw a resonance curve with a logarithmic scale of deflection.
 
@@ -192,6 +196,8 @@ def plot_response(
         Sum of the amplitudes of all lines [m].
     ax : Axes, optional
         Where to draw; new axes if not given.
+    by_direction : mapping of str to ndarray, shape (S,), optional
+        Largest tip deflections in single directions [m].
 
     Returns
     -------
@@ -201,6 +207,7 @@ def plot_response(
     rows = {"largest over both phases": np.asarray(amplitude)}
     if bound is not None:
         rows["sum of the lines"] = np.asarray(bound)
+    rows |= by_direction or {}
     _draw_lines(ax, speeds, (1e3 * np.where(row > 0, row, np.nan) for row in rows.values()), list(rows))
     for line in ax.lines[1:]:
         line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other

@@ -15,6 +15,7 @@ from beamdyn.published import load
 from beamdyn.reproduce.common import decimals
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import critical_point
 from beamdyn.spectrum.modes import natural_modes
@@ -128,4 +129,4 @@ def nondimensional_scene(case: dict[str, Any]) -> Scene:
         tip=TipMass(**case["tip"]) if "tip" in case else None,
     )
     mount = Mount(abs(delta), 0.0 if delta < 0 else np.pi, float(np.radians(case["bending_angle_deg"])))
-    return Scene(beam, mount, stretch=alpha is not None)
+    return Scene(beam, mount, physics=Physics(stretch=alpha is not None))

@@ -143,8 +143,9 @@ class Beam:
                 check_positive(name, getattr(self, name))
         if self.twist is not None and self.second_bending_stiffness is None:
             remedy = "give it to Beam.from_stiffness; Beam.rectangular computes it"
-            bound = "it turns two directions of bending, and needs second_bending_stiffness"
-            raise InvalidValue("twist", self.tip_twist, bound, remedy, "rad", where=" at the tip")
+            bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
+            where = " at the tip"
+            raise InvalidValue("twist", self.tip_twist, bound, remedy, "rad", other=other, where=where)
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
         if self.tip is not None and self.length + self.tip.offset < 0:

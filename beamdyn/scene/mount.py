@@ -10,6 +10,7 @@ from beamdyn.common.checks import angle, not_negative, set_fields
 from beamdyn.common.described import Described
 from beamdyn.scene.doubts import warn_of_degrees
 
+_SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}
 _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
 
@@ -67,13 +68,14 @@ class Mount:
             "rad", "psi", "angle between the direction of bending and the plane of rotation", **_ONE_TURN
         ),
     ] = 0.0
-
     root_stiffness: Annotated[
         float,
-        Described("N m/rad", "k", "stiffness of the root against rotation by bending; 0 is a hinge", least=0),
+        Described(
+            "N m/rad", "k", "stiffness of the root against rotation by bending; 0 is a hinge", **_SPRING
+        ),
     ] = math.inf
     second_root_stiffness: Annotated[
-        float, Described("N m/rad", "k2", "the same for bending in the direction across", least=0)
+        float, Described("N m/rad", "k2", "the same for bending in the direction across", **_SPRING)
     ] = math.inf
 
     def __post_init__(self) -> None:
@@ -95,4 +97,4 @@ def _spring(name: str, value: object) -> float:
     """A stiffness of zero or more, which may be infinite [N m/rad]."""
     if isinstance(value, float) and value == math.inf:
         return value
-    return not_negative(name, value, "N m/rad", "0 is a hinge; without it, the root is clamped")
+    return not_negative(name, value, "N m/rad", _SPRING["remedy"])

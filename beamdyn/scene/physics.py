@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, Literal
 
 from beamdyn.common.checks import count, flag, set_fields
+from beamdyn.common.described import Described
 
 
 @dataclass(frozen=True)
@@ -29,10 +31,12 @@ class Physics:
         If `planes` is neither 1 nor 2, or another value is no truth value.
     """
 
-    planes: int = 1
-    shear: bool = False
-    rotary_inertia: bool = False
-    stretch: bool = False
+    planes: Annotated[
+        Literal[1, 2], Described(meaning="directions of bending: that of the bending angle, or both")
+    ] = 1
+    shear: Annotated[bool, Described(meaning="shear deformation")] = False
+    rotary_inertia: Annotated[bool, Described(meaning="rotary inertia of the sections")] = False
+    stretch: Annotated[bool, Described(meaning="stretch of the beam and its Coriolis coupling")] = False
 
     def __post_init__(self) -> None:
         set_fields(self, planes=count("physics.planes", self.planes, most=2))

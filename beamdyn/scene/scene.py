@@ -105,7 +105,8 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
     for name, effect in _needed_properties(physics).items():
         if getattr(beam, name) is None:
             remedy = _REMEDIES[name if name in _REMEDIES else name.removeprefix(_SECOND)]
-            raise InvalidValue(f"physics.{effect}", getattr(physics, effect), f"it needs {name}", remedy)
+            given = getattr(physics, effect)
+            raise InvalidValue(f"physics.{effect}", given, "it needs {other}", remedy, other=name)
 
 
 @lru_cache(maxsize=256)

@@ -15,7 +15,6 @@ from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
-from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -24,6 +23,7 @@ from beamdyn.modal.choice import (
 )
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
+from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
@@ -218,21 +218,6 @@ def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     deflection = np.take_along_axis(each, np.abs(each).argmax(axis=0)[None], axis=0)[0]
     phase = np.where(deflection == 0, 1.0, deflection / np.abs(np.where(deflection == 0, 1.0, deflection)))
     return vectors / phase
-
-
-def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Share of the kinetic energy of modes (S, n, k) in the two directions of deflection: (S, k, 2)."""
-    if equations.planes == 1:
-        return np.tile([1.0, 0.0], (len(vectors), vectors.shape[2], 1))
-    energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
-    by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
-    total = energy.sum(axis=1)
-    return np.stack(by_plane, axis=2) / np.where(total == 0, 1.0, total)[..., None]
-
-
-def _coordinates(equations: Equations, direction: int) -> np.ndarray:
-    """Indices of the coordinates, before a reduction, that deflect the beam in a direction."""
-    return equations.places(n for n, d in equations.deflections.items() if d.direction == direction)
 
 
 def _status(s: np.ndarray) -> np.ndarray:

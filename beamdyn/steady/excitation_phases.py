@@ -51,6 +51,12 @@ def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndar
     return PeriodicSystem(rates, mean, tuple(varying), loads)
 
 
+def split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:
+    """Split the equations into parts that no term couples, such as two planes, each with its coordinates."""
+    places = [equations.places(names) for names in equations.connected]
+    return [(system.part(each), each) for each in places]
+
+
 def check_steady_state(motion: Motion | None) -> Motion:
     """Return the motion, or rotation about a fixed centre for None.
 

@@ -60,6 +60,18 @@ class PeriodicSystem:
             tuple((spectrum[chosen], vector) for spectrum, vector in self.loads),
         )
 
+    def part(self, coordinates: np.ndarray) -> PeriodicSystem:
+        """Equations of some coordinates, which no term couples with others."""
+        rows = coordinates[:, None]
+        varying = ((order, spectrum, matrix[rows, coordinates]) for order, spectrum, matrix in self.varying)
+        loads = ((spectrum, vector[coordinates]) for spectrum, vector in self.loads)
+        return PeriodicSystem(
+            self.rates,
+            self.mean[..., rows, coordinates],
+            tuple(term for term in varying if term[2].any()),
+            tuple(load for load in loads if load[1].any()),
+        )
+
     @property
     def size(self) -> int:
         """Number of coordinates n."""
@@ -221,14 +233,14 @@ def _solve(A: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Find the largest |u| of u = sum_h Re(a_h exp(i h.phi)) over both phases phi.
+    """Find the largest |u| of the vector u = sum_h Re(a_h exp(i h.phi)) over both phases phi.
 
     The largest maxima of samples are refined by Newton's method.
 
     Parameters
     ----------
-    amplitude : ndarray of complex, shape (S, H)
-        a_h.
+    amplitude : ndarray of complex, shape (S, d, H)
+        a_h, of d components.
     harmonics : ndarray of int, shape (H, 2)
         The harmonics h.
 
@@ -239,16 +251,16 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     h = harmonics
     degree = np.abs(h).max(axis=0, initial=0)
     N = np.where(degree > 0, 6 * (degree + 1), 1)
-    padded = np.zeros((len(amplitude), *N), dtype=complex)
-    padded[:, h[:, 0] % N[0], h[:, 1] % N[1]] = amplitude
-    sampled = np.abs(np.fft.ifft2(padded, norm="forward").real)
+    padded = np.zeros((*amplitude.shape[:2], *N), dtype=complex)
+    padded[..., h[:, 0] % N[0], h[:, 1] % N[1]] = amplitude
+    sampled = np.hypot.reduce(np.fft.ifft2(padded, norm="forward").real, axis=1)
     best = sampled.max(axis=(1, 2))
     phases = _find_maxima(sampled) * (2 * np.pi / N)
     for _ in range(_NEWTON_STEPS):
-        value, slope, curvature = _evaluate(amplitude, h, phases)
-        best = np.fmax(best, np.abs(value).max(axis=1))
-        phases = phases + _ascent_step(value, slope, curvature, 2 * np.pi / N.max())
-    return np.fmax(best, np.abs(_evaluate(amplitude, h, phases)[0]).max(axis=1))
+        size, slope, curvature = _evaluate_size(amplitude, h, phases)
+        best = np.fmax(best, np.abs(size).max(axis=1))
+        phases = phases + _ascent_step(size, slope, curvature, 2 * np.pi / N.max())
+    return np.fmax(best, np.abs(_evaluate_size(amplitude, h, phases)[0]).max(axis=1))
 
 
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:
@@ -270,11 +282,29 @@ def _find_maxima(sampled: np.ndarray) -> np.ndarray:
     return np.stack(np.unravel_index(chosen, sampled.shape[1:]), axis=-1)
 
 
+def _evaluate_size(
+    a: np.ndarray, h: np.ndarray, phases: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Evaluate |u|, with the sign of the first component, its gradient and second derivatives."""
+    u, slope, curvature = _evaluate(a, h, phases)
+    size = np.copysign(np.hypot.reduce(u, axis=1), u[:, 0])
+    divisor = np.where(size == 0, 1.0, size)
+    direction = u / divisor[:, None]
+    along = np.einsum("sdp,sdpa->spa", direction, slope)
+    turning = slope - direction[..., None] * along[:, None]  # the slope that changes the direction only
+    bending = np.einsum("sdp,sdpab->spab", direction, curvature)
+    sideways = turning / divisor[:, None, :, None]
+    return size, along, bending + np.einsum("sdpa,sdpb->spab", turning, sideways)
+
+
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate u, its gradient and its matrix of second derivatives at phases (S, P, 2)."""
-    waves = a[:, None] * np.exp(1j * phases @ h.T)
-    return (
+    """Evaluate u (S, d, P), its gradient and its matrix of second derivatives at phases (S, P, 2)."""
+    (S, d, H), P = a.shape, phases.shape[1]
+    waves = (a[:, :, None] * np.exp(1j * phases @ h.T)[:, None]).reshape(S * d, P, H)
+    values = (
         waves.sum(axis=-1).real,
         (1j * waves @ h).real,
         -np.einsum("sph,ha,hb->spab", waves, h, h, optimize=True).real,
     )
+    u, slope, curvature = (value.reshape(S, d, *value.shape[1:]) for value in values)
+    return u, slope, curvature

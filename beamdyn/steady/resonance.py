@@ -12,19 +12,20 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import count, positive
+from beamdyn.common.checks import InvalidValue, count, positive
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.error_estimate import solve_with_error
 from beamdyn.modal.model import Model
+from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
+from beamdyn.modal.uncoupled import UncoupledSolver
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
-from beamdyn.steady.harmonic_balance import Pair, generate_harmonics
+from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, generate_harmonics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 _HIGHEST_ORDER = 20  # that may be asked for: ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
 _ROUNDING = 4 * np.finfo(float).eps
+_COINCIDENT = 1e-8  # largest distance of a line from a frequency over the speeds, over it: rounding
+_FURTHER_MODES = 2  # of other parts, which may come below those that are sought
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,10 @@ class Crossing:
         Estimated relative error of the speed.
     second_mode : int or None
         Number of the other mode of a combination resonance.
+    plane_share : tuple of float
+        Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
+    second_plane_share : tuple of float or None
+        The same of the other mode of a combination resonance.
     """
 
     line: Line
@@ -64,6 +71,8 @@ class Crossing:
     kind: str
     error: float
     second_mode: int | None = None
+    plane_share: tuple[float, float] = (1.0, 0.0)
+    second_plane_share: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -138,7 +147,9 @@ def resonance_speeds(
 
     The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are
     bracketed on the continuous loci and refined to rounding error; minima of the distance between the
-    brackets are sought too, so that two close roots are both found.  Damping is neglected.
+    brackets are sought too, so that two close roots are both found.  Damping is neglected.  Modes that no
+    term couples, such as those of two planes without twist, each meet only the lines of their own loads and
+    stiffness.
 
     Parameters
     ----------
@@ -172,31 +183,58 @@ def resonance_speeds(
     scene = replace(scene, damping_ratio=0.0)
     model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
-    locus = _Loci(model, min(top, critical), modes)
-    here, next_order = (_excitation_lines(model.equations, scene.motion, top, n) for n in (order, order + 1))
-    sought = dict.fromkeys(_list_resonances(*here, modes, order))  # a set that keeps their order
-    crossings = [c for resonance in sought for c in locus.crossings(*resonance)]
-    further = [each for each in _list_resonances(*next_order, modes, order + 1) if each not in sought]
-    left_out = sum(locus.count_crossings(line, indices) for _, line, indices in further)
+    _check_stiffness(scene, critical)
+    system = periodic_system(model.equations, scene.motion, np.array([top]))
+    parts = [
+        _Part(
+            loci, *(_excitation_lines(system.part(loci.places), scene.motion, n) for n in (order, order + 1))
+        )
+        for loci in _split(model, min(top, critical), modes)
+    ]
+    sought = [(part.loci, each) for part in parts for each in part.resonances(order)]
+    crossings = [c for loci, each in sought for c in loci.crossings(*each)]
+    left_out = sum(part.count_further(order) for part in parts)
     names = str(model.discretization), str(model.coarser.discretization)
+    numbers = np.concatenate([part.loci.numbers for part in parts])
+    frequency = np.concatenate([part.loci.tracked for part in parts], axis=1)[:, np.argsort(numbers)]
+    lines = tuple(
+        _distinct(line for of_part in kind for line in of_part)
+        for kind in zip(*(p.lines for p in parts), strict=True)
+    )
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
-        lines=tuple(here[0]),
-        speeds=locus.speeds,
-        frequency=np.take_along_axis(locus.values, locus.order, axis=1) / (2 * np.pi),
+        lines=tuple(lines[0]),
+        speeds=parts[0].loci.speeds,
+        frequency=frequency / (2 * np.pi),
         order=order,
         left_out=left_out,
-        warnings=tuple(_warnings(scene, here, len(crossings), order, top, critical)),
+        warnings=(
+            *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
+            *_warnings(scene, lines, len(crossings), order, top, critical),
+        ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
     )
 
 
+def _check_stiffness(scene: Scene, critical: float) -> None:
+    """Refuse a beam that the slightest rotation turns over about its root."""
+    if critical == 0:
+        names = ("root_stiffness", "second_root_stiffness")
+        hinged = [n for n in names if getattr(scene.mount, n) == 0]
+        raise InvalidValue(
+            f"mount.{hinged[0]}",
+            0.0,
+            "the beam is unstable at any speed, and does not vibrate",
+            "give the hinge a spring, or a beam that points outward",
+            "N m/rad",
+        )
+
+
 def _excitation_lines(
-    equations: Equations, motion: Motion | None, speed: float, order: int
+    system: PeriodicSystem, motion: Motion | None, order: int
 ) -> tuple[list[Line], list[Line]]:
-    """Lines of the load and of the stiffness at a speed [rad/s], up to an order."""
-    system = periodic_system(equations, motion, np.array([speed]))
+    """Lines of the load and of the stiffness, up to an order."""
     motion = check_steady_state(motion)
 
     def generate_lines(start: Iterable[Pair], interactions: int) -> list[Line]:
@@ -204,6 +242,32 @@ def _excitation_lines(
         return _distinct(name_line(motion, h) for level in levels for h in level)
 
     return generate_lines(system.load_harmonics, order - 1), generate_lines([(0, 0)], order)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Modes that no term couples with others, and the lines of their loads and of their stiffness.
+
+    Parameters
+    ----------
+    loci : _Loci
+        Natural frequencies over speed.
+    lines, more_lines : pair of list of Line
+        Lines up to the order that is sought, and up to the next.
+    """
+
+    loci: _Loci
+    lines: tuple[list[Line], list[Line]]
+    more_lines: tuple[list[Line], list[Line]]
+
+    def resonances(self, order: int) -> dict[tuple[str, Line, tuple[int, ...]], None]:
+        """Kinds, lines and indices of the modes of the resonances: a set that keeps their order."""
+        return dict.fromkeys(_list_resonances(*self.lines, self.loci.modes, order))
+
+    def count_further(self, order: int) -> int:
+        """Count the crossings of the next order."""
+        sought, more = self.resonances(order), _list_resonances(*self.more_lines, self.loci.modes, order + 1)
+        return sum(self.loci.count_crossings(*each[1:]) for each in more if each not in sought)
 
 
 def _list_resonances(
@@ -245,6 +309,22 @@ def _distinct(lines: Iterable[Line]) -> list[Line]:
     return [distinct[multiple] for multiple in sorted(distinct)]
 
 
+def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
+    """Yield the loci of the lowest modes at rest, apart for each part that no term couples."""
+    solver = model.solver
+    uncoupled = isinstance(solver, UncoupledSolver)
+    parts = (
+        [*zip(solver.parts, solver.solvers, strict=True)] if uncoupled else [(np.arange(solver.size), solver)]
+    )
+    rest = [np.abs(s.eigenvalues(np.zeros(1), min(modes, s.size))[0]) for _, s in parts]
+    part_of_mode = np.repeat(np.arange(len(parts)), [len(frequencies) for frequencies in rest])
+    lowest = part_of_mode[np.argsort(np.concatenate(rest), kind="stable")[:modes]]
+    for i, (places, of_part) in enumerate(parts):
+        numbers = np.flatnonzero(lowest == i) + 1
+        if len(numbers):
+            yield _Loci(model, of_part, places, numbers, top)
+
+
 class _Loci:
     """Natural frequencies over speed, in ascending order: continuous, with kinks where they cross.
 
@@ -252,19 +332,30 @@ class _Loci:
     ----------
     model : Model
         The discretized scene.
+    solver : Solver
+        Eigensolver of the modes that are sought, which others do not affect.
+    places : ndarray of int
+        Coordinates of the solver in the model.
+    numbers : ndarray of int, shape (m,)
+        Numbers of the modes among all, from 1, in the order at rest.
     top : float
         Top speed [rad/s].
-    modes : int
-        Number of modes.
     """
 
-    def __init__(self, model: Model, top: float, modes: int) -> None:
-        self.model, self.modes = model, modes
-        self.solver: Solver = model.solver
+    def __init__(
+        self, model: Model, solver: Solver, places: np.ndarray, numbers: np.ndarray, top: float
+    ) -> None:
+        self.model, self.solver, self.places, self.numbers = model, solver, places, numbers
+        self.modes = len(numbers)
         self.speeds = np.linspace(0, top, _NODES + 1)
         self.values = self.frequencies(self.speeds)
-        vectors = self.solver.solve(self.speeds, modes).vector
+        vectors = self.solver.solve(self.speeds, self.modes).vector
         self.order, _ = track(vectors, self.solver.pencil.M)
+
+    @property
+    def tracked(self) -> np.ndarray:
+        """Angular frequencies [rad/s], each followed through crossings: shape (S, m)."""
+        return np.take_along_axis(self.values, self.order, axis=1)
 
     def frequencies(self, speeds: np.ndarray) -> np.ndarray:
         """Angular frequencies [rad/s], ascending: shape (S, m)."""
@@ -272,6 +363,8 @@ class _Loci:
 
     def crossings(self, kind: str, line: Line, indices: tuple[int, ...]) -> Iterator[Crossing]:
         """Find the crossings of a line with a natural frequency, or with the sum of two, given by indices."""
+        if self.coincide(line, indices):
+            return
 
         def detuning(speed: float) -> float:
             return float(self.frequencies(np.array([speed]))[0, indices].sum()) - line.multiple * speed
@@ -282,7 +375,19 @@ class _Loci:
 
     def count_crossings(self, line: Line, indices: tuple[int, ...]) -> int:
         """Count the crossings of a line by the changes of sign over the speeds of the locus."""
+        if self.coincide(line, indices):
+            return 0
         return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
+
+    def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
+        """Whether a line equals a natural frequency, or the sum of two, at every speed: a hinged beam's."""
+        distance, own = self._detunings(line, indices), self.values[:, indices].sum(axis=1)
+        return bool(np.abs(distance).max() <= _COINCIDENT * own.max())
+
+    def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:
+        """A sentence on a line that equals a natural frequency at every speed."""
+        modes = " and ".join(f"mode {number}" for number in sorted({int(self.numbers[i]) for i in indices}))
+        return f"{modes} and the line {line.name} ({kind}) resonate at every speed, which is no crossing"
 
     def _detunings(self, line: Line, indices: tuple[int, ...]) -> np.ndarray:
         """Distance of a frequency, or of the sum of two, from a line [rad/s], at the speeds of the locus."""
@@ -292,20 +397,47 @@ class _Loci:
         self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float
     ) -> Crossing:
         """Crossing at a root `speed`; the detuning's slope turns errors of frequency into speed."""
-        solution = solve_with_error(self.model, np.array([speed]), self.modes)
-        omega = self.frequencies(np.array([speed]))[0]
-        error = np.abs(np.abs(solution.eigen.eigenvalue[0]) - omega) + solution.error[0] * omega
+        omega, vectors = self.frequencies(np.array([speed]))[0], self._solve_vectors(speed)
         node = int(np.searchsorted(self.speeds, speed)) - 1
-        numbers = [int(np.flatnonzero(self.order[node] == index)[0]) + 1 for index in indices]
+        numbered = sorted((self._number(node, index), index) for index in set(indices))
+        shares = [self._plane_share(vectors[:, [index]]) for _, index in numbered]
         return Crossing(
             line=line,
-            mode=min(numbers),
+            mode=numbered[0][0],
             speed=speed,
             frequency=float(omega[indices[0]] / (2 * np.pi)),
             kind=kind,
-            error=float(error[list(indices)].sum() / abs(slope * speed)) + _ROUNDING,
-            second_mode=max(numbers) if len(set(numbers)) > 1 else None,
+            error=float(self._error(speed, omega[list(indices)]).sum() / abs(slope * speed)) + _ROUNDING,
+            second_mode=numbered[1][0] if len(numbered) > 1 else None,
+            plane_share=shares[0],
+            second_plane_share=shares[1] if len(numbered) > 1 else None,
         )
+
+    def _error(self, speed: float, omega: np.ndarray) -> np.ndarray:
+        """Estimated errors of angular frequencies at a speed [rad/s], by the modes of the whole beam."""
+        size = self.model.solver.size
+        further = 0 if len(self.places) == size else _FURTHER_MODES
+        most = min(int(self.numbers[-1]) + further, size)
+        solution = solve_with_error(self.model, np.array([speed]), most)
+        solved = np.abs(solution.eigen.eigenvalue[0])
+        same = np.abs(solved - omega[:, None]).argmin(axis=1)
+        return np.abs(solved[same] - omega) + solution.error[0, same] * omega
+
+    def _number(self, node: int, index: int) -> int:
+        """Number of the mode that has an index at a node of speed."""
+        return int(self.numbers[np.flatnonzero(self.order[node] == index)[0]])
+
+    def _solve_vectors(self, speed: float) -> np.ndarray:
+        """Modes (n, m) at a speed, over the coordinates of the model."""
+        vectors = self.solver.solve(np.array([speed]), self.modes).vector[0]
+        embedded = np.zeros((self.model.solver.size, self.modes), dtype=vectors.dtype)
+        embedded[self.places] = vectors
+        return embedded
+
+    def _plane_share(self, vector: np.ndarray) -> tuple[float, float]:
+        """Share of the kinetic energy of a mode (n, 1) in the two directions."""
+        along, across = plane_share(self.model.equations, vector[None])[0, 0].tolist()
+        return along, across
 
 
 def _bracket(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:

@@ -11,16 +11,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import ascending, count, positive
+from beamdyn.common.checks import InvalidValue, ascending, count, positive
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result, plain
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
+from beamdyn.modal.eigen import Solver
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, list_range, warn_of_deflection, warn_of_road
-from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
+from beamdyn.steady.excitation_phases import (
+    check_steady_state,
+    name_line,
+    periodic_system,
+    split_uncoupled,
+)
 from beamdyn.steady.harmonic_balance import (
     Pair,
     PeriodicSystem,
@@ -28,7 +34,7 @@ from beamdyn.steady.harmonic_balance import (
     largest_over_phases,
     solve_harmonic_balance,
 )
-from beamdyn.steady.stability import growth_rate
+from beamdyn.steady.stability import fastest_growth
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,6 +45,8 @@ _MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
+_NO_FREQUENCY = 1e-8  # over the frequency of a clamped beam: what rounding leaves of a square of 0
+_WITHOUT_STIFFNESS = "past the critical speed", "turns freely about the root"
 
 
 @dataclass(frozen=True)
@@ -50,15 +58,17 @@ class SteadyResponse(Result):
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
     amplitude : ndarray, shape (S,)
-        Largest |tip deflection| over both phases [m]; nan where there is no steady response.
+        Largest magnitude of the tip deflection over both phases [m], that of the vector where the beam bends
+        in two directions; nan where there is no steady response.
     bound : ndarray, shape (S,)
-        Sum of the amplitudes of all lines, the static one included [m].
+        Sum of the amplitudes of all lines, the static one included [m]; a line's is the longer semi-axis of
+        the ellipse that the tip describes.
     stable : ndarray of bool, shape (S,)
         Whether free vibration decays, or without damping stays bounded.
     status : ndarray of str, shape (S,)
-        "stable", "parametric instability" or "past the critical speed".
+        "stable", "parametric instability", "past the critical speed" or "turns freely about the root".
     growth_rate : ndarray, shape (S,)
-        Largest growth rate of free vibration [1/s].
+        Largest growth rate of free vibration [1/s]; nan where the beam turns freely about its root.
     growth_rate_error : ndarray, shape (S,)
         Estimated error [1/s]: for resonant modes by the harmonics left out and between the phases tried; for
         others the second-order shift by the periodic coefficients.
@@ -68,8 +78,9 @@ class SteadyResponse(Result):
         The lines of the response.
     line_frequency : ndarray, shape (S, l)
         Frequencies of the lines [Hz].
-    line_amplitude : ndarray of complex, shape (S, l)
-        Complex tip deflection a of each line [m]: the tip's is the sum of Re(a exp(i (j theta + k chi))).
+    line_amplitude, line_amplitude_across : ndarray of complex, shape (S, l)
+        Complex tip deflection a of each line [m] in the direction of bending at the root and across it, 0
+        there where one plane is modelled: the tip's is the sum of Re(a exp(i (j theta + k chi))).
     harmonics : ndarray of int, shape (l, 2)
         j and k of each line.
     warnings : tuple of str
@@ -93,6 +104,7 @@ class SteadyResponse(Result):
     lines: tuple[Line, ...]
     line_frequency: np.ndarray
     line_amplitude: np.ndarray
+    line_amplitude_across: np.ndarray
     harmonics: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
@@ -127,17 +139,36 @@ class SteadyResponse(Result):
         """The result as plain numbers, lists and strings, `mode_error` included."""
         return {**super().to_dict(), "mode_error": plain(self.mode_error)}
 
-    def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0) -> np.ndarray:
-        """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...)."""
+    def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
+        """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...).
+
+        The direction is 0 for that of the bending angle at the root, 1 for that across.
+        """
         rotation, road = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([rotation, road]), axes=1)
-        return np.real(np.tensordot(self.line_amplitude, np.exp(1j * phase), axes=1))
+        return np.real(np.tensordot(self._lines(direction), np.exp(1j * phase), axes=1))
+
+    def largest_tip(self, direction: int = 0) -> np.ndarray:
+        """Largest |tip deflection| in a direction over both phases [m], (S,); the direction as for `tip`."""
+        size, lines = np.full(len(self.speeds), np.nan), self._lines(direction)
+        size[self.stable] = largest_over_phases(lines[self.stable, None], self.harmonics)
+        return size
+
+    def _lines(self, direction: int) -> np.ndarray:
+        """Amplitudes of the lines (S, l) in a direction."""
+        if direction not in (0, 1):
+            raise InvalidValue(
+                "direction", direction, "0 is the direction of the bending angle, 1 that across"
+            )
+        return self.line_amplitude_across if direction else self.line_amplitude
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the resonance curve."""
+        """Draw the resonance curve, and where the beam bends in two directions also that in each."""
         from beamdyn.output.plots import plot_response
 
-        return plot_response(self.speeds, self.amplitude, self.bound, ax)
+        names = ("in the direction of bending", "across") if self.scene.physics.planes == 2 else ()
+        by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}
+        return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction)
 
 
 def steady_response(
@@ -212,11 +243,14 @@ class ResponseRequest(FieldsOnly):
         scene, speeds, model = self.scene, self.speeds, self.model
         equations = model.modal_equations(self.basis)
         system = periodic_system(equations, scene.motion, speeds)
-        rate, rate_error = growth_rate(system)
-        status = _status(rate, speeds, model.solver.critical_speed)
-        used, c, error = _solve_harmonics(system, equations.tip, self.harmonics, self.tolerance)
-        undecided = (np.abs(rate) < rate_error) & (status != "past the critical speed")
-        stable = (status == "stable") & np.isfinite(c).all(axis=1)
+        parts = split_uncoupled(system, equations)
+        free = _turns_freely(model, speeds)
+        rate, rate_error = np.full((2, len(speeds)), np.nan)
+        rate[~free], rate_error[~free] = fastest_growth([part[~free] for part, _ in parts])
+        status = _status(rate, speeds, model.solver.critical_speed, free)
+        used, c, error = _solve_parts(parts, equations.tips, self.harmonics, self.tolerance)
+        undecided = (np.abs(rate) < rate_error) & ~np.isin(status, _WITHOUT_STIFFNESS)
+        stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
         amplitude = np.full(len(speeds), np.nan)
         motion = check_steady_state(scene.motion)
@@ -226,7 +260,7 @@ class ResponseRequest(FieldsOnly):
         return SteadyResponse(
             speeds=speeds,
             amplitude=amplitude,
-            bound=np.abs(line).sum(axis=1),
+            bound=_sizes(line).sum(axis=1),
             stable=stable,
             status=status,
             growth_rate=rate,
@@ -234,7 +268,8 @@ class ResponseRequest(FieldsOnly):
             error=error,
             lines=tuple(name_line(motion, h) for h in map(tuple, harmonic.tolist())),
             line_frequency=np.abs(system.rates @ harmonic.T) / (2 * np.pi),
-            line_amplitude=line,
+            line_amplitude=_along(line),
+            line_amplitude_across=_across(line),
             harmonics=harmonic,
             warnings=tuple(
                 _warnings(scene, speeds, status, amplitude, error, self.tolerance, road, undecided)
@@ -273,29 +308,51 @@ class ResponseRequest(FieldsOnly):
         return choose_model(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
 
 
-def _status(rate: np.ndarray, speeds: np.ndarray, critical: float) -> np.ndarray:
+def _status(rate: np.ndarray, speeds: np.ndarray, critical: float, free: np.ndarray) -> np.ndarray:
     """Status at each speed."""
+    past, turning = _WITHOUT_STIFFNESS
     status = np.where(rate > 0, "parametric instability", "stable")
-    return np.where(np.abs(speeds) >= critical, "past the critical speed", status)
+    return np.select([free, np.abs(speeds) >= critical], [turning, past], status)
+
+
+def _turns_freely(model: Model, speeds: np.ndarray) -> np.ndarray:
+    """Whether nothing resists a rotation of the beam about its root, shape (S,)."""
+    if not model.equations.shift:  # the stiffness at rest is positive definite
+        return np.zeros(len(speeds), dtype=bool)
+    lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
+    return lowest < _NO_FREQUENCY * np.sqrt(model.equations.shift)
+
+
+def _solve_parts(
+    parts: list[tuple[PeriodicSystem, np.ndarray]], tips: np.ndarray, steps: int | None, tolerance: float
+) -> tuple[list[Pair], np.ndarray, np.ndarray]:
+    """Harmonics (H), tip deflections (S, d, H) and errors (S) of parts that no term couples, together."""
+    solved = [_solve_harmonics(part, tips[:, places], steps, tolerance) for part, places in parts]
+    index = {h: i for i, h in enumerate(dict.fromkeys(h for harmonics, *_ in solved for h in harmonics))}
+    c = np.zeros((len(solved[0][1]), len(tips), len(index)), dtype=complex)
+    for harmonics, of_part, _ in solved:
+        c[..., [index[h] for h in harmonics]] += of_part
+    return list(index), c, np.max([error for *_, error in solved], axis=0)
 
 
 def _solve_harmonics(
-    system: PeriodicSystem, tip: np.ndarray, steps: int | None, tolerance: float
+    system: PeriodicSystem, tips: np.ndarray, steps: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, H) and errors (S); each speed solved with as many as it needs."""
+    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed solved with as many as it needs."""
+    S, d = len(system.rates), len(tips)
     if not system.load_harmonics:
-        return [], np.zeros((len(system.rates), 0), dtype=complex), np.full(len(system.rates), _ROUNDING)
+        return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
     most = _MOST_INTERACTIONS if steps is None else steps
     levels = generate_harmonics(system.load_harmonics, system.coupling, most + 1)
     complete, levels = len(levels) <= most + 1, levels[: most + 1]
     sizes = np.cumsum([len(level) for level in levels])
-    c = np.zeros((len(system.rates), sizes[-1]), dtype=complex)
-    error = np.full(len(c), np.inf)
+    c = np.zeros((S, d, sizes[-1]), dtype=complex)
+    error = np.full(S, np.inf)
     for used in range(min(3 if steps is None else most + 1, len(levels)), len(levels) + 1):
         exact = complete and used == len(levels)
         unconverged = np.flatnonzero(~(error <= tolerance))
         for part in _split_by_memory(unconverged, system.size * sizes[used - 1]):
-            c[part, : sizes[used - 1]], error[part] = _solve_tip(system[part], tip, levels[:used])
+            c[part, :, : sizes[used - 1]], error[part] = _solve_tip(system[part], tips, levels[:used])
             error[part] = _ROUNDING if exact else error[part]
     return [h for level in levels for h in level], c, error
 
@@ -306,20 +363,37 @@ def _split_by_memory(unconverged: np.ndarray, size: int) -> list[np.ndarray]:
 
 
 def _solve_tip(
-    system: PeriodicSystem, tip: np.ndarray, levels: list[list[Pair]]
+    system: PeriodicSystem, tips: np.ndarray, levels: list[list[Pair]]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Tip deflections (S, H), and their distance from those without the last level, over their sum."""
-    c, truncated = (q @ tip for q in solve_harmonic_balance(system, levels))
-    total = np.abs(c).sum(axis=1)
-    return c, np.abs(c - truncated).sum(axis=1) / np.where(total == 0, 1, total)
+    """Tip deflections (S, d, H), and their distance from those without the last level, over their sum."""
+    solutions = solve_harmonic_balance(system, levels)
+    c, truncated = (np.stack([q @ tip for tip in tips], axis=1) for q in solutions)
+    total = _sizes(c).sum(axis=1)
+    return c, _sizes(c - truncated).sum(axis=1) / np.where(total == 0, 1, total)
+
+
+def _sizes(c: np.ndarray) -> np.ndarray:
+    """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi: the longer semi-axes of ellipses."""
+    along, across = _along(c), 1j * _across(c)
+    return (np.abs(along + across) + np.abs(along - across)) / 2  # of circles in either sense
+
+
+def _along(c: np.ndarray) -> np.ndarray:
+    """Component (S, H) of vectors (S, d, H) in the direction of bending."""
+    return c[:, 0]
+
+
+def _across(c: np.ndarray) -> np.ndarray:
+    """Component (S, H) of vectors (S, d, H) in the direction across; 0 where one plane is modelled."""
+    return c[:, 1:].sum(axis=1)
 
 
 def _combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Combine each pair h, -h into the line of positive frequency: harmonics (l, 2), amplitudes (S, l)."""
+    """Combine each pair h, -h into the line of positive frequency: harmonics (l, 2), amplitudes (S, d, l)."""
     kappa = motion.road_multiple or 0.0
     forward = [i for i, h in enumerate(harmonics) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
     harmonic = np.array([harmonics[i] for i in forward], dtype=int).reshape(-1, 2)
-    return harmonic, c[:, forward] * np.where(harmonic.any(axis=1), 2.0, 1.0)
+    return harmonic, c[..., forward] * np.where(harmonic.any(axis=1), 2.0, 1.0)
 
 
 def _warnings(
@@ -332,7 +406,7 @@ def _warnings(
     road: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[str]:
-    for name in ("parametric instability", "past the critical speed"):
+    for name in ("parametric instability", *_WITHOUT_STIFFNESS):
         if (at := speeds[status == name]).size:
             yield f"{name} at {len(at)} speed(s), {list_range(at)}: no steady response"
     if (at := speeds[amplitude == 0]).size:

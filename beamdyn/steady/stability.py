@@ -17,7 +17,7 @@ add on all sides.  Their number grows until the growth rate settles.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 
@@ -79,6 +79,14 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
         for i, resonances in free.resonances(rate[rows] <= 0):
             rate[rows[i]], error[rows[i]] = _combine(sigma[rows[i]], shift[i], resonances)
     return rate, error
+
+
+def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndarray]:
+    """Growth rate (S,) of a free motion of parts that no term couples, and its error [1/s]."""
+    rates, errors = np.swapaxes([growth_rate(part) for part in parts], 0, 1)
+    largest = rates.max(axis=0)
+    above, below = errors + (rates - largest), errors + (largest - rates)
+    return largest, np.maximum(above.max(axis=0), below.min(axis=0))
 
 
 def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance]) -> tuple[float, float]:

@@ -90,7 +90,7 @@ def _sizes(eigenvalues: np.ndarray) -> np.ndarray:
 
 def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Compute reference modes, with as many Ritz functions as resolve them."""
-    segments = len(scene.beam.breakpoints) - 1
+    segments = len(scene.modelled_beam.breakpoints) - 1
     for functions in _REFERENCES[:-1]:
         solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
         if solution.error.max() <= _RESOLVED:
@@ -122,21 +122,24 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     """All families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
-    segments = len(scene.beam.breakpoints) - 1
+    segments = len(scene.modelled_beam.breakpoints) - 1
     least = -(-modes // segments)  # Legendre functions are counted per segment
     yield _ritz_family(scene, speeds, modes, "legendre", [n for n in _LEGENDRE if n >= least])
     yield _ritz_family(scene, speeds, modes, "eigenfunctions", [n for n in _EIGENFUNCTIONS if n >= modes])
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
-    if not scene.stretch:  # with stretch modes may cross: a tracked locus then differs from the lowest modes
+    if (
+        not scene.physics.stretch
+    ):  # with it modes may cross: a tracked locus then differs from the lowest modes
         cases = (Setting(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
 
 
 def _ritz_family(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
     """Family of a Ritz basis, over its number of functions."""
-    each = "functions a segment" if basis == "legendre" and len(scene.beam.breakpoints) > 2 else "functions"
+    segmented = basis == "legendre" and len(scene.modelled_beam.breakpoints) > 2
+    each = "functions a segment" if segmented else "functions"
     cases = (Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
     return Family(f"Ritz, {basis}", tuple(cases))
 

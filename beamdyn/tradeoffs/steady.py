@@ -100,11 +100,12 @@ def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
     """Error measure: largest difference of the tip over the phases, over the bound, where both are stable."""
     phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
     rotation, road = np.meshgrid(phase, phase)
-    true = exact.tip(rotation, road)
+    true = [exact.tip(rotation, road, direction) for direction in (0, 1)]
 
     def error(response: SteadyResponse) -> float:
         both = exact.stable & response.stable & (exact.bound > 0)
-        difference = np.abs(response.tip(rotation, road) - true).max(axis=(1, 2))
+        along, across = (response.tip(rotation, road, i) - tip for i, tip in enumerate(true))
+        difference = np.hypot(along, across).max(axis=(1, 2))
         return float((difference[both] / exact.bound[both]).max(initial=0.0))
 
     return error

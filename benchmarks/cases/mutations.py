@@ -16,7 +16,26 @@ _NAME = re.compile(r'(?<=")[^"\n]*(?=")')
 _ASSIGNMENT = re.compile(r"(?m)^[\w.]+ = .*\n?")
 _HEADING = re.compile(r"(?m)^\[.*\]$")
 
-UNITS = ("mm", "m", "km", "deg", "rad", "rpm", "rad/s", "Hz", "kg", "N", "GPa", "s", "h", "%", "K", "dB", "")
+UNITS = (
+    "mm",
+    "m",
+    "km",
+    "deg",
+    "rad",
+    "rpm",
+    "rad/s",
+    "Hz",
+    "kg",
+    "N",
+    "N m2",
+    "GPa",
+    "s",
+    "h",
+    "%",
+    "K",
+    "dB",
+    "",
+)
 VALUES = (
     *(
         "nan",
@@ -45,6 +64,9 @@ VALUES = (
         '"1,5 mm"',
         '"1 mm 2"',
         '"m"',
+        '"inf"',
+        '"0 N m/rad"',
+        '"30 deg"',
     ),
     *(
         '"Größe"',
@@ -64,6 +86,7 @@ VALUES = (
         '[[["1 mm"]]]',
         "{ polynomial = [1] }",
         "{ stations = [], values = [] }",
+        '[["x/L", "twist [deg]"], [0, 10], [1, -5]]',
     ),
     *("9" * 400, f'"{"x" * 5000}"', "[" * 300 + "]" * 300, f"[{'1, ' * 3000}]"),
 )
@@ -85,6 +108,7 @@ EXTRAS = (
     ),
     *(
         "[motion]",
+        "[physics]\nplanes = 2",
         "[mount]\nradius = 1",
         "[stop]",
         "caliper = 'eebrake'",

@@ -71,7 +71,7 @@ def of_case(case: dict[str, Any]) -> bd.Scene:
     )
     angle = 0.0 if delta < 0 else math.pi
     mount = bd.Mount(abs(delta), angle, math.radians(case["bending_angle_deg"]))
-    return bd.Scene(beam, mount, stretch=case["model"] == "coupled")
+    return bd.Scene(beam, mount, physics=bd.Physics(stretch=case["model"] == "coupled"))
 
 
 def published_cases() -> list[dict[str, Any]]:

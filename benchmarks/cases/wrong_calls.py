@@ -96,6 +96,7 @@ def wrong_values() -> list[Any]:
         bd.Table([0, 1], [1, 2]),
         bd.SpinUp(50.0, 1.0),
         bd.Ritz(8),
+        bd.Physics(planes=2),
         make_shoe(),
         make_clamp(),
     )
@@ -111,6 +112,13 @@ def _beam() -> bd.Beam:
 
 def _scene(motion: Any = None) -> bd.Scene:
     return bd.Scene(_beam(), bd.Mount(0.215), motion)
+
+
+def _twisted() -> bd.Scene:
+    """The strip with twist, in both directions of bending, on a spring."""
+    beam = bd.Beam.rectangular(**STRIP, twist=0.5, poissons_ratio=0.3)
+    physics = bd.Physics(planes=2, shear=True, rotary_inertia=True)
+    return bd.Scene(beam, bd.Mount(0.2, root_stiffness=10.0), physics=physics)
 
 
 def _rolling() -> bd.Scene:
@@ -154,18 +162,31 @@ def right_calls() -> list[Call]:
     truck, road = forklift.Truck(**TRUCK), forklift.StopConditions(**ROAD)
     slow = {"modes": 2, "tolerance": 1e-3}
     return [
-        Call("Beam.rectangular", bd.Beam.rectangular, {**STRIP, "tip": None, "breakpoints": ()}),
+        Call(
+            "Beam.rectangular",
+            bd.Beam.rectangular,
+            {**STRIP, "tip": None, "breakpoints": (), "twist": 0.1, "poissons_ratio": 0.3},
+        ),
         Call(
             "Beam.from_stiffness",
             bd.Beam.from_stiffness,
-            {"length": 1.0, "mass_per_length": 1.0, "bending_stiffness": 1.0, "axial_stiffness": 1e6},
+            {"length": 1.0, "mass_per_length": 1.0, "bending_stiffness": 1.0, "axial_stiffness": 1e6}
+            | {"second_bending_stiffness": 9.0, "twist": 0.1, "shear_stiffness": 1e5, "rotary_inertia": 1e-3}
+            | {"second_shear_stiffness": 1e5, "second_rotary_inertia": 1e-3},
         ),
         Call("TipMass", bd.TipMass, {"mass": 1e-3, "offset": 1e-3, "inertia": 1e-9}),
-        Call("Mount", bd.Mount, {"radius": 0.2, "setting_angle": 0.1, "bending_angle": 0.0}),
+        Call(
+            "Mount",
+            bd.Mount,
+            {"radius": 0.2, "setting_angle": 0.1, "bending_angle": 0.0}
+            | {"root_stiffness": 5.0, "second_root_stiffness": math.inf},
+        ),
+        Call("Physics", bd.Physics, {"planes": 2, "shear": True, "rotary_inertia": True, "stretch": False}),
         Call(
             "Scene",
             bd.Scene,
-            {"beam": _beam(), "mount": bd.Mount(0.2), "damping_ratio": 0.01, "gravity": 9.8},
+            {"beam": _beam(), "mount": bd.Mount(0.2), "damping_ratio": 0.01, "gravity": 9.8}
+            | {"physics": bd.Physics(planes=2, rotary_inertia=True)},
         ),
         Call("Table", bd.Table, {"stations": (0, 0.5, 1), "values": (0.01, 0.01, 0.005)}),
         Call("Ritz", bd.Ritz, {"functions": 8}),
@@ -186,6 +207,7 @@ def right_calls() -> list[Call]:
             bd.natural_modes,
             {"scene": scene, "speed": 50.0, "discretization": "ritz", **slow},
         ),
+        Call("natural_modes", bd.natural_modes, {"scene": _twisted(), "speed": 50.0, **slow}),
         Call("frequency_locus", bd.frequency_locus, {"scene": scene, "speeds": (0.0, 50.0), **slow}),
         Call("frequency_bounds", bd.frequency_bounds, {"scene": scene, "speed": 50.0, "modes": 2}),
         Call(

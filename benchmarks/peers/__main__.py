@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from benchmarks.peers import calculix, exudyn, ours, pybmodes, stock, tables
+from benchmarks.peers import calculix, exudyn, ours, page, pybmodes, stock, tables
 from benchmarks.peers.measure import Point
 
 PEERS: tuple[tables.Peer, ...] = (calculix, pybmodes, exudyn, stock)
-DOCS = Path(__file__).parents[2] / "docs"
 
 
 def measured() -> list[Point]:
@@ -34,8 +31,8 @@ def main() -> None:
         for row in body:
             table.add_row(*map(escape, row))
         console.print(table)
-    (DOCS / "peers.md").write_text(tables.markdown(points, ours, PEERS), encoding="utf-8")
-    tables.picture(points, DOCS / "peers.png")
+    page.write_measurements(tables.markdown(points, ours, PEERS))
+    tables.picture(points, page.DOCS / "peers.png")
 
 
 if __name__ == "__main__":

@@ -13,19 +13,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from benchmarks.peers import measure
+from benchmarks.peers import hexahedra, measure
 from benchmarks.peers.measure import Point, given, shortest
 
 NAME = "CalculiX"
 BETTER = "solid elements: bodies of any shape, shear, torsion, all directions at once, plasticity, contact"
 TARGET = ("40 elements, nonlinear static step", 3000.0)
 SETTINGS = ((40, True), (20, False), (10, False), (5, False), (3, False))  # elements, nonlinear static step
-# Nodes of a C3D20R element in steps of half an element along x, y, z, in the order of the manual.
-CORNERS = ((0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2))
-MIDDLES = (
-    *((1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2)),
-    *((1, 2, 2), (0, 1, 2), (0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)),
-)
 DECK = """*NODE
 {nodes}
 *ELEMENT, TYPE=C3D20R, ELSET=BEAM
@@ -91,33 +85,25 @@ def first_frequency(text: str) -> float:
     return float(match[1])
 
 
-def deck(elements: int, speed: float, nonlinear: bool) -> str:
+def deck(count: int, speed: float, nonlinear: bool) -> str:
     """Input file: x along the beam from the root to the axis, y across the thickness, turning about z."""
-    data, mesh = given(), nodes(elements)
-    number = {place: n for n, place in enumerate(mesh, 1)}
+    data, counts = given(), (count, 1, 1)
+    number = hexahedra.numbers(counts)
     return DECK.format(
-        nodes="\n".join(f"{number[p]}, {x:.12g}, {y:.12g}, {z:.12g}" for p, (x, y, z) in mesh.items()),
-        elements="\n".join(element(e, number) for e in range(elements)),
-        root="\n".join(f"{number[p]}," for p in mesh if p[0] == 0),
+        nodes="\n".join(f"{n}, {x:.12g}, {y:.12g}, {z:.12g}" for n, (x, y, z) in nodes(count).items()),
+        elements="\n".join(hexahedra.elements(counts, number)),
+        root="\n".join(f"{n}," for place, n in number.items() if place[0] == 0),
         nonlinear=", NLGEOM" if nonlinear else "",
         speed_squared=speed**2,
         **{name: data[name] for name in ("youngs_modulus", "density", "radius")},
     )
 
 
-def nodes(elements: int) -> dict[tuple[int, int, int], tuple[float, float, float]]:
-    """Coordinates [m] by place in steps of half an element: corners, and middles of edges."""
+def nodes(count: int) -> dict[int, tuple[float, float, float]]:
+    """Coordinates [m] by number: x from the root, y and z from the axis of the beam."""
     data = given()
-    step = data["length"] / (2 * elements), data["thickness"] / 2, data["width"] / 2
-    places = ((i, j, k) for i in range(2 * elements + 1) for j in range(3) for k in range(3))
+    step = data["length"] / (2 * count), data["thickness"] / 2, data["width"] / 2
     return {
-        (i, j, k): (i * step[0], (j - 1) * step[1], (k - 1) * step[2])
-        for i, j, k in places
-        if i % 2 + j % 2 + k % 2 <= 1
+        n: (i * step[0], (j - 1) * step[1], (k - 1) * step[2])
+        for (i, j, k), n in hexahedra.numbers((count, 1, 1)).items()
     }
-
-
-def element(index: int, number: dict[tuple[int, int, int], int]) -> str:
-    """An element's line, which the format wants in two."""
-    own = [str(number[2 * index + i, j, k]) for i, j, k in (*CORNERS, *MIDDLES)]
-    return f"{index + 1}, {', '.join(own[:10])},\n{', '.join(own[10:])}"

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -30,8 +32,8 @@ f echo
 1 beam_type
 {rpm:.17g} rot_rpm
 1.0 rpm_mult
-1.0 radius
-0.0 hub_rad
+{radius:.17g} radius
+{hub:.17g} hub_rad
 0. precone
 0. bl_thp
 1 hub_conn
@@ -100,18 +102,29 @@ def points() -> Iterator[Point]:
 
 def solve(elements: int, speed: float) -> tuple[float, float]:
     """Shortest time [s], and the first frequency: mass, stiffness and length are 1, so it has no unit."""
+    with model(deck(elements, speed), SECTIONS) as blade:
+        time, result = best_threads(lambda: blade.run(n_modes=1, check_model=False))
+    return time, 2 * math.pi * result.frequencies[0]
+
+
+@contextmanager
+def model(main_file: str, sections: str) -> Iterator[Any]:
+    """A blade of pyBModes, read from the text of its files; it runs while the context lasts."""
     from pybmodes.models import RotatingBlade
 
     with TemporaryDirectory() as folder:
         main = Path(folder, "blade.bmi")
-        main.write_text(deck(elements, speed))
-        Path(folder, "sections.dat").write_text(SECTIONS)
-        model = RotatingBlade(main)
-        time, result = best_threads(lambda: model.run(n_modes=1, check_model=False))
-    return time, 2 * math.pi * result.frequencies[0]
+        main.write_text(main_file)
+        Path(folder, "sections.dat").write_text(sections)
+        yield RotatingBlade(main)
 
 
 def deck(elements: int, speed: float) -> str:
     """Main input file."""
-    boundaries = " ".join(f"{x:.17g}" for x in np.linspace(0, 1, elements + 1))
-    return MAIN.format(rpm=speed * 30 / math.pi, elements=elements, boundaries=boundaries)
+    return MAIN.format(
+        rpm=speed * 30 / math.pi,
+        radius=1.0,
+        hub=0.0,
+        elements=elements,
+        boundaries=" ".join(f"{x:.17g}" for x in np.linspace(0, 1, elements + 1)),
+    )

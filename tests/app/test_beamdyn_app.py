@@ -1,5 +1,7 @@
 """`beamdyn app`: pure functions, and its page used by a simulated client."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,9 @@ from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
+from beamdyn.scene.physics import Physics
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.mark.parametrize("screen", SCENE.screens, ids=lambda s: s.name)
@@ -82,6 +87,64 @@ def test_tapered_beam_is_opened_and_saved():
     work.open(text, "tapered")
     assert work.solve(FREQUENCIES), work.mistakes
     assert SCENE.check(work.text(), "saved") == SCENE.check(text, "tapered")
+
+
+def test_blade_of_stations_is_opened_and_saved():
+    work = OpenDocument(SCENE)
+    text = (EXAMPLES / "twisted_blade.toml").read_text(encoding="utf-8")
+    work.open(text, "blade")
+    assert "beam.bending_stiffness" in {entry.path for entry in work.inputs}  # not width and thickness
+    assert SCENE.check(work.text(), "saved") == SCENE.check(text, "blade")
+    assert work.entries["beam.stations"].count("\n") == 49  # a line a row, in the field and in the file
+    assert "\n [0.00325, 13.308," in work.text()
+    rows = work.entries["beam.stations"].replace("0.00325", "-1")
+    work.put("beam.stations", rows)
+    assert not work.solve(FREQUENCIES)
+    ((where, said),) = work.mistakes[FREQUENCIES.name].items()
+    assert (where, said[0][:24]) == ("beam.stations", "beam.stations[2][0] = -1")
+
+
+def test_physics_is_chosen_and_an_empty_spring_is_clamped():
+    work = OpenDocument(SCENE)
+    for path, text in {
+        "physics.planes": "2",
+        "physics.rotary_inertia": "true",
+        "beam.twist": "5 deg",
+    }.items():
+        work.put(path, text)
+    scene = SCENE.check(work.text(), "saved")
+    assert scene.physics == Physics(planes=2, rotary_inertia=True)
+    assert scene.mount.root_stiffness == np.inf
+    work.put("mount.root_stiffness", "0 N m/rad")
+    assert SCENE.check(work.text(), "saved").mount.root_stiffness == 0
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "sentence"),
+    [
+        ("physics.shear", "true", "it needs shear_stiffness; give beam.poissons_ratio"),
+        ("mount.root_stiffness", "-1 N m/rad", "0 is a hinge"),
+    ],
+)
+def test_mistake_in_physics_is_at_its_field(path, text, sentence):
+    work = OpenDocument(SCENE)
+    work.put(path, text)
+    assert not work.solve(FREQUENCIES)
+    ((where, said),) = work.mistakes[FREQUENCIES.name].items()
+    assert where == path
+    assert sentence in said[0]
+
+
+def test_page_shows_the_table_of_physics(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        assert set(page.field("physics.planes").options) == {"", "1", "2"}
+        assert page.field("mount.root_stiffness").props["placeholder"] == "clamped"
+        assert page.field("beam.stations").props["type"] == "textarea"
+        page.enter("physics.shear", "true")
+        assert "give beam.poissons_ratio" in page.field("physics.shear").error
+
+    simulate(BEAMDYN, body)
 
 
 def test_hostile_text_changes_nothing():

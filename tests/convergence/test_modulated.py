@@ -21,7 +21,9 @@ SCENES = {
     "published": ROLLING,
     "gravity": replace(ROLLING, gravity=9.81),
     "damped": replace(ROLLING, damping_ratio=0.01),
-    "stretch, oblique": replace(ROLLING, stretch=True, mount=bd.Mount(0.215, 0.1, 0.3), damping_ratio=0.001),
+    "stretch, oblique": replace(
+        ROLLING, physics=bd.Physics(stretch=True), mount=bd.Mount(0.215, 0.1, 0.3), damping_ratio=0.001
+    ),
     "without road": replace(ROLLING, motion=replace(ROLLING.motion, road=None)),
 }
 

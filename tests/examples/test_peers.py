@@ -6,9 +6,23 @@ import re
 import numpy as np
 import pytest
 
+from benchmarks.cases import blades
 from benchmarks.cases.scenes import ROLLING
-from benchmarks.peers import calculix, exudyn, measure, pybmodes, stock, tables
+from benchmarks.peers import (
+    calculix,
+    exudyn,
+    hexahedra,
+    measure,
+    page,
+    physics,
+    pybmodes,
+    stock,
+    tables,
+    tapered,
+    twisted,
+)
 from benchmarks.peers.measure import BLADE, HARVESTER, OURS, Point
+from benchmarks.peers.tapered import CLAMPED, HELD_AXIALLY, Blade
 from benchmarks.rows import time_text
 
 DAT = """
@@ -41,23 +55,27 @@ def test_missing_frequency_is_refused():
         calculix.first_frequency(DAT.split("1   0.16")[0])
 
 
-@pytest.mark.parametrize("elements", [1, 5, 40])
-def test_mesh(elements):
-    mesh = calculix.nodes(elements)
-    assert len(mesh) == 12 * elements + 8
+@pytest.mark.parametrize("counts", [(1, 1, 1), (40, 1, 1), (5, 2, 3)])
+def test_every_node_belongs_to_an_element(counts):
+    number = hexahedra.numbers(counts)
+    lines = [line.replace("\n", " ") for line in hexahedra.elements(counts, number)]
+    used = [[int(n) for n in line.split(",")[1:]] for line in lines]
+    assert len(used) == math.prod(counts) and all(len(set(own)) == 20 for own in used)
+    assert set().union(*used) == set(number.values()) == set(range(1, len(number) + 1))
+
+
+@pytest.mark.parametrize("count", [1, 5, 40])
+def test_mesh_of_the_harvester(count):
+    mesh = calculix.nodes(count)
+    assert len(mesh) == 12 * count + 8
     corner = np.array([0.05, 0.0002, 0.01])
     assert np.ptp(list(mesh.values()), axis=0) == pytest.approx(corner, rel=1e-14)
-    number = {place: n for n, place in enumerate(mesh, 1)}
-    lines = [calculix.element(e, number).replace("\n", " ") for e in range(elements)]
-    used = [[int(n) for n in line.split(",")[1:]] for line in lines]
-    assert all(len(set(own)) == 20 for own in used)
-    assert set().union(*used) == set(number.values())
 
 
 def test_middles_lie_between_the_corners_in_the_order_of_the_manual():
     edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
-    corners = np.array(calculix.CORNERS)
-    assert [tuple((corners[a] + corners[b]) // 2) for a, b in edges] == list(calculix.MIDDLES)
+    corners = np.array(hexahedra.CORNERS)
+    assert [tuple((corners[a] + corners[b]) // 2) for a, b in edges] == list(hexahedra.MIDDLES)
 
 
 def test_deck_has_load_and_root():
@@ -69,15 +87,116 @@ def test_deck_has_load_and_root():
     assert "NLGEOM" not in calculix.deck(5, 50.0, False)
 
 
-@pytest.mark.skipif(
+needs_calculix = pytest.mark.skipif(
     calculix.version() is None, reason="there is no ccx; on Debian: apt-get install calculix-ccx"
 )
+
+
+@needs_calculix
 @pytest.mark.parametrize("speed", [0.0, 100.0])
 def test_solid_elements_give_the_frequency_of_the_beam(speed):
     """The beam theory leaves out shear and rotary inertia, a part of about (thickness/length)^2."""
     left_out = (measure.given()["thickness"] / measure.given()["length"]) ** 2
     _, frequency = calculix.solve(calculix.deck(20, speed, False))
     assert frequency == pytest.approx(measure.harvester_frequencies()[speed], rel=2 * left_out)
+
+
+# CalculiX, a tapered blade ------------------------------------------------------------------------
+
+DIRECTIONS = """
+     E I G E N V A L U E   O U T P U T
+
+ MODE NO    EIGENVALUE                       FREQUENCY
+                                     REAL PART            IMAGINARY PART
+                           (RAD/TIME)      (CYCLES/TIME     (RAD/TIME)
+
+      1   0.1730400E+05   0.1315446E+03   0.2093600E+02   0.0000000E+00
+      2   0.4537000E+06   0.6736000E+03   0.1072000E+03   0.0000000E+00
+      3   0.9337000E+07   0.3055700E+04   0.4863000E+03   0.0000000E+00
+
+     P A R T I C I P A T I O N   F A C T O R S
+
+MODE NO.   X-COMPONENT     Y-COMPONENT     Z-COMPONENT     X-ROTATION      Y-ROTATION      Z-ROTATION
+
+      1   0.3927251E-14  -0.2192837E+01   0.1447987E-12  -0.2450314E-11  -0.5352602E-14  -0.7966017E+00
+      2   0.3927251E-14   0.2192837E-11  -0.2147987E+01  -0.2450314E-11  -0.5352602E+00  -0.7966017E-12
+      3   0.3927251E-14   0.1632837E-02   0.9847987E-03  -0.7450314E-01  -0.5352602E-14  -0.7966017E-03
+
+     E F F E C T I V E   M O D A L   M A S S
+
+      1   0.3927251E-14   0.4808534E+01   0.1447987E-24   0.2450314E-21   0.5352602E-24   0.7966017E+00
+"""
+
+
+def test_modes_are_sorted_by_direction():
+    assert tapered.sorted_by_direction(DIRECTIONS).tolist() == [20.936, 107.2]  # torsion is left out
+    with pytest.raises(ValueError, match="did not converge"):
+        tapered.sorted_by_direction("")
+
+
+def test_blade_is_ten_times_longer_than_wide():
+    counts = (4, 1, 2)
+    lines = tapered.node_lines(Blade(), counts, hexahedra.numbers(counts))
+    nodes = np.array([[float(value) for value in line.split(",")] for line in lines])[:, 1:]
+    for x, thickness, width in ((0.0, 0.02, 0.1), (0.5, 0.015, 0.08), (1.0, 0.01, 0.06)):
+        own = nodes[nodes[:, 0] == x]
+        assert np.ptp(own, axis=0) == pytest.approx([0, thickness, width], abs=1e-14)
+    assert nodes.mean(axis=0)[1:] == pytest.approx([0, 0], abs=1e-14)
+
+
+def test_blade_turns_about_its_thickness_on_the_hub():
+    text = tapered.deck(Blade(0.3), (4, 1, 2), 200.0)
+    assert "BLADE, CENTRIF, 40000, -0.1, 0, 0, 0, 1, 0\n" in text and "*STEP, PERTURBATION\n" in text
+    assert "2.1e+11, 0.3\n" in text and "CENTRIF" not in tapered.deck(Blade(), (4, 1, 2), 0.0)
+
+
+def test_root_held_axially():
+    """Means over the face and either half of it, exact for quadratic displacements; in half elements."""
+    counts = (1, 2, 4)
+    number = hexahedra.numbers(counts)
+    place = {n: p for p, n in number.items()}
+    lines = list(tapered.root_lines(HELD_AXIALLY, counts, number))
+    assert lines[:2] == ["*BOUNDARY", "ROOT, 1, 1"]
+    equations = [text.splitlines() for text in "\n".join(lines[2:]).split("*EQUATION\n")[1:]]
+    terms = [np.array([line.split(",") for line in equation[1:]], dtype=float) for equation in equations]
+    assert [int(equation[0]) for equation in equations] == list(map(len, terms))
+    assert [set(own[:, 1]) for own in terms] == [{3}, {2}, {2}]
+    for own, (start, end) in zip(terms, ((0, 8), (0, 4), (4, 8)), strict=True):
+        _, y, z = np.array([place[int(n)] for n in own[:, 0]]).T
+        weight = own[:, 2] / own[:, 2].sum()
+        mean_square = (end**3 - start**3) / (3 * (end - start))
+        assert weight @ np.column_stack([y, z, z * z]) == pytest.approx([2, (start + end) / 2, mean_square])
+    # The first term is eliminated: no other equation of its direction may contain it.
+    assert terms[1][0, 0] not in terms[2][:, 0] and terms[2][0, 0] not in terms[1][:, 0]
+
+
+def test_shear_coefficient_of_a_rectangle():
+    """Without contraction 5/6; of a thin one 5 (1 + nu) / (6 + 5 nu), that of plane stress."""
+    assert [tapered.hutchinson(ratio, 0.0) for ratio in (0.1, 1, 5)] == pytest.approx([5 / 6] * 3, rel=1e-12)
+    assert tapered.hutchinson(0.01, 0.3) == pytest.approx(6.5 / 7.5, rel=1e-6)
+
+
+@needs_calculix
+@pytest.mark.parametrize("speed", tapered.SPEEDS)
+def test_solid_elements_give_the_frequencies_of_a_thick_beam(speed):
+    """What a beam leaves out: the slope of the sides, and in E the strain by rotation, 5e-4 at the root."""
+    solid = tapered.solid_frequencies(Blade(), (40, 2, 4), speed)
+    own = tapered.beam(Blade())
+    strain = 5e-4 * (speed / 200) ** 2
+    assert solid == pytest.approx(tapered.beam_frequencies(own, speed), rel=1e-3 + strain / 2)
+    slender = tapered.beam_frequencies(own, speed, tapered.SLENDER)
+    assert np.all(np.abs(solid / slender - 1)[3:] > 5e-3)
+
+
+@needs_calculix
+def test_clamped_face_hinders_contraction():
+    """With Poisson's ratio the solid is stiffer where its root cannot contract, and only there."""
+    clamped, free = (
+        tapered.solid_frequencies(Blade(0.3, root), (20, 2, 4), 0.0) for root in (CLAMPED, HELD_AXIALLY)
+    )
+    own = tapered.beam_frequencies(tapered.with_hutchinsons_shear(Blade(0.3)), 0.0)
+    assert np.all(clamped / own - 1 > 2e-3)
+    assert free == pytest.approx(own, rel=1.1e-3)
 
 
 # pyBModes -----------------------------------------------------------------------------------------
@@ -89,6 +208,37 @@ def test_blade_file():
     assert len(lines[-1].split()) == 11 and lines[-3] == "10 nselt"
     columns = {len(line.split()) for line in pybmodes.SECTIONS.splitlines()[3:]}
     assert columns == {13}
+
+
+def test_files_of_a_twisted_blade():
+    ends = twisted.boundaries("nrel_5", 200)
+    assert len(ends) == 4 * 48 + 1 and set(blades.stations("nrel_5")["stations"]) <= set(ends)
+    lines = twisted.main_file("nrel_5", 12.1, 200).splitlines()
+    assert [lines[k].split()[0] for k in (6, 8, 9)] == [f"{12.1:.17g}", "63", "1.5"]
+    first, last = (
+        np.array([float(value) for value in twisted.sections("nrel_5").splitlines()[k].split()])
+        for k in (5, -1)
+    )
+    assert first[[0, 1, 2, 3, 6, 7]] == pytest.approx(
+        [0, 13.308, 13.308, 678.935 * 1.04536, 1.811e10, 1.81136e10]
+    )
+    assert last[[0, 1, 6, 7]] == pytest.approx([1, 0, 1.7e5, 5.01e6])
+    assert np.all(first[10:] == 0)  # no offsets
+
+
+@pytest.mark.skipif(pybmodes.version() is None, reason="there is no pyBModes: pip install pyBModes")
+@pytest.mark.parametrize("name", ["nrel_5", "bmodes_test01"])
+def test_twisted_blade(name):
+    """One mesh is right to the second order of the elements' length; the limit is off by at most 8e-6."""
+    coarse, fine = (twisted.their_frequencies(name, 12.0, count) for count in (100, 200))
+    own = twisted.our_frequencies(name, 12.0)
+    assert fine == pytest.approx(own, rel=1e-4)
+    assert twisted.extrapolated(coarse, fine) == pytest.approx(own, rel=1e-5)
+
+
+def test_limit_of_an_error_of_second_order():
+    f, error = np.array([1.0, 2.0]), np.array([4e-3, -8e-3])
+    assert twisted.extrapolated(f + error, f + error / 4) == pytest.approx(f, rel=1e-14)
 
 
 # Exudyn -------------------------------------------------------------------------------------------
@@ -186,3 +336,38 @@ def test_peak_between_samples():
 @pytest.mark.parametrize(("time", "text"), [(12.34, "12.3 s"), (0.0123, "12.3 ms"), (7.6e-6, "7.6 µs")])
 def test_seconds(time, text):
     assert time_text(time) == text
+
+
+# The section on physics ---------------------------------------------------------------------------
+
+
+def test_either_part_of_the_page_is_written_alone(tmp_path):
+    path = tmp_path / "peers.md"
+    path.write_text("# Beside\n\nold\n")
+    page.write_section(f"{page.HEADING}\nfirst\n", path)
+    page.write_measurements("# Beside\n\nnew\n", path)
+    page.write_section(f"{page.HEADING}\nsecond\n", path)
+    assert path.read_text() == f"# Beside\n\nnew\n\n{page.HEADING}\nsecond\n"
+    page.write_measurements("# Beside\n\nnewer\n", path)
+    assert path.read_text() == f"# Beside\n\nnewer\n\n{page.HEADING}\nsecond\n"
+
+
+def test_section_has_both_tables():
+    text = physics.section([("IEA 15 MW", *"12345678")], [("0, clamped", *"12345678")])
+    assert text.startswith(page.HEADING)
+    assert "| IEA 15 MW | 1 |" in text and "| 0, clamped | 1 |" in text
+    assert "{" not in text and "0.1 to 0.06 m wide" in text and "3.8 in the flap" in text
+
+
+def test_order_of_convergence():
+    limit, error = np.array([2.0, 3.0]), np.array([8e-3, 1e-9])
+    assert list(physics.orders([limit + error, limit + error / 8, limit + error / 64])) == [
+        "3.0",
+        "converged",
+    ]
+
+
+def test_peers_without_programs_are_named(monkeypatch):
+    monkeypatch.setattr(calculix, "version", lambda: None)
+    ((_, _, text, *_),) = physics.tapered_rows()
+    assert text == "CalculiX not installed"

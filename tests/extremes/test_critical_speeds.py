@@ -12,6 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
+from scipy.optimize import brentq
 
 import beamdyn as bd
 from beamdyn.modal.model import Model
@@ -20,6 +22,8 @@ from beamdyn.spectrum.buckling import decide_buckling
 from benchmarks.cases.random_scenes import random_beam
 from benchmarks.cases.reference.of_scene import exact_critical_speed
 from benchmarks.cases.scenes import HARVESTER, steel_strip
+
+POLYNOMIAL = np.polynomial.Polynomial
 
 TOPPLING = bd.Scene(
     bd.Beam.from_stiffness(
@@ -171,3 +175,152 @@ def test_bending_is_found_below_the_critical_speed_of_stretch() -> None:
         point = bd.critical_point(replace(TANGENTIAL, physics=bd.Physics(stretch=True)), tolerance=tolerance)
         assert abs(point.speed / HIGH["nearly tangential"][1] - 1) <= point.error <= (tolerance or 1e-9)
         assert "softens the beam" in point.reason
+
+
+# Two planes, shear, rotary inertia, springs ---------------------------------------------------------
+
+BODY = bd.TipMass(0.1, 0.05, 1e-3, 9e-4, 2e-4)
+SECTION = bd.Beam.from_stiffness(
+    1.0,
+    POLYNOMIAL([1.0, -0.3]),
+    POLYNOMIAL([1.0, -0.8]),
+    second_bending_stiffness=POLYNOMIAL([4.0, -3.2]),
+    rotary_inertia=1e-3,
+    second_rotary_inertia=4e-3,
+    shear_stiffness=300.0,
+)
+TWISTED = replace(
+    SECTION, twist=bd.Beam.rectangular(1, 0.1, 0.01, 7e10, 2700, twist=POLYNOMIAL([0.1, 0.5])).twist
+)
+OUTWARD, INWARD = bd.Mount(1.0, math.pi, 0.4), bd.Mount(1.0, 0.0, 0.4)
+INERTIA = {"rotary_inertia": True}
+
+
+@pytest.mark.parametrize("physics", [bd.Physics(2), bd.Physics(shear=True), bd.Physics(2, shear=True)])
+@pytest.mark.parametrize("springs", [(math.inf, math.inf), (0.3, 2.0), (2.0, 1e-6)])
+@pytest.mark.parametrize("beam", [SECTION, TWISTED, replace(SECTION, tip=BODY)], ids=["", "twisted", "tip"])
+def test_the_argument_agrees_beyond_slender_beams(beam, springs, physics) -> None:
+    """Neither twist, shear nor springs change whether there is one: inward there is, outward not."""
+    for mount in (OUTWARD, INWARD):
+        scene = bd.Scene(beam, bd.Mount(1.0, mount.setting_angle, 0.4, *springs), physics=physics)
+        found = bd.critical_point(scene)
+        inward = mount is INWARD
+        assert not found.warnings
+        assert math.isfinite(found.speed) is inward and found.error < 1e-9
+        assert math.isfinite(Model(scene, bd.Ritz(24)).solver.critical_speed) is inward
+
+
+@pytest.mark.parametrize("springs", [(1.0, math.inf), (1e-4, 1e-4), (1e-8, 3.0), (100.0, 1e3)])
+@pytest.mark.parametrize("mount", [INWARD, bd.Mount(0.5, 0.0), bd.Mount(0.2, 1.0, 1.5)])
+def test_critical_speed_on_springs_is_where_the_lowest_eigenvalue_vanishes(springs, mount) -> None:
+    """Of K0 + omega^2 K2 relative to M, whose lowest eigenvalue keeps half of its digits with k = 1e-8."""
+    physics = bd.Physics(planes=2, shear=True)
+    scene = bd.Scene(
+        TWISTED, bd.Mount(mount.radius, mount.setting_angle, mount.bending_angle, *springs), physics=physics
+    )
+    model = Model(scene, bd.Ritz(20))
+    pencil, speed = model.solver.pencil, model.solver.critical_speed
+
+    def lowest(v: float) -> float:
+        return float(eigh(pencil.K0 + v**2 * pencil.K2, pencil.M, eigvals_only=True)[0])
+
+    assert lowest(speed * (1 - 1e-3)) > 0 > lowest(speed * (1 + 1e-3))
+    root = brentq(lowest, speed * (1 - 1e-3), speed * (1 + 1e-3), xtol=0.0, rtol=1e-12)
+    assert speed == pytest.approx(root, rel=1e-7)
+
+
+@pytest.mark.parametrize("stiffness", [1e-12, 1e-6, 1e-3, 1.0])
+def test_a_turn_in_the_plane_about_the_axis_is_not_softened(stiffness: float) -> None:
+    """The stiffness by rotation of that turn is a difference that vanishes but for rounding."""
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(root_stiffness=stiffness))
+    assert math.isinf(Model(scene, bd.Ritz(20)).solver.critical_speed)
+    assert math.isinf(bd.critical_point(scene).none_below)
+
+
+@pytest.mark.parametrize("physics", [bd.Physics(), bd.Physics(2), bd.Physics(2, True, True)])
+def test_an_inward_beam_on_a_hinge_is_unstable_at_every_speed(physics: bd.Physics) -> None:
+    scene = bd.Scene(TWISTED, bd.Mount(0.3, 0.0, 0.0, 0.0), physics=physics)
+    point = bd.critical_point(scene)
+    assert (point.speed, point.error, point.none_below) == (0.0, 0.0, 0.0) and "hinge" in point.reason
+    assert bd.natural_modes(scene, 1e-3, 1, bd.Ritz(20)).status[0] == "divergence"
+
+
+@pytest.mark.parametrize("bending", [0.0, math.pi / 2])
+@pytest.mark.parametrize("radius", [0.0, 0.7])
+def test_an_outward_beam_on_a_hinge_has_no_critical_speed(radius: float, bending: float) -> None:
+    scene = bd.Scene(TWISTED, bd.Mount(radius, math.pi, bending, 0.0, 0.0), physics=bd.Physics(planes=2))
+    point = bd.critical_point(scene)
+    assert math.isinf(point.none_below) and ("but a turn" in point.reason) is (radius == 0)
+
+
+SLENDER_STEEL = bd.Beam.rectangular(1.0, 0.05, 0.01, 210e9, 7850.0, poissons_ratio=0.3)
+
+
+@pytest.mark.parametrize("springs", [(math.inf, math.inf), (500.0, math.inf), (0.0, math.inf)])
+@pytest.mark.parametrize(
+    "physics", [bd.Physics(2, **INERTIA), bd.Physics(2, True, True), bd.Physics(1, True, True)]
+)
+@pytest.mark.parametrize("twisted", [False, True])
+def test_rotary_inertia_buckles_no_ordinary_blade(twisted: bool, physics: bd.Physics, springs) -> None:
+    """The bound is beyond what stretches steel by 1 %: rho omega^2 L^2 / (2 E) without hub."""
+    twist = TWISTED.twist if twisted else None
+    mount = bd.Mount(0.2, math.pi, math.pi / 2, *springs)
+    point = bd.critical_point(bd.Scene(replace(SLENDER_STEEL, twist=twist), mount, physics=physics))
+    assert math.isinf(point.speed) and point.error == 0 and not point.warnings
+    assert "rotary inertia" in point.reason
+    assert math.sqrt(2 * 0.01 * 210e9 / 7850) < point.none_below < math.inf
+
+
+def test_rotary_inertia_in_the_plane_of_rotation_changes_nothing() -> None:
+    """No section tilts out of the plane, and its own spin does not soften it."""
+    for mount in (bd.Mount(1.0, math.pi), bd.Mount(1.0, 0.0)):
+        slender, thick = (
+            bd.critical_point(bd.Scene(SECTION, mount, physics=physics))
+            for physics in (bd.Physics(), bd.Physics(rotary_inertia=True))
+        )
+        assert thick.speed == pytest.approx(slender.speed, rel=1e-12) and thick.reason == slender.reason
+
+
+def thick_at_random(rng: np.random.Generator) -> bd.Scene:
+    """A short outward beam with all of the inertias, on clamp, spring or hinge."""
+    h, q = rng.uniform(0.05, 0.3), rng.uniform(0.3, 6)
+    body = bd.TipMass(
+        rng.uniform(0, 0.2), rng.uniform(0, 0.1), *(rng.uniform(0.01, 0.019, 3) * 10 ** rng.uniform(-3, 0))
+    )
+    beam = bd.Beam.from_stiffness(
+        1.0,
+        POLYNOMIAL([1.0, -0.3]),
+        POLYNOMIAL([1.0, -0.8]),
+        second_bending_stiffness=POLYNOMIAL([q, -0.8 * q]),
+        rotary_inertia=h**2 * rng.uniform(0.1, 1),
+        second_rotary_inertia=h**2 * q,
+        shear_stiffness=1 / h**2,
+        twist=POLYNOMIAL(rng.uniform(-1, 1, 2)) if rng.random() < 0.5 else None,
+        tip=body if rng.random() < 0.5 else None,
+    )
+    springs = (rng.choice([math.inf, 0.0, 10 ** rng.uniform(-2, 2)]) for _ in range(2))
+    mount = bd.Mount(rng.uniform(0, 2), math.pi, rng.choice([0, math.pi / 2, rng.uniform(-3, 3)]), *springs)
+    physics = bd.Physics(int(rng.integers(1, 3)), bool(rng.random() < 0.5), rotary_inertia=True)
+    return bd.Scene(beam, mount, physics=physics)
+
+
+def test_nothing_topples_below_the_bound() -> None:
+    """A basis of 60 functions has its critical speed above the exact one, and so above the bound."""
+    rng, closest = np.random.default_rng(1), math.inf
+    for _ in range(40):
+        scene = thick_at_random(rng)
+        critical, decided = Model(scene, bd.Ritz(60)).solver.critical_speed, decide_buckling(scene)
+        bound = math.inf if decided.exists is False else decided.none_below
+        assert bound <= critical
+        closest = min(closest, critical / bound if 0 < bound < math.inf else math.inf)
+    assert closest < 5  # the bounds are not empty
+
+
+def test_none_below_of_two_planes_apart_is_the_lower_of_both() -> None:
+    tip = bd.TipMass(1e-3, -1e-7)  # topples in a layer too thin for any basis
+    beam = replace(HARVESTER.beam, tip=tip)
+    both, *single = (
+        bd.critical_point(bd.Scene(beam, bd.Mount(bending_angle=psi), physics=bd.Physics(planes)))
+        for psi, planes in ((0.0, 2), (0.0, 1))
+    )
+    assert math.isinf(both.error) and both.none_below == single[0].none_below > 1e3

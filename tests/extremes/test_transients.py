@@ -70,7 +70,9 @@ def test_stretch_of_a_beam_that_hardly_stretches(ratio: float) -> None:
     )
     plain = bd.Scene(beam, bd.Mount(1.0, math.pi / 3), bd.SpinUp(10.0, 0.5))
     t = np.linspace(0, 1, 101)
-    runs = [bd.simulate(replace(plain, stretch=s), 1.0, 3, t_eval=t) for s in (False, True)]
+    runs = [
+        bd.simulate(replace(plain, physics=bd.Physics(stretch=s)), 1.0, 3, t_eval=t) for s in (False, True)
+    ]
     # What stretch changes is of the order of gamma^2 / ratio.
     np.testing.assert_allclose(runs[1].tip, runs[0].tip, rtol=0, atol=3e-5 * runs[0].largest)
 

@@ -73,7 +73,10 @@ def test_parseval_of_the_modal_load() -> None:
 def test_coriolis_lowers_the_first_frequency_of_an_outward_beam() -> None:
     beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=70.0**2)
     scene = bd.Scene(beam, bd.Mount(0.0, np.pi))
-    plain, coupled = (bd.natural_modes(replace(scene, stretch=s), 10.0, 1).frequency for s in (False, True))
+    plain, coupled = (
+        bd.natural_modes(replace(scene, physics=bd.Physics(stretch=s)), 10.0, 1).frequency
+        for s in (False, True)
+    )
     assert coupled < plain
 
 

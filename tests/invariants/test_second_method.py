@@ -157,7 +157,7 @@ def test_energy_of_steady_rotation():
 
 
 @by_case
-@pytest.mark.parametrize("discretization", [("ritz", RITZ), (bd.Fem(100), FEM)], ids=["ritz", "fem"])
+@pytest.mark.parametrize("discretization", [("ritz", RITZ), (bd.Fem(40), FEM)], ids=["ritz", "fem"])
 def test_beamdyn(case, discretization):
     method, rtol = discretization
     expected = frequencies(case)

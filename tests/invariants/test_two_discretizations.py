@@ -23,7 +23,7 @@ SCENES = {
     "stepped, oblique": (bd.Scene(STEPPED, bd.Mount(0.1, 2.0, 0.7)), 60.0),
     "tapered blade": (bd.Scene(TAPERED, bd.Mount(0.2, np.pi, np.pi / 2)), 80.0),
     "past the critical speed": (HARVESTER, 170.0),
-    "with stretch": (bd.Scene(TAPERED, bd.Mount(0.2, np.pi, 0.3), stretch=True), 80.0),
+    "with stretch": (bd.Scene(TAPERED, bd.Mount(0.2, np.pi, 0.3), physics=bd.Physics(stretch=True)), 80.0),
     "damped": (bd.Scene(STEPPED, bd.Mount(0.1, np.pi), damping_ratio=0.02), 60.0),
 }
 

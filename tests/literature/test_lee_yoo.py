@@ -24,7 +24,7 @@ def test_reference_digits() -> None:
 
 
 def test_stretch_and_coriolis() -> None:
-    coupled = bd.Scene(HARVESTER.beam, HARVESTER.mount, stretch=True)
+    coupled = bd.Scene(HARVESTER.beam, HARVESTER.mount, physics=bd.Physics(stretch=True))
     found = [bd.natural_modes(coupled, speed, 1).frequency[0] for speed in (0.0, 50.0, 100.0)]
     np.testing.assert_allclose(found, [65.23045644, 61.96300748, 50.90705785], rtol=0, atol=5e-9)
 

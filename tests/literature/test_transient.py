@@ -41,7 +41,7 @@ def test_spin_up_of_an_outward_beam() -> None:
 
 
 def test_the_same_with_stretch() -> None:
-    run = bd.simulate(replace(BLADE_SPIN_UP, stretch=True), 20.0, modes=8)
+    run = bd.simulate(replace(BLADE_SPIN_UP, physics=bd.Physics(stretch=True)), 20.0, modes=8)
     assert run.largest == pytest.approx(0.57440, abs=0.5e-5)
 
 

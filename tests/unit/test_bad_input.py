@@ -12,12 +12,16 @@ from numpy.polynomial import Polynomial
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import SteadyRotation
 from beamdyn.scene.mount import Mount
-from beamdyn.scene.profile import Table, as_profile
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.profile import Profile, Table, as_profile
 from beamdyn.scene.scene import Scene
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
 STIFFNESS = {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3}
-STIFFNESS |= {"axial_stiffness": 4e5, "outer_fibre": 1e-4}
+STIFFNESS |= {"axial_stiffness": 4e5, "outer_fibre": 1e-4, "second_bending_stiffness": 3.3}
+STIFFNESS |= {"shear_stiffness": 1e5, "second_shear_stiffness": 1e5}
+STIFFNESS |= {"rotary_inertia": 5e-11, "second_rotary_inertia": 1.3e-7}
+OPTIONAL = [*STIFFNESS][3:]
 
 NOT_FINITE = [math.inf, -math.inf, math.nan]
 NOT_POSITIVE = [0, 0.0, -0.0, -1, -1e-300, *NOT_FINITE]
@@ -52,9 +56,27 @@ def test_stiffness_needs_positive_numbers(name, value):
     refused(lambda: Beam.from_stiffness(**(STIFFNESS | {name: value})), name)
 
 
-@pytest.mark.parametrize("name", ["axial_stiffness", "outer_fibre"])
+@pytest.mark.parametrize("name", OPTIONAL)
 def test_stiffness_may_leave_out(name):
-    assert getattr(Beam.from_stiffness(**(STIFFNESS | {name: None})), name) is None
+    left = getattr(Beam.from_stiffness(**(STIFFNESS | {name: None})), name)
+    assert left == (Profile((0.0, 1.0), ((1e5,),)) if name == "second_shear_stiffness" else None)
+
+
+@pytest.mark.parametrize("value", [*NOT_FINITE, *NO_NUMBER[1:]])
+def test_twist_needs_a_finite_number(value):
+    refused(lambda: strip(twist=value), "twist")
+    refused(lambda: Beam.from_stiffness(**STIFFNESS, twist=value), "twist")
+
+
+def test_twist_needs_a_second_stiffness():
+    one = {name: STIFFNESS[name] for name in [*STIFFNESS][:3]}
+    for twist in (0.3, Polynomial([0, 0.3]), Table([0, 1], [0.1, 0.3])):
+        refused(lambda twist=twist: Beam.from_stiffness(**one, twist=twist), "twist = 0.3 rad", "second_b")
+
+
+@pytest.mark.parametrize("value", [-1, 0.51, *NOT_FINITE, *NO_NUMBER[1:]])
+def test_poissons_ratio(value):
+    refused(lambda: strip(poissons_ratio=value), "poissons_ratio")
 
 
 @given(st.floats(max_value=0) | st.sampled_from(NOT_FINITE), st.sampled_from(sorted(STRIP)))
@@ -226,9 +248,31 @@ def test_gravity_and_speed_are_finite(value):
     refused(lambda: SteadyRotation(value), "speed", "rad/s")
 
 
-def test_stretch_needs_axial_stiffness():
-    soft = Beam.from_stiffness(**(STIFFNESS | {"axial_stiffness": None}))
-    refused(lambda: Scene(soft, stretch=True), "stretch", "axial_stiffness")
+@pytest.mark.parametrize(
+    ("physics", "lacks"),
+    [
+        ({"stretch": True}, "axial_stiffness"),
+        ({"planes": 2}, "second_bending_stiffness"),
+        ({"shear": True}, "shear_stiffness"),
+        ({"rotary_inertia": True}, "rotary_inertia"),
+        ({"planes": 2, "rotary_inertia": True}, "second_rotary_inertia"),
+    ],
+)
+def test_physics_needs_a_property(physics, lacks):
+    beam = Beam.from_stiffness(**(STIFFNESS | {lacks: None}))
+    refused(lambda: Scene(beam, physics=Physics(**physics)), "physics.", f"it needs {lacks}; give it to Beam")
+    assert Scene(beam).physics == Physics()
+
+
+@pytest.mark.parametrize("value", [0, 3, 1.5, True, "2", None])
+def test_planes_are_one_or_two(value):
+    refused(lambda: Physics(planes=value), "physics.planes", "from 1 to 2")
+
+
+@pytest.mark.parametrize("value", [-1e-9, -math.inf, math.nan, "inf", None, True])
+@pytest.mark.parametrize("name", ["root_stiffness", "second_root_stiffness"])
+def test_a_root_spring_pushes_back(name, value):
+    refused(lambda: Mount(**{name: value}), f"{name} = ", "0 is a hinge; left out, the root is clamped")
 
 
 # Known gaps: the mark goes when the core refuses these ----------------------------------------------
@@ -258,7 +302,7 @@ def test_gap_in_beam(changes, name):
     refused(lambda: strip(**changes), name)
 
 
-@pytest.mark.parametrize("changes", [{"beam": None}, {"mount": 0.215}, {"motion": 55.0}, {"stretch": "no"}])
+@pytest.mark.parametrize("changes", [{"beam": None}, {"mount": 0.215}, {"motion": 55.0}, {"physics": "no"}])
 def test_gap_in_scene(changes):
     refused(lambda: Scene(**({"beam": strip()} | changes)), *changes)
 

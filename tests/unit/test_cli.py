@@ -109,6 +109,42 @@ def read_csv(path):
     return list(csv.DictReader(path.read_text().splitlines()))
 
 
+TWISTED = """
+[beam]
+length = "600 mm"
+stations = [
+  ["x [mm]", "width [mm]", "thickness [mm]", "twist [deg]"],
+  [0, 60, 12, 0],
+  [300, 60, 12, 30],
+  [600, 40, 8, 40],
+]
+youngs_modulus = "210 GPa"
+density = "7850 kg/m3"
+[mount]
+radius = "100 mm"
+[physics]
+planes = 2
+"""
+
+
+def test_two_planes_are_told_apart(run, tmp_path):
+    scene, found = tmp_path / "twisted.toml", tmp_path / "found.csv"
+    scene.write_text(TWISTED)
+    code, out, _ = run("modes", scene, "--modes", "2", "--csv", found)
+    assert code == DONE and "share in bending direction" in out
+    shares = [(float(r["share_in_bending_direction"]), float(r["share_across"])) for r in read_csv(found)]
+    assert shares[0][0] > 0.9 and shares[1][1] > 0.5  # flat first, then mainly on edge
+    np.testing.assert_allclose(np.sum(shares, axis=1), 1, rtol=1e-12)
+    code, _, _ = run("locus", scene, "--speeds", "0, 50 rad/s", "--modes", "2", "--csv", found, "--force")
+    assert code == DONE
+    at_rest = read_csv(found)[0]
+    np.testing.assert_allclose(
+        [float(at_rest[f"share_across_{mode}"]) for mode in (1, 2)], [pair[1] for pair in shares], rtol=1e-6
+    )  # two orders of Ritz, 1e-9 apart
+    code, _, _ = run("modes", SCENE, "--modes", "1", "--csv", found, "--force")
+    assert code == DONE and "share_across" not in read_csv(found)[0]
+
+
 def test_locus_writes_files(run, tmp_path):
     j, c, p = (tmp_path / name for name in ("l.json", "l.csv", "l.svg"))
     arguments = ("locus", SCENE, "--speeds", "0:200:11 rad/s", "--json", j, "--csv", c, "--plot", p)

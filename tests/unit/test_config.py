@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.polynomial import Polynomial
 
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.units import quantity
@@ -17,6 +18,7 @@ from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, sce
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 
@@ -103,7 +105,7 @@ def test_jump_and_tip_body():
     before, after = scene.beam.bending_stiffness(np.array([0.4 - 1e-9, 0.4]))
     assert before / after == pytest.approx(8, rel=1e-12)
     assert scene.beam.tip == TipMass(0.002, offset=0.003, inertia=2e-8, axial_inertia=2e-8)
-    assert (scene.damping_ratio, scene.gravity, scene.stretch) == (0.01, 9.81, False)
+    assert (scene.damping_ratio, scene.gravity, scene.physics) == (0.01, 9.81, Physics())
 
 
 @pytest.mark.parametrize("stations", [[0, 0.5, 1.0], ["0 m", "2.5 cm", "50 mm"], [0, "25 mm", 1]])
@@ -120,16 +122,146 @@ def test_breakpoints_are_fractions_or_lengths(place):
 
 def test_beam_by_stiffness():
     data = changed("beam.axial_stiffness", {"polynomial": ["400 kN", "-100 kN"]}, BY_STIFFNESS)
-    scene = scene_from_dict(changed("model.stretch", True, changed("beam.outer_fibre", "0.1 mm", data)))
+    scene = scene_from_dict(changed("physics.stretch", True, changed("beam.outer_fibre", "0.1 mm", data)))
     assert scene.beam.mass_per_length(np.array([0.3])) == pytest.approx(0.0157)
     assert scene.beam.axial_stiffness(np.array([1.0])) == pytest.approx(300e3)
-    assert scene.stretch
+    assert scene.physics == Physics(stretch=True)
 
 
 def test_every_input_of_the_tip_arrives():
     tip = {"mass": "1 g", "offset": "-1 mm", "inertia": "3 g mm2"}
     tip |= {"transverse_inertia": "2 g mm2", "axial_inertia": "4 g mm2"}
     assert scene_from_dict(changed("beam.tip", tip)).beam.tip == TipMass(1e-3, -1e-3, 3e-9, 2e-9, 4e-9)
+
+
+def test_physics_of_a_rectangular_beam():
+    data = changed("beam.twist", "10 deg", changed("beam.poissons_ratio", 0.3))
+    data["physics"] = {"planes": 2, "shear": True, "rotary_inertia": True}
+    scene = scene_from_dict(data)
+    wanted = {"twist": math.radians(10), "poissons_ratio": 0.3}
+    assert scene.beam == Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, **wanted)
+    assert scene.physics == Physics(planes=2, shear=True, rotary_inertia=True)
+
+
+@pytest.mark.parametrize(
+    ("twist", "wanted"),
+    [
+        ("-12 deg", math.radians(-12)),
+        ({"polynomial": ["0.1 rad", "-12 deg"]}, Polynomial([0.1, math.radians(-12)])),
+        ({"stations": [0, "25 mm", 1], "values": ["5 deg", "0 rad", "-5 deg"]},
+         Table((0, 0.5, 1), (math.radians(5), 0.0, math.radians(-5)))),
+    ],
+)  # fmt: skip
+def test_twist_has_any_sign(twist, wanted):
+    given = scene_from_dict(changed("beam.twist", twist)).beam.twist
+    x = np.linspace(0, 1, 11)
+    wanted = Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, twist=wanted).twist
+    np.testing.assert_allclose(given(x), wanted(x), rtol=1e-15, atol=1e-16)  # degrees convert in decimal
+
+
+def test_every_property_of_a_stiffness_arrives():
+    values = {"axial_stiffness": "5 MN", "outer_fibre": "0.1 mm", "second_bending_stiffness": "4e-3 N m2"}
+    values |= {"twist": "0.5 rad", "shear_stiffness": "1 kN", "second_shear_stiffness": "2 kN"}
+    values |= {"rotary_inertia": "1 g mm", "second_rotary_inertia": "2 g mm"}
+    data = copy.deepcopy(BY_STIFFNESS)
+    data["beam"] |= values
+    wanted = {"axial_stiffness": 5e6, "outer_fibre": 1e-4, "second_bending_stiffness": 4e-3, "twist": 0.5}
+    wanted |= {"shear_stiffness": 1e3, "second_shear_stiffness": 2e3}
+    wanted |= {"rotary_inertia": 1e-6, "second_rotary_inertia": 2e-6}
+    assert scene_from_dict(data).beam == Beam.from_stiffness(0.05, 0.0157, 1.3e-3, **wanted)
+
+
+@pytest.mark.parametrize("key", ["root_stiffness", "second_root_stiffness"])
+@pytest.mark.parametrize(
+    ("given", "wanted"), [("2 kN m/rad", 2e3), ("0 N m/rad", 0), ("inf", math.inf), (math.inf, math.inf)]
+)
+def test_root_springs(key, given, wanted):
+    assert scene_from_dict(changed(f"mount.{key}", given)).mount == Mount(0.215, **{key: wanted})
+
+
+# A table of stations --------------------------------------------------------------------------------
+
+ROWS = [
+    ["x/L", "mass_per_length [kg/m]", "twist [deg]", "bending_stiffness [kN m2]",
+     "second_bending_stiffness [N m2]"],
+    [0, 3, 13.3, 5.0, 9e3],
+    [0.25, 2, -1e-1, 4.0, 8e3],
+    [0.25, 2, 2, 2, 7e3],
+    [1.0, 1, 0, 1.5, 2e3],
+]  # fmt: skip
+BY_STATIONS = {"beam": {"length": "8 m", "stations": ROWS}, "mount": {"radius": "1 m"}}
+
+
+def with_rows(place, value):
+    """The scene with one cell, or one whole row, changed."""
+    scene = copy.deepcopy(BY_STATIONS)
+    inner = scene["beam"]["stations"]
+    for index in place[:-1]:
+        inner = inner[index]
+    inner[place[-1]] = value
+    return scene
+
+
+def test_stations_are_columns():
+    """The same as a table for each property."""
+    apart = {"length": "8 m"}
+    for c, head in enumerate(ROWS[0][1:], 1):
+        name, _, unit = head.rstrip("]").partition(" [")
+        values = [f"{row[c]} {unit}" for row in ROWS[1:]]
+        apart[name] = {"stations": [row[0] for row in ROWS[1:]], "values": values}
+    wanted = scene_from_dict(BY_STATIONS | {"beam": apart}).beam
+    assert scene_from_dict(BY_STATIONS).beam == wanted
+    assert wanted.twist(np.array([0.25 - 1e-12]))[0] == pytest.approx(math.radians(-0.1), rel=1e-9)
+
+
+def test_stations_in_metres_or_millimetres():
+    for unit, scale in (("m", 8), ("mm", 8000)):
+        rows = [[f"x [{unit}]", *ROWS[0][1:]], *([scale * row[0], *row[1:]] for row in ROWS[1:])]
+        scene = scene_from_dict(changed("beam.stations", rows, BY_STATIONS))
+        assert scene.beam == scene_from_dict(BY_STATIONS).beam
+
+
+def test_stations_beside_other_keys():
+    rows = [["thickness [mm]", "x/L"], [0.2, 0], [0.1, 1]]
+    scene = scene_from_dict(changed("beam.stations", rows, changed("beam.thickness", None)))
+    table = Table((0, 1), (2e-4, 1e-4))
+    assert scene.beam == Beam.rectangular(0.05, 0.01, table, 200e9, 7850.0)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "message"),
+    [
+        ((), "blade.csv", ' = "blade.csv": give a row of heads, ["x/L", "twist [deg]"], then rows of numb'),
+        ((), ROWS[:1], ' = [["x/L", "mass_per_length [kg/m]"'),
+        ((2,), 5, "[2] = 5: give a row in brackets"),
+        ((2,), [0.25, 1], "[2] = [0.25, 1]: 2 cells under 5 heads"),
+        ((0, 2), "twist", '[0][2] = "twist": give "twist [deg]"'),
+        ((0, 2), "twist [m]", '[0][2] = "twist [m]": give "twist [deg]"'),
+        ((0, 2), "Twist [deg]", '[0][2] = "Twist [deg]": unknown column; did you mean twist?'),
+        ((0, 2), 5, "[0][2] = 5: unknown column; known are x/L, x, twist, width, thickness, mass"),
+        ((0, 0), "x/L [m]", '[0][0] = "x/L [m]": give it without a unit, "x/L"'),
+        ((0, 0), "x", '[0][0] = "x": give "x [mm]"'),
+        ((0, 2), "x [m]", '[0] = ["x/L", "mass_per_length [kg/m]"'),
+        ((0, 2), "mass_per_length [g/m]", '[0][2] = "mass_per_length [g/m]": a second column of this name'),
+        ((2, 1), "2 kg/m", '[2][1] = "2 kg/m": give a finite number, in kg/m'),
+        ((2, 1), True, "[2][1] = true: give a finite number, in kg/m"),
+        ((2, 1), math.nan, "[2][1] = nan: give a finite number, in kg/m"),
+        ((2, 1), -1, "[2][1] = -1: it must be greater than 0 kg/m"),
+        ((2, 0), "a", '[2][0] = "a": give a finite number'),
+        ((4, 0), 0.9, "[4][0] = 0.9: the last station must be 1, the tip; give fractions x/L"),
+        ((3, 0), 0.2, "[3][0] = 0.2: it follows 0.25; stations must ascend"),
+        ((3, 0), 0, "[3][0] = 0: it follows 0.25; stations must ascend"),
+        ((2, 1), 1e60, " = 1e+60: give sizes from 1e-50 to 1e+50 in SI units"),
+    ],
+)  # fmt: skip
+def test_mistake_in_stations(place, value, message):
+    data = with_rows(place, value) if place else changed("beam.stations", value, BY_STATIONS)
+    assert only_mistake(data).startswith(f"beam.stations{message}")
+
+
+def test_a_property_is_given_once():
+    said = only_mistake(changed("beam.twist", "5 deg", BY_STATIONS))
+    assert said.endswith(": twist is a key of its own, too; give it once")
 
 
 @pytest.mark.parametrize("motion", [{"speed": "525 rpm"}, {"speed": "525 rpm", "kind": "steady"}])
@@ -220,7 +352,7 @@ def test_rolling():
         ("beam.thickness", "20 mm", 'beam.thickness = "20 mm": it exceeds width = 10 mm, but the beam bends'),
         ("beam.thickness", "60 mm", 'beam.thickness = "60 mm": it exceeds length = 50 mm'),
         ("beam.thicknes", "0.2 mm", "beam.thicknes: unknown key; did you mean thickness?"),
-        ("beam.colour", "red", "beam.colour: unknown key; known are length, tip, breakpoints, width"),
+        ("beam.colour", "red", "beam.colour: unknown key; known are length, tip, breakpoints, stations"),
         ("beam.<b>", "red", "beam.<b>: unknown key"),
         (
             "beam.bending_stiffness",
@@ -351,19 +483,63 @@ def test_rolling():
         ("model.damping_ratio", "1 %", 'model.damping_ratio = "1 %": give a finite number, without a unit'),
         ("model.damping_ratio", math.nan, "model.damping_ratio = nan: give a finite number"),
         ("model.gravity", 9.81, 'model.gravity = 9.81: give a unit, e.g. "9.81 m/s2"'),
-        ("model.stretch", 1, "model.stretch = 1: give true or false"),
+        ("model.stretch", True, "model.stretch: unknown key; it belongs in the table [physics]"),
+        ("model.tip", {}, "model.tip: unknown key; known are damping_ratio, gravity"),
+        ("physics.stretch", 1, "physics.stretch = 1: give true or false"),
+        ("physics.planes", 3, "physics.planes = 3: give 1 or 2"),
+        ("physics.planes", "2", 'physics.planes = "2": give 1 or 2'),
+        ("physics.planes", True, "physics.planes = true: give a number"),
+        ("physics.shear", True, "physics.shear = true: it needs shear_stiffness; give beam.poissons_ratio"),
+        (
+            "mount.root_stiffness",
+            "-5 kN m/rad",
+            'mount.root_stiffness = "-5 kN m/rad": it must be at least 0 kN m/rad; 0 is a hinge; left out,',
+        ),
+        ("mount.root_stiffness", math.nan, "mount.root_stiffness = nan: not a finite number; give e.g."),
+        ("mount.root_stiffness", -math.inf, "mount.root_stiffness = -inf: not a finite number; give e.g."),
+        (
+            "mount.second_root_stiffness",
+            "5 N m",
+            'mount.second_root_stiffness = "5 N m": a unit of moment where stiffness against rotation is',
+        ),
+        ("beam.poissons_ratio", 0.6, "beam.poissons_ratio = 0.6: it must be greater than -1, at most 0.5"),
+        ("beam.twist", 10, 'beam.twist = 10: give a unit, e.g. "10 rad" or "10 deg"'),
+        ("beam.twist", {"polynomial": ["0 deg", 5]}, "beam.twist.polynomial[1] = 5: give a unit, e.g."),
         ("modle", {}, "modle: unknown key; did you mean model?"),
-        (" ", 1, " : unknown key; known are beam, mount, motion, model"),
+        (" ", 1, " : unknown key; known are beam, mount, motion, model, physics"),
     ],
 )
 def test_mistake_names_key_value_and_remedy(path, value, message):
     assert only_mistake(changed(path, value)).startswith(message)
 
 
-def test_stretch_needs_axial_stiffness():
-    assert only_mistake(changed("model.stretch", True, BY_STIFFNESS)).startswith(
-        "model.stretch = true: it needs axial"
-    )
+@pytest.mark.parametrize(
+    ("physics", "name"),
+    [
+        ({"stretch": True}, "axial_stiffness"),
+        ({"planes": 2}, "second_bending_stiffness"),
+        ({"shear": True}, "shear_stiffness"),
+        ({"rotary_inertia": True}, "rotary_inertia"),
+    ],
+)
+def test_physics_needs_a_property(physics, name):
+    said = only_mistake(changed("physics", physics, BY_STIFFNESS))
+    assert said.startswith("physics.")
+    assert said.endswith(f": it needs {name}; give beam.{name}")
+
+
+@pytest.mark.parametrize(
+    ("twist", "shown"),
+    [
+        ("10 deg", '"10 deg" at the tip'),
+        ({"polynomial": ["5 deg", "-15 deg"]}, "-10 deg at the tip"),
+        ({"stations": [0, 1], "values": ["1 rad", "30 deg"]}, "30 deg at the tip"),
+    ],
+)
+def test_twist_needs_a_second_stiffness(twist, shown):
+    said = only_mistake(changed("beam.twist", twist, BY_STIFFNESS))
+    assert said.startswith(f"beam.twist = {shown}: it turns two directions of bending, and needs second_b")
+    assert said.endswith("; give beam.second_bending_stiffness")
 
 
 def test_all_mistakes_at_once():
@@ -444,7 +620,8 @@ JUNK = st.recursive(
     max_leaves=12,
 )
 PATHS = st.sampled_from(
-    [found.path for found in describe(SceneInput)] + ["beam", "mount", "motion", "model", "beam.tip"]
+    [found.path for found in describe(SceneInput)]
+    + ["beam", "mount", "motion", "model", "physics", "beam.tip"]
 )
 
 
@@ -518,7 +695,7 @@ def test_every_input_of_a_scene_is_described():
         "mount.radius",
         "motion.rotation.duration",
         "motion.road.height",
-        "model.stretch",
+        "physics.stretch",
     }
 
 

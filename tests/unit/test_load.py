@@ -18,6 +18,7 @@ from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.records import seal
 from beamdyn.common.results import Result
 from beamdyn.common.snapshots import LeftOut, decode, encode
+from beamdyn.equations.discretization import HINGED
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 from brakes import cli as brakes
 from brakes.calipers import NAMED
@@ -48,6 +49,17 @@ CASES = [
     *((name, "ritz") for name in MAKERS),
     *((name, "fem") for name in ("modes", "transient", "all modes")),
 ]
+
+
+def test_a_scene_with_all_physics_comes_back():
+    beam = bd.Beam.rectangular(
+        0.05, 0.01, 0.0002, 200e9, 7850.0, twist=bd.Table((0, 0.4, 1), (0.1, 0.1, -0.3)), poissons_ratio=0.3
+    )
+    physics = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
+    scene = bd.Scene(beam, bd.Mount(0.2, root_stiffness=3.0), physics=physics)
+    back = decode(json.loads(json.dumps(encode(scene), allow_nan=False)))
+    assert back == scene
+    assert back.mount.second_root_stiffness == math.inf
 
 
 @pytest.fixture(scope="module")
@@ -302,6 +314,7 @@ def test_the_interpolation_of_solve_ivp_is_left_out(tmp_path):
         *(None, True, 7, -0.0, 5e-324, math.inf, "ω", 1 - 2j, complex(math.nan, math.inf), slice(0, 3)),
         *((), (1, (2.0, "a")), [1, [2]], {"a": {"b": (1,)}}, np.zeros((0, 2)), np.array(["stable", ""])),
         *(np.array(3.0), np.array([[1 + 2j]]), np.array([True]), np.arange(4, dtype="u1")),
+        HINGED,
     ],
     ids=repr,
 )

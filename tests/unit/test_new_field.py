@@ -9,9 +9,8 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.equations import equations_of_motion
-from beamdyn.equations.discretization import Spaces
+from beamdyn.equations.discretization import CLAMPED, Spaces
 from beamdyn.equations.fields import FIELDS
-from beamdyn.equations.fields.bending import HELD, bending_operators
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.scene.scene import Scene
 from benchmarks.cases.scenes import HARVESTER, ROLLING
@@ -30,9 +29,12 @@ class Sway(Field):
         return scene
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        op = bending_operators(scene.beam, spaces.functions(HELD))
-        terms = Term("mass", "sway", "sway", 2, op.M), Term("stiffness", "sway", "sway", 0, 4 * op.KB)
-        return FieldEquations(len(op.P), terms, (Load("load", "sway", op.P, "root_transverse", 0.5),))
+        beam, space = scene.beam, spaces.functions(CLAMPED)
+        M = space.gram(beam.mass_per_length, 0) * beam.length
+        K = 4 * space.gram(beam.bending_stiffness, 2) / beam.length**3
+        load = space.load(beam.mass_per_length) * beam.length
+        terms = Term("mass", "sway", "sway", 2, M), Term("stiffness", "sway", "sway", 0, K)
+        return FieldEquations(space.size, terms, (Load("load", "sway", load, "root_transverse", 0.5),))
 
 
 PLAIN = bd.natural_modes(HARVESTER, 50.0, 3).frequency

@@ -144,9 +144,9 @@ def test_nothing_forces_the_beam() -> None:
 def test_stretch_hardly_changes_it() -> None:
     """Coriolis coupling and stretch are of the relative order (gamma/alpha)^2 = 1e-7 here."""
     beam = HARVESTER.beam
-    scene = replace(ROLLING, beam=beam, stretch=True, damping_ratio=0.01)
+    scene = replace(ROLLING, beam=beam, physics=bd.Physics(stretch=True), damping_ratio=0.01)
     coupled = bd.steady_response(scene, [40.0, 60.0])
-    alone = bd.steady_response(replace(scene, stretch=False), [40.0, 60.0])
+    alone = bd.steady_response(replace(scene, physics=bd.Physics()), [40.0, 60.0])
     np.testing.assert_allclose(coupled.amplitude, alone.amplitude, rtol=1e-5)
 
 

@@ -22,7 +22,7 @@ HANGING = bd.Scene(BEAM, bd.Mount(), bd.SteadyRotation(0.0), damping_ratio=0.05,
 @pytest.mark.parametrize("modes", [1, 3])
 def test_weight_of_beam_and_body(modes: int, stretch: bool, discretization: bd.Ritz | bd.Fem) -> None:
     """The moment is that of the weights about the root, however few modes there are."""
-    scene = replace(HANGING, stretch=stretch)
+    scene = replace(HANGING, physics=bd.Physics(stretch=stretch))
     run = bd.simulate(scene, 0.1, modes, initial="equilibrium", discretization=discretization)
     moment = -9.81 * (MASS * LENGTH**2 / 2 + BODY.mass * (LENGTH + BODY.offset))
     assert run.root_strain([0.05])[0] == pytest.approx(moment * FIBRE / STIFFNESS, rel=1e-10)
@@ -87,7 +87,9 @@ def test_steady_rotation(mount: bd.Mount, modes: int) -> None:
 def reference(request: pytest.FixtureRequest) -> tuple[bd.Scene, np.ndarray, np.ndarray]:
     """Strain during a smooth spin-up on a road, by the curvature of polynomials at the root."""
     motion = bd.RollingWheel(0.5, bd.SpinUp(6.0, 0.8), bd.RoadWave(1.0, velocity_amplitude=0.05))
-    scene = bd.Scene(BEAM, bd.Mount(0.5, 0.1, 0.3), motion, damping_ratio=0.03, stretch=request.param)
+    scene = bd.Scene(
+        BEAM, bd.Mount(0.5, 0.1, 0.3), motion, damping_ratio=0.03, physics=bd.Physics(stretch=request.param)
+    )
     run, t = bd.simulate(scene, 1.0, None, 1e-7, discretization=bd.Ritz(9)), np.linspace(0, 1, 201)
     curvature = run.at(t)[0] @ run.system.equations.deflection(np.zeros(1), order=2)[:, 0] / LENGTH**2
     return scene, t, curvature * FIBRE

@@ -18,7 +18,16 @@ from beamdyn.equations.fields import FIELDS
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING
 
 TIP = bd.TipMass(0.001, inertia=1e-6, axial_inertia=4e-7)
-COUPLED = replace(BLADE_SPIN_UP, stretch=True, damping_ratio=0.01)
+COUPLED = replace(BLADE_SPIN_UP, physics=bd.Physics(stretch=True), damping_ratio=0.01)
+
+
+STRIP = bd.Beam.rectangular(0.05, 0.01, 0.002, 200e9, 7850.0, TIP, twist=0.3, poissons_ratio=0.3)
+STRAIGHT = replace(STRIP, twist=None, tip=None)
+ALL = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
+
+
+def in_two_planes(beam: bd.Beam = STRIP, bending: float = 0.4, **physics: bool) -> bd.Scene:
+    return bd.Scene(beam, bd.Mount(0.2, 0.3, bending), physics=bd.Physics(planes=2, **physics))
 
 
 def turned(setting: float = 0.0, bending: float = 0.0) -> bd.Scene:
@@ -40,6 +49,15 @@ SCENES = {
     "tip body": replace(turned(bending=0.4), beam=replace(HARVESTER.beam, tip=TIP)),
     "spin-up": BLADE_SPIN_UP,
     "coupled": COUPLED,
+    "two planes": in_two_planes(),
+    "two planes, straight": in_two_planes(STRAIGHT, 0.0, rotary_inertia=True),
+    "two planes, straight, oblique": in_two_planes(STRAIGHT, rotary_inertia=True),
+    "two planes, straight tip body": in_two_planes(replace(STRIP, twist=None), math.pi / 2),
+    "shear": replace(in_two_planes(shear=True), physics=bd.Physics(shear=True, rotary_inertia=True)),
+    "all": replace(COUPLED, beam=STRIP, physics=ALL),
+    "on a spring": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.1)),
+    "on a hinge": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.0)),
+    "the other plane on a spring": replace(HARVESTER, mount=bd.Mount(0.2, second_root_stiffness=0.1)),
 }
 
 
@@ -53,7 +71,7 @@ def test_reasons_agree_with_what_is_assembled(name: str) -> None:
 
 
 def test_every_term_of_the_equations_has_a_meaning() -> None:
-    complete = reduce(lambda scene, field: field.complete(scene), FIELDS, HARVESTER)
+    complete = reduce(lambda scene, field: field.complete(scene), FIELDS, SCENES["all"])
     equations = assemble_equations(complete, bd.Ritz(3))
     assert {term.name for term in (*equations.terms, *equations.loads)} == set(EXPLANATIONS)
 
@@ -64,7 +82,8 @@ def test_every_term_of_the_equations_has_a_meaning() -> None:
         (HARVESTER, "root acceleration", "no setting angle, so no static load"),
         (HARVESTER, "damping", "no damping"),
         (HARVESTER, "spin of the tip body", "no tip body"),
-        (HARVESTER, "stretch mass", "no stretch"),
+        (SCENES["on a hinge"], "root spring", "no spring"),
+        (SCENES["two planes, straight"], "twisting by inertia", "no product of inertia"),
         (HARVESTER, "angular acceleration", "constant speed"),
         (turned(bending=math.pi / 2), "spin softening", "bending angle is 90 deg"),
         (turned(math.pi / 2), "tension by root acceleration", "setting angle is 90 deg"),
@@ -75,6 +94,35 @@ def test_every_term_of_the_equations_has_a_meaning() -> None:
 def test_what_is_left_out(scene: bd.Scene, name: str, words: str) -> None:
     entry = bd.terms(scene)[name]
     assert not entry.present and entry.largest == 0 and words in entry.reason
+
+
+def test_what_physics_is_left_out() -> None:
+    def names(scene: bd.Scene) -> list[str]:
+        return [effect.name for effect in bd.terms(scene).left_out]
+
+    switched = [
+        "second plane of bending",
+        "twist",
+        "shear deformation",
+        "rotary inertia of sections",
+        "stretch",
+    ]
+    never = names(SCENES["all"])
+    assert "large deflection" in never and "torsion" in never and not set(switched) & set(never)
+    plain = replace(HARVESTER, beam=STRIP)
+    assert names(plain) == [*switched, *never]
+    assert "twist" not in names(HARVESTER)
+    by_stiffness = replace(HARVESTER, beam=bd.Beam.from_stiffness(1.0, 1.0, 1.0))
+    reasons = {effect.name: effect.reason for effect in bd.terms(by_stiffness).left_out}
+    assert "with shear_stiffness or poissons_ratio" in reasons["shear deformation"]
+    assert "with" not in {effect.name: effect.reason for effect in bd.terms(plain).left_out}["stretch"]
+
+
+def test_a_term_of_several_fields_is_one_entry() -> None:
+    entry = bd.terms(SCENES["all"])["mass"]
+    assert entry.fields == ("bending", "second bending", "shear", "second shear")
+    with pytest.raises(KeyError, match="no term of this model; its terms are mass"):
+        bd.terms(HARVESTER)["stretch mass"]
 
 
 def test_translation_makes_the_tension_parametric() -> None:
@@ -108,7 +156,7 @@ def test_a_motion_of_the_users_own() -> None:
 
 def test_table_and_dictionary() -> None:
     found = bd.terms(COUPLED)
-    assert len(found) == len(list(found)) == 19
+    assert len(found) == len(list(found)) == 20
     assert all(entry.name in str(found) for entry in found)
     assert json.loads(json.dumps(found.to_dict()))["entries"][0]["name"] == "mass"
     assert np.isfinite([entry.largest for entry in found]).all()
@@ -119,4 +167,5 @@ def test_command(capsys, tmp_path) -> None:
     assert main(["terms", "examples/rolling_harvester.toml", "--json", str(path)]) == DONE
     out = capsys.readouterr().out
     assert "centrifugal stiffening" in out and "road + at 7.28319" in out
-    assert len(json.loads(path.read_text())["entries"]) == 19
+    written = json.loads(path.read_text())
+    assert len(written["entries"]) == 10 and written["left_out"][0]["name"] == "second plane of bending"

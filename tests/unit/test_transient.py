@@ -134,7 +134,7 @@ def test_a_batch_is_its_cases_one_by_one() -> None:
 
 
 def test_a_damped_batch_with_stretch_and_gravity() -> None:
-    scene = replace(ROLLING, damping_ratio=0.03, gravity=9.81, stretch=True)
+    scene = replace(ROLLING, damping_ratio=0.03, gravity=9.81, physics=bd.Physics(stretch=True))
     motions = [ROLLING.motion.with_speed(v) for v in (40.0, 55.0)]
     equations = Model(scene, bd.Ritz(16)).modal_equations(2)
     batch = integrate_batch([ModalSystem(equations, m) for m in motions], 1.0)

@@ -53,22 +53,29 @@ CALLS = {
     "Beam.rectangular": (
         bd.Beam.rectangular,
         {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
-        | {"tip": None, "breakpoints": ()},
+        | {"tip": None, "breakpoints": (), "twist": 0.1, "poissons_ratio": 0.3},
     ),
     "Beam.from_stiffness": (
         bd.Beam.from_stiffness,
         {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3, "axial_stiffness": 4e5}
-        | {"outer_fibre": 1e-4, "tip": None, "breakpoints": ()},
+        | {"outer_fibre": 1e-4, "tip": None, "breakpoints": (), "second_bending_stiffness": 3.0, "twist": 0.1}
+        | {"shear_stiffness": 1e5, "second_shear_stiffness": 1e5}
+        | {"rotary_inertia": 5e-11, "second_rotary_inertia": 1e-7},
     ),
     "TipMass": (
         bd.TipMass,
         dict.fromkeys(("mass", "offset", "inertia", "transverse_inertia", "axial_inertia"), 1e-9),
     ),
-    "Mount": (bd.Mount, {"radius": 0.2, "setting_angle": 0.0, "bending_angle": 0.0}),
+    "Mount": (
+        bd.Mount,
+        {"radius": 0.2, "setting_angle": 0.0, "bending_angle": 0.0}
+        | {"root_stiffness": 1.0, "second_root_stiffness": math.inf},
+    ),
+    "Physics": (bd.Physics, {"planes": 2, "shear": False, "rotary_inertia": False, "stretch": False}),
     "Scene": (
         bd.Scene,
         {"beam": BEAM, "mount": bd.Mount(), "motion": None, "damping_ratio": 0.0, "gravity": 0.0}
-        | {"stretch": False},
+        | {"physics": bd.Physics()},
     ),
     "Table": (tabulated, {"stations": [0, 0.5, 1], "values": [0.01] * 3}),
     "SteadyRotation": (bd.SteadyRotation, {"speed": 5.0}),
@@ -138,7 +145,7 @@ CALLS = {
 SAID_AS = {"driver": "load"}  # in messages
 # What of the wrong values is right after all.
 ALLOWED = {
-    "Scene.stretch": {"truth", "numpy's truth"},
+    **{f"Physics.{name}": {"truth", "numpy's truth"} for name in ("shear", "rotary_inertia", "stretch")},
     "sweep.store": {"text"},
     "sweep.progress": {"class"},
     "tradeoff.progress": {"class"},
@@ -363,7 +370,7 @@ def test_a_road_of_too_short_waves_is_refused():
 def test_a_size_beyond_all_use_is_refused_before_it_overflows(size):
     for call in ("Beam.rectangular", "Beam.from_stiffness"):
         make, good = CALLS[call]
-        for name in set(good) - {"tip", "breakpoints"}:
+        for name in set(good) - {"tip", "breakpoints", "twist", "poissons_ratio"}:
             varying = (bd.Table([0, 1], [size, size]), lambda xi, size=size: size * (1 + xi))
             for value in (size, *varying) if name not in ("length", "youngs_modulus", "density") else (size,):
                 with pytest.raises(ValueError, match=name):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.form_entries import in_unit, toml_value, units_for
+from beamdyn.common.app.form_entries import has_rows, in_unit, toml_value, units_for
 from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show
@@ -99,7 +100,7 @@ class Form:
         )
 
     def _input(self, entry: Input, text: str) -> Any:
-        made = _lines if entry.kind == list[dict] else ui.input
+        made = _lines if has_rows(entry) else ui.input
         field = made(
             label(entry),
             value=text,
@@ -164,7 +165,7 @@ def _table(path: str) -> str:
 def _options(entry: Input) -> tuple[str, ...]:
     if entry.kind is bool:
         return ("true", "false")
-    few = all(isinstance(choice, str) for choice in entry.choices)
+    few = all(isinstance(choice, str | int) for choice in entry.choices)
     return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
 
 
@@ -173,6 +174,8 @@ def _default(entry: Input) -> str:
     if entry.default is None or entry.default in ("", [], ()):
         return _NOT_GIVEN
     value, unit = entry.default, entry.quantity.unit
+    if value == math.inf and entry.quantity.infinite:
+        return entry.quantity.infinite
     if isinstance(value, tuple):
         return toml_value([_said(number, unit) for number in value])
     if isinstance(value, bool) or not isinstance(value, int | float):

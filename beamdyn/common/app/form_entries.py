@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.edge.config import ConfigError, path_of
-from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.units import quantity
 
 Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
@@ -44,14 +44,26 @@ def _flat(tables: Mapping[str, Any], leaves: set[str], prefix: str) -> Iterator[
 
 
 def _lined(value: Any) -> str:
-    """A value as TOML; a list of tables with a line for each."""
-    if _is_tables(value):
+    """A value as TOML; a list of tables or of rows with a line for each."""
+    if _is_tables(value) or _is_rows(value):
         return "[{}]".format(",\n ".join(toml_value(item) for item in value))
     return toml_value(value)
 
 
 def _is_tables(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
+
+
+def _is_rows(value: Any) -> bool:
+    """Whether a value is a table of plain numbers; points, whose coordinates have units, are none."""
+    rows = isinstance(value, list) and bool(value) and all(isinstance(item, list) for item in value)
+    return rows and any(isinstance(cell, int | float) for cell in value[-1])
+
+
+def has_rows(entry: Input) -> bool:
+    """Whether an input is a list of tables or of rows, which takes several lines."""
+    parts = (part for kind in parts_of(entry.kind) if get_origin(kind) is list for part in get_args(kind))
+    return any(part is dict or get_origin(part) is list for part in parts)
 
 
 def tables_of(
@@ -83,7 +95,7 @@ def tables_of(
 def _value(text: str, entry: Input | None) -> Any:
     """The text as a TOML value: a number, list or table if the input is one, else a string."""
     if entry is not None and (entry.choices or _is_text(entry.kind)):
-        return text
+        return next((choice for choice in entry.choices if str(choice) == text), text)
     if entry is not None and entry.quantity.unit and text[0] not in "[{":
         return text
     try:
@@ -104,7 +116,7 @@ def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
 def _lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
     for key, value in tables.items():
         if not isinstance(value, dict) and not _is_tables(value):
-            yield f"{_key(key)} = {toml_value(value)}"
+            yield f"{_key(key)} = {_lined(value)}"
     for key, value in tables.items():
         path = prefix + _key(key)
         if isinstance(value, dict):

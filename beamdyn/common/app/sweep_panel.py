@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Mapping
 from contextlib import suppress
@@ -140,7 +141,7 @@ def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
     number, _, given = text.strip().partition(" ")
     with suppress(ValueError):
         return float(number), given
-    if not isinstance(default, int | float):
+    if not isinstance(default, int | float) or math.isinf(default):
         return 0.0, unit
     usual = _USUAL.get(unit, unit)
     number = in_unit(f"{default!r} {unit}", unit, usual).partition(" ")[0] if unit else default

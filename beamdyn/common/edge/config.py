@@ -266,8 +266,15 @@ def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
 def _nearest(model: type[BaseModel], table: str, key: str, known: list[str]) -> str:
     if key in known and (kinds := _kinds_with(model, table, key)):
         return f"it goes with kind = {' or '.join(kinds)}"
+    if len(tables := _tables_with(model, key)) == 1:
+        return f"it belongs in the table [{tables.pop()}]"
     near = difflib.get_close_matches(key, known, n=1)
     return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+
+
+def _tables_with(model: type[BaseModel], key: str) -> set[str]:
+    """The tables that know a key."""
+    return {i.path.rpartition(".")[0] for i in describe(model) if i.name == key} - {""}
 
 
 def _kinds_with(model: type[BaseModel], table: str, key: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
@@ -41,6 +42,8 @@ class Quantity(Described):
 
     def convert(self, given: object) -> float:
         """Convert to SI without checking the bounds."""
+        if self.infinite and given in ("inf", math.inf):
+            return math.inf
         return quantity(given, self.unit) if self.unit else _plain(given)
 
     def within_bounds(self, given: object, value: float) -> float:
@@ -104,11 +107,12 @@ class Input:
 
     @property
     def help(self) -> str:
-        """Meaning, unit and bounds in one phrase."""
+        """Meaning, unit, bounds and what inf stands for, in one phrase."""
         q = self.quantity
         unit = q.unit and f" [{q.unit}]"
         bounds = q.bounds and f", {q.bounds}"
-        return f"{q.meaning}{unit}{bounds}"
+        infinite = q.infinite and f"; inf is {q.infinite}"
+        return f"{q.meaning}{unit}{bounds}{infinite}"
 
 
 Choice = Callable[[str, Sequence[type[BaseModel]]], Sequence[type[BaseModel]]]

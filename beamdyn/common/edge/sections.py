@@ -9,11 +9,12 @@ from inspect import Parameter, signature
 from types import NoneType
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from pydantic import Discriminator, Field, Tag, create_model
+from pydantic import BeforeValidator, Discriminator, Field, Tag, create_model
 
 from beamdyn.common.described import Described, description, kinds_of
 from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.wording import of_file
 
 
@@ -140,6 +141,13 @@ def _key(name: str, hint: Any) -> str:
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 
 
+def _refuse_truth(given: object) -> object:
+    """Refuse a truth value where the number that it equals is a choice."""
+    if isinstance(given, bool):
+        raise InvalidInput("", given, "give a number")
+    return given
+
+
 def _is_described(hint: Any) -> bool:
     return get_origin(hint) is Annotated
 
@@ -159,6 +167,7 @@ def _annotation(hint: Any, tables: Mapping[type, Any]) -> Any:
         raise TypeError(f"{hint} is not described: give Annotated[{hint}, Described(...)]")
     elif kind in (str, bool) or get_origin(kind) is Literal:
         read = Annotated[kind, Field(description=described.meaning)]
+        read = Annotated[read, BeforeValidator(_refuse_truth)] if 1 in parts else read
     elif parts and parts[0] is str:
         number = None if Ellipsis in parts else len(parts)
         read = Annotated[

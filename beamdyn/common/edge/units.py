@@ -30,6 +30,7 @@ _KINDS = {
     "kg": "mass",
     "kg/m": "mass per length",
     "kg/m3": "density",
+    "kg m": "rotary inertia per length",
     "kg m2": "moment of inertia",
     "s": "time",
     "Hz": "frequency",
@@ -41,6 +42,7 @@ _KINDS = {
     "N": "force",
     "N/m": "stiffness",
     "N m": "moment",
+    "N m/rad": "stiffness against rotation",
     "N m2": "bending stiffness",
     "Pa": "pressure or modulus",
     "W": "power",
@@ -146,7 +148,7 @@ def _split(given: object, unit: str) -> tuple[str, str]:
         raise InvalidInput("", given, *_no_quantity(given, unit))
     number, name = match.groups()
     if unit and not name:
-        choices = dict.fromkeys((f'"{number} {unit}"', f'"{number} {_usual(unit)}"'))
+        choices = dict.fromkeys((f'"{number} {unit}"', f'"{number} {usual_unit(unit)}"'))
         raise InvalidInput("", given, f"give a unit, e.g. {' or '.join(choices)}")
     return number, name
 
@@ -203,12 +205,13 @@ def _no_quantity(given: object, unit: str) -> tuple[str, str]:
 
 def _example(unit: str, number: str = "1") -> str:
     """A quantity as a file writes it, with a number as it was given."""
-    return f'"{number} {_usual(unit)}"' if unit else number
+    return f'"{number} {usual_unit(unit)}"' if unit else number
 
 
 def _kind(unit: str) -> str:
     return _KINDS.get(unit, f"a quantity in {unit}")
 
 
-def _usual(unit: str) -> str:
+def usual_unit(unit: str) -> str:
+    """The unit in which people write a quantity, by its SI unit: "deg" for "rad"."""
     return _USUAL.get(unit, unit)

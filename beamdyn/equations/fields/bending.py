@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import CLAMPED, HINGED, RootConditions
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Term
@@ -29,7 +30,7 @@ class Bending(TransverseField):
     explanations: ClassVar[Mapping[str, Explanation]] = {
         **TransverseField.explanations,
         "bending stiffness": Explanation("KB q2", "always"),
-        "root spring": Explanation("k D0 D0ᵀ q2", "the root turns against a spring"),
+        "root spring": Explanation("k D0 D0ᵀ q2", "the root turns against a spring", (why.ON_SPRINGS,)),
     }
 
     def is_modelled(self, scene: Scene) -> bool:
@@ -37,9 +38,9 @@ class Bending(TransverseField):
         return True
 
     def complete(self, scene: Scene) -> Scene:
-        """Add a tip body, damping, and angles at which no term vanishes."""
-        body = TipMass(1.0, inertia=1.0, axial_inertia=0.5)
-        mount = Mount(1.0, 1.0, 1.0)
+        """Add a tip body, damping, springs at the root, and angles at which no term vanishes."""
+        body = TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5)
+        mount = Mount(1.0, 1.0, 1.0, root_stiffness=1.0, second_root_stiffness=1.0)
         return replace(scene, beam=replace(scene.beam, tip=body), mount=mount, damping_ratio=0.5)
 
     def conditions(self, mount: Mount) -> RootConditions:

@@ -119,8 +119,8 @@ class Field(ABC):
     1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
     2. `is_modelled` says whether a scene has the field.  A scene without it has no cost of it.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
-       ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects the beam
-       transversely, the `Deflection`.
+       ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects
+       the beam transversely, the `Deflection`.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
        every quantity.  Its own stiffness, under the quantity "unity", is positive definite; only that of a
        field that is `hinged` may lack stiffness against its first coordinate.

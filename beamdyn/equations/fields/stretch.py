@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import FIXED, Spaces
-from beamdyn.equations.explanations import Condition, Explanation
+from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.bending import Bending, SecondBending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.shear import SecondShear, Shear
@@ -19,7 +19,6 @@ from beamdyn.scene.beam import TipMass
 from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
 
-MODELLED = Condition(lambda s: s.scene.physics.stretch, "no stretch: the beam is modelled as inextensible")
 PARTNERS: tuple[TransverseField, ...] = (Bending(), SecondBending(), Shear(), SecondShear())
 
 
@@ -29,24 +28,24 @@ class Stretch(Field):
     name = "stretch"
     damping_name = "axial damping"
     explanations: ClassVar[Mapping[str, Explanation]] = {
-        "stretch mass": Explanation("M11 q1''", "stretch is modelled", (MODELLED,)),
-        "axial stiffness": Explanation("KS q1", "stretch is modelled", (MODELLED,)),
-        "axial spin softening": Explanation("-ω² M11 q1", "the carrier turns", (MODELLED, why.TURNS)),
+        "stretch mass": Explanation("M11 q1''", "stretch is modelled"),
+        "axial stiffness": Explanation("KS q1", "stretch is modelled"),
+        "axial spin softening": Explanation("-ω² M11 q1", "the carrier turns", (why.TURNS,)),
         "Coriolis coupling of stretch": Explanation(
-            "2 ω c M12 q2'", "the carrier turns", (MODELLED, why.TURNS, why.IN_PLANE)
+            "2 ω c M12 q2'", "the carrier turns", (why.TURNS, why.IN_PLANE)
         ),
         "Coriolis coupling of bending": Explanation(
-            "-2 ω c M21 q1'", "the carrier turns", (MODELLED, why.TURNS, why.IN_PLANE)
+            "-2 ω c M21 q1'", "the carrier turns", (why.TURNS, why.IN_PLANE)
         ),
         "Euler coupling of stretch": Explanation(
-            "ω' c M12 q2", "the speed varies", (MODELLED, why.ACCELERATES, why.IN_PLANE)
+            "ω' c M12 q2", "the speed varies", (why.ACCELERATES, why.IN_PLANE)
         ),
         "Euler coupling of bending": Explanation(
-            "-ω' c M21 q1", "the speed varies", (MODELLED, why.ACCELERATES, why.IN_PLANE)
+            "-ω' c M21 q1", "the speed varies", (why.ACCELERATES, why.IN_PLANE)
         ),
-        "axial damping": Explanation("2 ζ Λ q1'", "the damping ratio is not 0", (MODELLED, why.DAMPED)),
-        "centrifugal stretching": Explanation("ω² Q1", "the carrier turns", (MODELLED, why.TURNS)),
-        "axial root acceleration": Explanation("-aO1 P1", why.say_tension, (MODELLED, why.TENSIONED)),
+        "axial damping": Explanation("2 ζ Λ q1'", "the damping ratio is not 0", (why.DAMPED,)),
+        "centrifugal stretching": Explanation("ω² Q1", "the carrier turns", (why.TURNS,)),
+        "axial root acceleration": Explanation("-aO1 P1", why.say_tension, (why.TENSIONED,)),
     }
 
     def is_modelled(self, scene: Scene) -> bool:

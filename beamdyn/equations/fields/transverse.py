@@ -173,7 +173,7 @@ class TransverseField(Field):
     partners: ClassVar[tuple[TransverseField, ...]]  # the transverse fields before this one in `FIELDS`
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "mass": Explanation("M22 q2''", "always"),
-        "rotary inertia of sections": Explanation("R22 q2''", "physics.rotary_inertia"),
+        "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),
         "centrifugal stiffening": Explanation("ω² KGB q2", "the carrier turns", (why.TURNS,)),
         "spin softening": Explanation(
             "-ω² c² S22 q2", "it bends in the plane of rotation", (why.TURNS, why.IN_PLANE)
@@ -189,7 +189,7 @@ class TransverseField(Field):
         "twisting by inertia": Explanation(
             "ω² G (u2' u3'' - u3' u2'')/2",
             "bending in both planes turns sections with a product of inertia",
-            (why.TURNS,),
+            (why.OBLIQUE, why.TURNS),
         ),
         "tension by root acceleration": Explanation("-aO1 KGA q2", why.say_tension, (why.TENSIONED,)),
         "damping": Explanation("2 ζ Λ q2'", "the damping ratio is not 0", (why.DAMPED,)),
@@ -232,9 +232,7 @@ def term_of(
 
 
 def _transposed(term: Term) -> Term:
-    return Term(
-        term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor
-    )
+    return Term(term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor)
 
 
 def _mass(pair: Pair) -> Iterator[Term]:
@@ -297,9 +295,7 @@ def _tilting_factors(i: int, j: int, n: tuple[float, float]) -> Iterator[tuple[i
             yield p, q, float(factor)
 
 
-def _twisting(
-    pair: Pair, body: np.ndarray, d: tuple[float, float], n: tuple[float, float]
-) -> Iterator[Term]:
+def _twisting(pair: Pair, body: np.ndarray, d: tuple[float, float], n: tuple[float, float]) -> Iterator[Term]:
     """Work of rotation on sections and tip body that bending in both planes turns about the beam."""
     beam = pair.rows.beam
     product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))

@@ -121,7 +121,7 @@ def _lowest(left: sp.csc_array, right: sp.csc_array, count: int) -> tuple[np.nda
     order = np.argsort(squares.real)[:count]
     if np.abs(squares[order].imag).max() > 1e-7 * np.abs(squares[order]).max():
         raise ArithmeticError(f"eigenvalues that should be real are {squares[order]}")
-    pairs = [_refined(left, right, squares[k].real, vectors[:, k].real) for k in order]
+    pairs = [_refined(left, right, float(squares[k].real), vectors[:, k].real) for k in order]
     return np.array([value for value, _ in pairs]), np.stack([vector for _, vector in pairs], axis=1)
 
 

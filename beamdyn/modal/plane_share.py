@@ -1,0 +1,22 @@
+"""How the motion of modes is shared between the two directions of bending."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.equations.equations_of_motion import Equations
+
+
+def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
+    """Share of the kinetic energy of modes (S, n, k) in the two directions of deflection: (S, k, 2)."""
+    if equations.planes == 1:
+        return np.tile([1.0, 0.0], (len(vectors), vectors.shape[2], 1))
+    energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
+    by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
+    total = energy.sum(axis=1)
+    return np.stack(by_plane, axis=2) / np.where(total == 0, 1.0, total)[..., None]
+
+
+def _coordinates(equations: Equations, direction: int) -> np.ndarray:
+    """Indices of the coordinates, before a reduction, that deflect the beam in a direction."""
+    return equations.places(n for n, d in equations.deflections.items() if d.direction == direction)

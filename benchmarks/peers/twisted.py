@@ -1,0 +1,80 @@
+"""Twisted blades of wind turbines: pyBModes with the physics of a beam that bends in two planes.
+
+Without offsets of the sections its stretch and torsion are apart from bending, and its bending has no rotary
+inertia, so that any large stiffness of either will do: it keeps their modes above those compared.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.cases.blades import blade_scene, stations
+from benchmarks.peers import pybmodes
+
+NAMES = {"iea_15": "IEA 15 MW", "nrel_5": "NREL 5 MW", "bmodes_test01": "BModes Test01"}
+ELEMENTS = (200, 400, 800)  # about; whole numbers between neighbouring stations
+MODES = 5
+TOLERANCE = 1e-7  # of ours: far below what is compared
+STIFFNESS = 1e3  # G J over E I, and E A L^2 over E I: the frequencies do not change from 0.1 to 1e14
+GYRATION = 1e-6  # square of the radius of gyration of the sections for torsion, over L^2
+HEAD = """Blade
+{count} n_secs
+
+sec_loc str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff axial_stff cg sc tc
+(-) (deg) (deg) (kg/m) (kg-m) (kg-m) (Nm^2) (Nm^2) (Nm^2) (N) (m) (m) (m)
+"""
+
+
+def our_frequencies(name: str, rpm: float) -> np.ndarray:
+    """First five frequencies [Hz]."""
+    return bd.natural_modes(blade_scene(name), rpm * math.pi / 30, MODES, tolerance=TOLERANCE).frequency
+
+
+def their_frequencies(name: str, rpm: float, elements: int) -> np.ndarray:
+    """First five frequencies [Hz]."""
+    with pybmodes.model(main_file(name, rpm, elements), sections(name)) as blade:
+        return np.array(blade.run(n_modes=MODES, check_model=False).frequencies)
+
+
+def boundaries(name: str, elements: int) -> np.ndarray:
+    """Ends of about so many elements, equally many between any two neighbouring stations.
+
+    An element has the mass and stiffness at its middle, so that the error falls with the square of its
+    length only if there is a boundary at each station.
+    """
+    own = stations(name)["stations"]
+    intervals = len(own) - 1
+    each = max(1, elements // intervals)
+    return np.interp(np.arange(intervals * each + 1) / each, np.arange(intervals + 1), own)
+
+
+def main_file(name: str, rpm: float, elements: int) -> str:
+    """Main input file; its radius is that of the tip."""
+    data, ends = stations(name), boundaries(name, elements)
+    return pybmodes.MAIN.format(
+        rpm=rpm,
+        radius=data["length"] + data["hub_radius"],
+        hub=data["hub_radius"],
+        elements=len(ends) - 1,
+        boundaries=" ".join(f"{x:.17g}" for x in ends),
+    )
+
+
+def sections(name: str) -> str:
+    """File of the sections."""
+    data = stations(name)
+    x, mass, twist = data["stations"], data["mass_per_length"], data["twist_deg"]
+    flap, edge = data["flap_stiffness"], data["edge_stiffness"]
+    inertia, largest = GYRATION * mass * data["length"] ** 2, STIFFNESS * np.maximum(flap, edge)
+    none = np.zeros(len(x))
+    columns = (x, twist, twist, mass, inertia, inertia, flap, edge, largest, largest / data["length"] ** 2)
+    table = np.column_stack([*columns, none, none, none])
+    return HEAD.format(count=len(x)) + "".join(f"{' '.join(f'{v:.17g}' for v in row)}\n" for row in table)
+
+
+def extrapolated(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
+    """Limit of frequencies whose error falls to a quarter when the elements are halved."""
+    return fine + (fine - coarse) / 3
