@@ -12,6 +12,7 @@ from rich.text import Text
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
+from beamdyn.transient.directions import direction_names
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -122,7 +123,11 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
     windows = {"whole run": (start, end)}
     if window is not None:
         windows[f"{window[0]:g} to {window[1]:g} s"] = window
-    rows = [(name, *_peak_cells(run, *bounds)) for name, bounds in windows.items()]
+    rows = [
+        (f"{name}{which}", *_peak_cells(run, *bounds, direction))
+        for name, bounds in windows.items()
+        for which, direction in _directions(run.scene)
+    ]
     shown = table(
         f"Largest tip deflection in {end:g} s, by {run.provenance.method}",
         ("", "tip deflection [mm]", "over the length", "at [s]"),
@@ -131,22 +136,34 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
     return Group(shown, Text(_describe_errors(run)), *(Text(f"warning: {w}") for w in run.warnings))
 
 
-def time_of_peak(run: Transient, start: float, end: float) -> tuple[float, float]:
-    """Time of the largest tip deflection in a window, and its uncertainty, the sampling interval [s]."""
+def _directions(scene: Scene) -> list[tuple[str, int | None]]:
+    """What is said of a deflection, its magnitude and where there are two its components, and which it is."""
+    names = direction_names(scene)
+    return [("", None), *((f", {name}", i) for i, name in enumerate(names) if len(names) > 1)]
+
+
+def time_of_peak(
+    run: Transient, start: float, end: float, direction: int | None = None
+) -> tuple[float, float]:
+    """Time of the largest tip deflection in a window, and its uncertainty, the sampling interval [s].
+
+    The direction is as for `Transient.peak`.
+    """
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     if len(inside) < 2:
         return (start + end) / 2, (end - start) / 2
-    index = inside[np.abs(run.tip[inside]).argmax()]
+    size = np.hypot(run.tip, run.tip_across) if direction is None else (run.tip, run.tip_across)[direction]
+    index = inside[np.abs(size[inside]).argmax()]
     return float(run.t[index]), float(np.diff(run.t[inside]).max())
 
 
-def _peak_cells(run: Transient, start: float, end: float) -> tuple[str, str, str]:
+def _peak_cells(run: Transient, start: float, end: float, direction: int | None) -> tuple[str, str, str]:
     """Largest tip deflection in a window [mm], over the length, and its time [s]."""
-    size, length = run.peak(start, end), run.scene.beam.length
+    size, length = run.peak(start, end, direction), run.scene.beam.length
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error if math.isfinite(run.mode_error) else 0.0
     deflection, ratio = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
-    return deflection, ratio, supported(*time_of_peak(run, start, end)) if size else "-"
+    return deflection, ratio, supported(*time_of_peak(run, start, end, direction)) if size else "-"
 
 
 def _describe_errors(run: Transient) -> str:
@@ -218,12 +235,21 @@ def sweep_table(result: Sweep) -> Group:
     """Table of a sweep at some of its speeds, the peaks included."""
     peaks_at = sweep_peaks(result)
     shown = _select_response_speeds(np.array(result.status), peaks_at)
-    sizes = _millimetres(result.peaks, result.time_error)
-    columns = _speed_cells(result.speeds), sizes, _status_cells(result.status, peaks_at)
+    drawn = sweep_lines(result)
+    sizes = [_millimetres(values, result.time_error) for values in drawn.values()]
+    columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
     start, end = result.window
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
-    heads = ("speed [rad/s]", "largest tip deflection [mm]", "status")
-    return table(title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (2,))
+    heads = ("speed [rad/s]", *(f"{name} [mm]" for name in drawn), "status")
+    rows = _rows(columns, shown)
+    return table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
+
+
+def sweep_lines(result: Sweep) -> dict[str, np.ndarray]:
+    """Largest tip deflections of a sweep, and where there are two directions those in each, by name."""
+    each = zip(direction_names(result.scene), result.peaks_by_direction.T, strict=True)
+    lines = {"largest tip deflection": result.peaks}
+    return lines | (dict(each) if result.scene.physics.planes == 2 else {})
 
 
 def sweep_peaks(result: Sweep) -> np.ndarray:
@@ -303,15 +329,20 @@ def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
 
 
 def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
-    """Tip deflection over time."""
-    yield "time_s", "tip_deflection_m"
-    yield from zip(run.t.tolist(), run.tip.tolist(), strict=True)
+    """Tip deflection over time, in both directions where two are modelled."""
+    planes = run.scene.physics.planes
+    yield "time_s", *("tip_deflection_m", "tip_deflection_across_m")[:planes]
+    columns = run.t, *(run.tip, run.tip_across)[:planes]
+    yield from zip(*(column.tolist() for column in columns), strict=True)
 
 
 def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
-    """Largest deflection and time-integration error over speed."""
-    yield "speed_rad_per_s", "largest_deflection_m", "time_error_m"
-    yield from zip(result.speeds.tolist(), result.peaks.tolist(), result.time_error.tolist(), strict=True)
+    """Largest deflection, where two directions are modelled also in each, and error of time integration."""
+    names = ("largest_along_m", "largest_across_m") if result.scene.physics.planes == 2 else ()
+    yield "speed_rad_per_s", "largest_deflection_m", *names, "time_error_m"
+    each = result.peaks_by_direction.T if names else ()
+    columns = result.speeds, result.peaks, *each, result.time_error
+    yield from zip(*(column.tolist() for column in columns), strict=True)
 
 
 def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:

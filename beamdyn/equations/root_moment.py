@@ -10,8 +10,9 @@ with the loads f and the forms m, g, k of mass, gyroscopic terms and stiffness. 
 the rigid rotation x/L minus as much of the kept shapes as makes it orthogonal to them in the mass: neither
 the accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) work on it.  What remains is
 the moment of the kept shapes and the static one of all others, as in the mode-acceleration method: Craig
-and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  A root on a spring has the moment of
-the spring.
+and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  Where a spring holds the root, it is
+its moment that works on w, and what the kept shapes contribute to the rotation works against the spring that
+they bend.
 """
 
 from __future__ import annotations
@@ -76,12 +77,7 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
     """
     twist = scene.modelled_beam.root_twist
     by_direction = [math.cos(twist), math.sin(twist)][: equations.planes]
-    moments = [
-        _clamped_moment(scene, discretization, equations, direction)
-        if math.isinf(scene.mount.root_stiffnesses[direction])
-        else _spring_moment(scene, equations, direction)
-        for direction in range(equations.planes)
-    ]
+    moments = [_moment(scene, discretization, equations, direction) for direction in range(len(by_direction))]
     return _combine(moments, by_direction)
 
 
@@ -104,22 +100,17 @@ def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float])
     }
 
 
-def _spring_moment(scene: Scene, equations: Equations, direction: int) -> RootMoment:
-    """Moment of the spring against which the root turns."""
-    slope = equations.deflection(np.zeros(1), 1, direction)[:, 0] / scene.beam.length
-    return RootMoment({}, {"unity": scene.mount.root_stiffnesses[direction] * slope}, {})
-
-
-def _clamped_moment(
-    scene: Scene, discretization: Discretization, equations: Equations, direction: int
-) -> RootMoment:
-    """Moment that holds a clamped root, by virtual work of a rotation."""
+def _moment(scene: Scene, discretization: Discretization, equations: Equations, direction: int) -> RootMoment:
+    """Moment that holds the root, or that of its spring, by virtual work of a rotation."""
+    spring = scene.mount.root_stiffnesses[direction]
+    if spring == 0:
+        return RootMoment({}, {}, {})
     name = next(n for n, d in equations.deflections.items() if d.direction == direction)
     hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
     freed = replace(scene, damping_ratio=0.0, mount=replace(scene.mount, **hinges))
     full = assemble_over(freed, discretization.spaces(scene.modelled_beam))
     kept = _embed(full, equations)
-    rotation = _orthogonal_rotation(full, kept, full.blocks[name].start)
+    rotation, share = _orthogonal_rotation(full, kept, full.blocks[name])
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
 
     def rows(order: int) -> dict[Quantity, np.ndarray]:
@@ -129,7 +120,11 @@ def _clamped_moment(
     load: dict[Quantity, float] = {
         quantity: length * float(rotation @ f) for quantity, f in full.vectors.items()
     }
-    return RootMoment(load, rows(0), rows(1))
+    position = rows(0)
+    if math.isfinite(spring):
+        slope = kept[full.blocks[name].start] / length  # of bending, without shear
+        position["unity"] = position["unity"] + spring * length * (slope @ share) * slope
+    return RootMoment(load, position, rows(1))
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:
@@ -141,15 +136,16 @@ def _embed(full: Equations, equations: Equations) -> np.ndarray:
     return kept
 
 
-def _orthogonal_rotation(full: Equations, kept: np.ndarray, first: int) -> np.ndarray:
-    """Rigid rotation x/L about the root, minus its projection by the mass on the kept shapes.
+def _orthogonal_rotation(full: Equations, kept: np.ndarray, field: slice) -> tuple[np.ndarray, np.ndarray]:
+    """Rigid rotation x/L about the root, minus its projection by the mass on the kept shapes; and that.
 
     It is the deflection without elastic energy; its only coordinate with a slope at the root is the first
     of its field.
     """
-    others = np.delete(np.arange(full.size), first)
+    first, others = field.start, np.arange(field.start + 1, field.stop)
     K, M = full.matrices[0]["unity"], full.matrices[2]["unity"]
     rotation = np.zeros(full.size)
     rotation[first] = 1.0
     rotation[others] = -np.linalg.solve(K[np.ix_(others, others)], K[others, first])
-    return rotation - kept @ np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rotation)
+    share = np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rotation)
+    return rotation - kept @ share, share

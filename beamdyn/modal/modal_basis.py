@@ -19,6 +19,7 @@ from beamdyn.scene.motion import Motion
 FEWEST_MODES = 2  # size of the first basis where no number is given
 SPEED_SAMPLES = 2001  # times of a motion at which its slowest and fastest speed are sought
 _MOST_MODES = 60  # with more, the time steps that the fastest modes need are too small
+_MASSLESS = 1e-14  # pivot of the mass, over the largest, that rounding makes of 0
 _DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
 
 
@@ -102,8 +103,33 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
     vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
     if tuple(speeds) == (0.0,):
         return vectors[0]
-    L = np.linalg.cholesky(pencil.M)
     all_shapes = np.concatenate([*vectors[:-1, :, : 2 + modes // 2], vectors[-1]], axis=1)
-    directions, size, _ = np.linalg.svd(L.T @ all_shapes, full_matrices=False)
-    independent = np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
+    independent = _orthonormal(pencil.M, all_shapes)
     return independent @ np.linalg.eigh(independent.T @ pencil.K0 @ independent)[1]
+
+
+def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Combine shapes in columns to as many as are independent, orthonormal in the mass."""
+    try:
+        L = np.linalg.cholesky(M)
+    except np.linalg.LinAlgError:
+        return _orthonormal_of_massless(M, shapes)
+    pivots = np.diag(L) ** 2
+    if pivots.min() < _MASSLESS * pivots.max():
+        return _orthonormal_of_massless(M, shapes)
+    directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
+    return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
+
+
+def _orthonormal_of_massless(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """The same for a mass that is singular, as that of bending and shear without rotary inertia is.
+
+    The mass does not tell how much of a deflection is shear: only combinations of the given shapes do.
+    """
+    values, vectors = np.linalg.eigh(M)
+    root = np.sqrt(np.maximum(values, 0))[:, None] * vectors.T
+    _, size, weights = np.linalg.svd(root @ shapes, full_matrices=False)
+    known = size > _DEPENDENT * size[0]
+    combined = shapes @ (weights[known].T / size[known])
+    L = np.linalg.cholesky(combined.T @ M @ combined)  # removes the rounding of nearly dependent shapes
+    return np.linalg.solve(L, combined.T).T

@@ -83,6 +83,7 @@ def write_series(
     deflection: np.ndarray,
     width: float | np.ndarray | Sequence[float] | None = None,
     force: bool = False,
+    across: np.ndarray | None = None,
 ) -> None:
     """Write the deflected beam over time as one mesh with a displacement field at each time.
 
@@ -103,6 +104,8 @@ def write_series(
         Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
     force : bool
         Overwrite a file that exists.
+    across : ndarray, shape (k, n), optional
+        Deflections [m] in the direction across, which is -y.
 
     Raises
     ------
@@ -117,11 +120,12 @@ def write_series(
 
     path = check_writable(path, SERIES_SUFFIXES, force)
     x, t, deflection = _check_history(x, t, deflection)
+    _, _, sideways = _check_history(x, t, np.zeros_like(deflection) if across is None else across)
     strip = _strip(x, width)
     with replacing(path) as aside, TimeSeriesWriter(aside, data_format="XML") as writer:
         writer.write_points_cells(strip.points, strip.cells)
-        for time, row in zip(t.tolist(), deflection, strict=True):
-            writer.write_data(time, {"displacement": _displacement(row, len(strip.points))})
+        for time, row, other in zip(t.tolist(), deflection, sideways, strict=True):
+            writer.write_data(time, {"displacement": _displacement(row, len(strip.points), other)})
 
 
 def animate(
@@ -246,7 +250,10 @@ def _scale(shapes: np.ndarray, largest: float) -> np.ndarray:
     return shapes * (largest / np.where(size == 0, 1.0, size))
 
 
-def _displacement(deflection: np.ndarray, points: int) -> np.ndarray:
-    """Displacement vectors along z, the same on both edges of a strip."""
-    z = np.tile(deflection, points // len(deflection))
-    return np.stack([np.zeros_like(z), np.zeros_like(z), z], axis=1)
+def _displacement(deflection: np.ndarray, points: int, across: np.ndarray | float = 0.0) -> np.ndarray:
+    """Displacement vectors along z, of a deflection across along -y, the same on both edges of a strip."""
+    z, y = (
+        np.tile(values, points // len(deflection))
+        for values in (deflection, np.zeros_like(deflection) - across)
+    )
+    return np.stack([np.zeros_like(z), y, z], axis=1)

@@ -216,48 +216,57 @@ def plot_response(
     return add_legend(ax)
 
 
-def plot_transient(t: np.ndarray, tip: np.ndarray, ax: Axes | None = None) -> Axes:
-    """Draw the tip deflection over time.
+def plot_transient(
+    t: np.ndarray, tip: np.ndarray, ax: Axes | None = None, labels: Sequence[str] = ("",)
+) -> Axes:
+    """Draw the tip deflection over time, one line a direction.
 
     Parameters
     ----------
     t : ndarray, shape (n,)
         Times [s].
-    tip : ndarray, shape (n,)
-        Tip deflection [m].
+    tip : ndarray, shape (n,) or (d, n)
+        Tip deflection [m], or that in each of d directions.
     ax : Axes, optional
         Where to draw; new axes if not given.
+    labels : sequence of str, length d
+        For the legend, which one line needs none of.
 
     Returns
     -------
     Axes
     """
     ax = set_up_axes(ax, "time [s]", "tip deflection [mm]")
-    ax.plot(t, 1e3 * np.asarray(tip), color=COLOURS[0], linewidth=0.8 if len(t) > _MOST_THICK else 1.8)
+    for colour, row, label in zip(COLOURS, np.atleast_2d(tip), labels, strict=False):
+        ax.plot(t, 1e3 * row, color=colour, linewidth=0.8 if len(t) > _MOST_THICK else 1.8, label=label)
     ax.margins(x=0)
-    return ax
+    return add_legend(ax) if len(labels) > 1 else ax
 
 
-def plot_sweep(speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None) -> Axes:
-    """Draw the peaks of transients over speed.
+def plot_sweep(
+    speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None, labels: Sequence[str] = ("peak",)
+) -> Axes:
+    """Draw the peaks of transients over speed, one line each.
 
     Parameters
     ----------
     speeds : ndarray, shape (S,)
         Angular speeds [rad/s].
-    peaks : ndarray, shape (S,)
+    peaks : ndarray, shape (S,) or (d, S)
         Largest tip deflections [m]; nan leaves a gap.
     ax : Axes, optional
         Where to draw; new axes if not given.
+    labels : sequence of str, length d
+        For the legend, which one line needs none of.
 
     Returns
     -------
     Axes
     """
     ax = set_up_axes(ax, SPEED_LABEL, "peak of the tip deflection [mm]")
-    _draw_lines(ax, speeds, [1e3 * np.asarray(peaks)], ["peak"])
+    _draw_lines(ax, speeds, 1e3 * np.atleast_2d(peaks), labels)
     ax.set_ylim(bottom=0)
-    return ax
+    return add_legend(ax) if len(labels) > 1 else ax
 
 
 def plot_work_precision(

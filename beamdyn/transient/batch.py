@@ -27,7 +27,7 @@ from beamdyn.transient.time_error import (
     choose_checked_steps,
     estimate_time_error,
 )
-from beamdyn.transient.trajectory import Trajectory
+from beamdyn.transient.trajectory import Trajectory, magnitude
 
 _MOST_ITERATIONS = 40  # of a step, before it counts as not converged
 _CONVERGED = 1e-12  # change of the displacements in the last iteration, over the largest displacement
@@ -42,7 +42,7 @@ class TipHistories:
     Parameters
     ----------
     tips : tuple of Trajectory
-        Tip deflection of each case, as the single coordinate of a trajectory.
+        Tip deflection of each case: the coordinates of a trajectory are those in each direction.
     time_error : tuple of float
         Estimated time-integration error of each case [m].
     """
@@ -86,8 +86,9 @@ def integrate_batch(systems: Sequence[ModalSystem], t_end: float, tolerance: flo
 
 
 def _largest_deflection(segment: Segment | RecordSegment) -> float:
-    """Largest tip deflection at the ends of the steps [m], of a segment whose only coordinate it is."""
-    return float(np.abs(segment.state[:, 1]).max())
+    """Largest tip deflection at the ends of the steps [m], of a segment whose coordinates it is."""
+    directions = segment.acceleration.shape[2]
+    return float(magnitude(segment.state[:, 1 : 1 + directions], np.eye(directions)).max())
 
 
 def _integrate_all(
@@ -107,7 +108,7 @@ def _integrate_all(
         raise ArithmeticError("the iteration of a step did not converge: simulate the cases one by one")
     tips = [Trajectory(tuple(run.segment(case) for run in runs)) for case in range(C)]
     errors = [
-        estimate_time_error(s, [run.checks(case) for run in runs], s.tip) for case, s in enumerate(systems)
+        estimate_time_error(s, [run.checks(case) for run in runs], s.tips) for case, s in enumerate(systems)
     ]
     return tips, errors
 
@@ -132,9 +133,9 @@ class _SegmentRun:
     def __init__(self, systems: Sequence[ModalSystem], start: float, h: float, steps: int) -> None:
         C, n = len(systems), systems[0].size
         self.systems, self.start, self.h, self.steps = systems, start, h, steps
-        self.tip = systems[0].tip
-        self.tips = np.empty((steps + 1, 2, C))
-        self.accelerations = np.empty((steps, STAGES, C))
+        self.outputs = systems[0].tips
+        self.tips = np.empty((steps + 1, 2, len(self.outputs), C))
+        self.accelerations = np.empty((steps, STAGES, C, len(self.outputs)))
         self.checked = choose_checked_steps(steps)
         self.states = np.ones((len(self.checked), C, 2 * n + 1))
         self.end_state = np.empty((len(self.checked), C, 2 * n))
@@ -144,20 +145,24 @@ class _SegmentRun:
         """Integrate all cases from (q, v), shapes (C, n), to the end of the segment."""
         table, h, check = tableau(STAGES), self.h, {k: i for i, k in enumerate(self.checked.tolist())}
         for k, step in enumerate(self._step_coefficients(table)):
-            self.tips[k] = q @ self.tip, v @ self.tip
+            self.tips[k] = self._tips(q, v)
             if k in check:
                 self.states[check[k], :, 1:] = np.hstack([q, v])
             if k % _CHOICE_INTERVAL == 0:
                 self._choose_iterations(step, q, v)
             a = self._solve(step, q, v, self.iterations)[0]
-            self.accelerations[k] = a @ self.tip
+            self.accelerations[k] = np.stack([a @ output for output in self.outputs], axis=-1)
             flat = a.reshape(STAGES, -1)
             q = q + h * v + h**2 * (table.b2 @ flat).reshape(q.shape)
             v = v + h * (table.b @ flat).reshape(v.shape)
             if k in check:
                 self.end_state[check[k]] = np.hstack([q, v])
-        self.tips[self.steps] = q @ self.tip, v @ self.tip
+        self.tips[self.steps] = self._tips(q, v)
         return q, v
+
+    def _tips(self, *states: np.ndarray) -> list[list[np.ndarray]]:
+        """Tip's components in each direction, of each state (C, n)."""
+        return [[state @ output for output in self.outputs] for state in states]
 
     def _step_coefficients(self, table: Tableau) -> Iterator[_StepCoefficients]:
         """Compute the coefficients of each step, in blocks of steps."""
@@ -195,9 +200,10 @@ class _SegmentRun:
         return a.reshape(free.shape), displacement
 
     def segment(self, case: int) -> Segment:
-        """Segment of a case, with the tip deflection as its only coordinate."""
-        state = np.concatenate([np.ones((self.steps + 1, 1)), self.tips[:, :, case]], axis=1)
-        return Segment(self.start, self.h, state, self.accelerations[:, :, case, None].copy())
+        """Segment of a case, whose coordinates are the tip deflections in each direction."""
+        tips = self.tips[..., case].reshape(self.steps + 1, -1)
+        state = np.concatenate([np.ones((self.steps + 1, 1)), tips], axis=1)
+        return Segment(self.start, self.h, state, self.accelerations[:, :, case].copy())
 
     def checks(self, case: int) -> CheckedSteps:
         """Checked steps of a case."""

@@ -20,7 +20,7 @@ from beamdyn.transient.batch import integrate_batch
 from beamdyn.transient.record_steps import is_record
 from beamdyn.transient.simulate import TransientRequest
 from beamdyn.transient.step_size import StepSize, TooManySteps
-from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.system import ModalSystem, excited_equations
 from beamdyn.transient.trajectory import Trajectory, largest_deflection
 
 DONE = "done"
@@ -44,6 +44,11 @@ class SweepRequest(FieldsOnly):
             scene, self.t_end, self.tolerance, method, self.discretization, rest, None, {}, self.basis
         )
 
+    @property
+    def directions(self) -> int:
+        """Number of directions in which the beam bends."""
+        return self.scene.physics.planes
+
     def motions(self, speeds: Sequence[float]) -> list[Motion]:
         """Motion at each final speed [rad/s]."""
         assert self.scene.motion is not None
@@ -63,6 +68,7 @@ class CaseResult(NamedTuple):
     largest: float
     time_error: float
     status: str
+    by_direction: tuple[float, ...]
 
 
 def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseResult]:
@@ -76,7 +82,7 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
 
 
 def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseResult]:
-    equations = request.model.modal_equations(request.basis)
+    equations = excited_equations(request.model.modal_equations(request.basis), motions, request.t_end)
     systems = [ModalSystem(equations, motion) for motion in motions]
     if is_record(systems[-1], request.t_end, StepSize.from_tolerance(request.tolerance)):
         # A batch has no steps over several samples.
@@ -88,7 +94,7 @@ def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseR
             raise
         return [*_solve_batch(request, motions[:half]), *_solve_batch(request, motions[half:])]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return [_failed(str(error))] * len(motions)
+        return [_failed(request, str(error))] * len(motions)
     return [_case_result(request, *pair) for pair in zip(batch.tips, batch.time_error, strict=True)]
 
 
@@ -98,16 +104,23 @@ def _solve_single(request: SweepRequest, motion: Motion) -> CaseResult:
         run = request.transient_request(motion).run()
         peak = run.peak(*request.window)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return _failed(str(error))
-    return CaseResult(peak, run.largest, run.time_error, DONE) if np.isfinite(peak) else _failed("not finite")
+        return _failed(request, str(error))
+    if not np.isfinite(peak):
+        return _failed(request, "not finite")
+    by_direction = [run.peak(*request.window, i) for i in range(request.directions)]
+    return CaseResult(peak, run.largest, run.time_error, DONE, tuple(by_direction))
 
 
 def _case_result(request: SweepRequest, path: Trajectory, error: float) -> CaseResult:
-    """Result of a case from a trajectory whose only coordinate is the tip deflection."""
+    """Result of a case from a trajectory whose coordinates are the tip deflections in each direction."""
+    outputs = np.eye(path.segments[0].acceleration.shape[2])
     windows = request.window, (path.start, path.end)
-    peak, largest = (largest_deflection(np.ones(1), path, *window) for window in windows)
-    return CaseResult(peak, max(peak, largest), float(error), DONE)
+    peak, largest = (largest_deflection(outputs, path, *window) for window in windows)
+    each = (
+        [peak] if len(outputs) == 1 else [largest_deflection(o[None], path, *request.window) for o in outputs]
+    )
+    return CaseResult(peak, max(peak, largest), float(error), DONE, tuple(each))
 
 
-def _failed(reason: str) -> CaseResult:
-    return CaseResult(np.nan, np.nan, np.nan, f"failed: {reason}")
+def _failed(request: SweepRequest, reason: str) -> CaseResult:
+    return CaseResult(np.nan, np.nan, np.nan, f"failed: {reason}", (np.nan,) * request.directions)

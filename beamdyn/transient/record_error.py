@@ -14,8 +14,11 @@ from beamdyn.transient.time_error import (
     choose_checked_steps,
     local_errors,
     phase_errors,
+    size_per_coordinate,
     total_of_local_errors,
+    vibration_frequencies,
 )
+from beamdyn.transient.trajectory import magnitude
 
 _PIECES_CHECKED = 512  # in the steps that are checked, if these are not too few
 _FEWEST_CHECKED = 48
@@ -24,8 +27,8 @@ _MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides thos
 _BATCH = 256  # pieces that are solved at once
 
 
-def estimate_record_error(system: ModalSystem, segment: RecordSegment, output: np.ndarray) -> TimeError:
-    """Estimate the time-integration error of an output, as `estimate_time_error` does.
+def estimate_record_error(system: ModalSystem, segment: RecordSegment, outputs: np.ndarray) -> TimeError:
+    """Estimate the time-integration error of a quantity, as `estimate_time_error` does.
 
     The checked steps are solved again from sample to sample, with two more stages.  Some are spread over the
     run and stand for all; the others are the longest, and those in which the load is roughest.
@@ -36,7 +39,7 @@ def estimate_record_error(system: ModalSystem, segment: RecordSegment, output: n
         The equations.
     segment : RecordSegment
         The run.
-    output : ndarray, shape (n,)
+    outputs : ndarray, shape (d, n)
         As for `estimate_time_error`.
 
     Returns
@@ -48,11 +51,12 @@ def estimate_record_error(system: ModalSystem, segment: RecordSegment, output: n
     most = max(_FEWEST_CHECKED, _PIECES_CHECKED // int(segment.steps.counts.mean()))
     spread, worst = choose_checked_steps(count, most), _find_worst(system, segment.steps)
     for chosen, represented in ((spread, count), (worst, len(worst))):
-        local, delta, between = _check(system, segment, chosen, output)
+        local, delta, between = _check(system, segment, chosen, outputs)
         total += total_of_local_errors(local, delta, represented)
         unresolved |= delta > UNRESOLVED_PHASE
         interpolation = max(interpolation, between)
-    return TimeError(total * np.abs(output), interpolation, unresolved)
+    modes = total * size_per_coordinate(outputs)
+    return TimeError.of_coordinates(system, modes, interpolation, unresolved)
 
 
 def _find_worst(system: ModalSystem, steps: RecordSteps) -> np.ndarray:
@@ -65,18 +69,18 @@ def _find_worst(system: ModalSystem, steps: RecordSteps) -> np.ndarray:
 
 
 def _check(
-    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, output: np.ndarray
+    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Mean local error and largest phase error of each coordinate, and largest error of the output."""
+    """Mean local error and largest phase error of each coordinate, and largest error of the quantity."""
     batches = np.array_split(chosen, -(-int(segment.steps.counts[chosen].sum()) // _BATCH))
     local, delta, between = zip(
-        *(_check_batch(system, segment, batch, output) for batch in batches if len(batch)), strict=True
+        *(_check_batch(system, segment, batch, outputs) for batch in batches if len(batch)), strict=True
     )
     return np.concatenate(local).mean(axis=0), np.max(delta, axis=0), max(between)
 
 
 def _check_batch(
-    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, output: np.ndarray
+    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Local error of each chosen step, largest phase error and error between ends, against their pieces."""
     steps, state = segment.steps.select(chosen), segment.state[chosen]
@@ -86,9 +90,10 @@ def _check_batch(
     a = (pieces.acceleration @ at_pieces[:, None, :, None])[..., 0]
     q, _ = interpolate(steps.piece_width[:, None, None], at_pieces, a, _POINTS)
     t = steps.piece_start[:, None] + steps.piece_width[:, None] * _POINTS
-    between = np.abs((segment.at(t.ravel())[0] - q.reshape(t.size, -1)) @ output).max()
-    local = local_errors(system, step, fine, state, segment.state[chosen + 1, 1:])
-    return local, phase_errors(system, fine - step), float(between)
+    between = magnitude(segment.at(t.ravel())[0] - q.reshape(t.size, -1), outputs).max()
+    frequencies = vibration_frequencies(system, segment.end - segment.start)
+    local = local_errors(step, fine, state, segment.state[chosen + 1, 1:], frequencies)
+    return local, phase_errors(fine - step, frequencies), float(between)
 
 
 def _compose(steps: RecordSteps, pieces: StepMaps, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -57,17 +57,17 @@ class RootStrain:
         """
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip
-        output = self._largest_per_coordinate(np.linspace(path.start, path.end, _TIMES_CHECKED))
+        outputs = self._largest_per_coordinate(np.linspace(path.start, path.end, _TIMES_CHECKED))
         checks = [CheckedSteps.of_segment(s) for s in path.segments if isinstance(s, Segment)]
         of_records = (s for s in path.segments if isinstance(s, RecordSegment))
-        errors = [estimate_time_error(self.system, checks, output)]
-        errors += [estimate_record_error(self.system, segment, output) for segment in of_records]
+        errors = [estimate_time_error(self.system, checks, outputs)]
+        errors += [estimate_record_error(self.system, segment, outputs) for segment in of_records]
         return sum(error.total for error in errors)
 
     def _largest_per_coordinate(self, t: np.ndarray) -> np.ndarray:
-        """Strain per unit of each coordinate (n,), at that of the times t [s] at which it is largest."""
+        """Strain per unit of each coordinate (1, n), at that of the times t [s] at which it is largest."""
         rows = np.zeros((len(t), self.system.size))
         root = self.system.root(t)
         for quantity, row in self.moment.position.items():
             rows += np.outer(getattr(root, quantity), row)
-        return self.per_moment * rows[np.abs(rows).sum(axis=1).argmax()]
+        return self.per_moment * rows[None, np.abs(rows).sum(axis=1).argmax()]

@@ -17,6 +17,7 @@ from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import (
     FEWEST_MODES,
@@ -29,6 +30,7 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_road
+from beamdyn.transient.directions import direction_names
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.scipy_integrators import check_method, integrate_by_solve_ivp
@@ -46,6 +48,7 @@ _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice 
 _MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
 _SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
 _FAST = 4.0
+_FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
 _TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried as well
 
 
@@ -58,12 +61,15 @@ class Transient(Result):
     t : ndarray, shape (n,)
         Times [s].
     tip : ndarray, shape (n,)
-        Tip deflection [m].
+        Tip deflection [m] in the direction of bending at the root.
+    tip_across : ndarray, shape (n,)
+        Tip deflection [m] in the direction across; zeros where one plane is modelled.
     coordinates, velocities : ndarray, shape (n, m)
         Modal coordinates [kg^1/2 m] and their rates.
     time_error : float
         Largest estimated time-integration error of the tip deflection [m]; nan for the methods
-        of `solve_ivp`, which only bound the error of each step.
+        of `solve_ivp`, which only bound the error of each step.  Where two planes are modelled, this is the
+        magnitude of the error of a vector, as `largest`, `peak` and `mode_error` are magnitudes.
     largest : float
         Largest |tip deflection| of the run [m].
     warnings : tuple of str
@@ -78,6 +84,7 @@ class Transient(Result):
 
     t: np.ndarray
     tip: np.ndarray
+    tip_across: np.ndarray
     coordinates: np.ndarray
     velocities: np.ndarray
     time_error: float
@@ -126,7 +133,8 @@ class Transient(Result):
     def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
         t, q, _ = (x[:: 1 + len(x) // _TIMES_COMPARED] for x in self.path.samples)
-        return float(np.abs(q @ self.system.tip - other.deflection(t)).max())
+        each = (q @ tip - other.deflection(t, i) for i, tip in enumerate(self.system.tips))
+        return float(np.hypot.reduce([np.abs(difference) for difference in each]).max())
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, `mode_error` included."""
@@ -149,9 +157,16 @@ class Transient(Result):
             raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")
         return t
 
-    def shape(self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x))."""
-        return self.at(t)[0] @ self.system.equations.deflection(np.asarray(x) / self.scene.beam.length)
+    def shape(
+        self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float], direction: int = 0
+    ) -> np.ndarray:
+        """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
+
+        The direction is 0 for that of bending at the root, 1 for that across, in which a beam of one plane
+        is rigid.
+        """
+        direction, xi = _direction(direction), np.asarray(x) / self.scene.beam.length
+        return self.at(t)[0] @ self.system.equations.deflection(xi, direction=direction)
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Bending strain of the outer fibre at the root at times t [s]: shape (len(t),).
@@ -189,9 +204,9 @@ class Transient(Result):
     def _root_strain(self) -> RootStrain:
         return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
-    def deflection(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Tip deflection [m] at times t [s]: shape (len(t),)."""
-        return self.shape([self.scene.beam.length], t)[:, 0]
+    def deflection(self, t: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
+        """Tip deflection [m] at times t [s]: shape (len(t),); the direction as for `shape`."""
+        return self.shape([self.scene.beam.length], t, direction)[:, 0]
 
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are."""
@@ -200,16 +215,25 @@ class Transient(Result):
         _, K, f = self.system.coefficients(t)
         return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
 
-    def peak(self, start: float, end: float) -> float:
-        """Largest |tip deflection| [m] from `start` to `end` [s], also between samples."""
+    def peak(self, start: float, end: float, direction: int | None = None) -> float:
+        """Largest |tip deflection| [m] from `start` to `end` [s], also between samples.
+
+        Where two planes are modelled, it is the magnitude of a vector, or of its component in a direction:
+        0 is that of bending at the root, 1 that across.
+        """
         _check_window(start, end, self.path)
-        return largest_deflection(self.system.tip, self.path, start, end)
+        if direction is None:
+            tips = self.system.tips
+        else:
+            tips = (self.system.tip, self.system.equations.tip_across)[_direction(direction)][None]
+        return largest_deflection(tips, self.path, start, end)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
         from beamdyn.output.plots import plot_transient
 
-        return plot_transient(self.t, self.tip, ax)
+        names = direction_names(self.scene)
+        return plot_transient(self.t, np.array([self.tip, self.tip_across][: len(names)]), ax, names)
 
     def export(
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
@@ -220,7 +244,15 @@ class Transient(Result):
         _check_window(start, end, self.path)
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)
-        write_series(path, x, t, self.shape(x, t), force=force)
+        write_series(path, x, t, self.shape(x, t), force=force, across=self.shape(x, t, 1))
+
+
+def _direction(direction: int) -> int:
+    """Refuse what is no direction of deflection."""
+    if direction not in (0, 1):
+        bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
+        raise InvalidValue("direction", direction, bound)
+    return direction
 
 
 def _check_window(start: float, end: float, path: Path) -> None:
@@ -333,10 +365,10 @@ class TransientRequest(FieldsOnly):
         motion, t_end = self.motion, self.t_end
         model = self.model
         _check_motion(motion, t_end, model)
-        system = ModalSystem(model.modal_equations(self.basis), motion)
+        system = self._system(model.modal_equations(self.basis))
         path, error, name = self._integrate(system, _initial_state(self.initial, system))
         t, q, v = path.samples
-        largest = largest_deflection(system.tip, path, path.start, path.end)
+        largest = largest_deflection(system.tips, path, path.start, path.end)
         _check_growth(self.scene, largest)
         if self.t_eval is not None:
             t = self.t_eval
@@ -344,6 +376,7 @@ class TransientRequest(FieldsOnly):
         return Transient(
             t=t,
             tip=q @ system.tip,
+            tip_across=q @ system.equations.tip_across,
             coordinates=q,
             velocities=v,
             time_error=error,
@@ -359,6 +392,12 @@ class TransientRequest(FieldsOnly):
             path=path,
             request=self,
         )
+
+    def _system(self, equations: Equations) -> ModalSystem:
+        """Equations of the run, without the coordinates that stay at rest."""
+        if isinstance(self.initial, str):
+            return ModalSystem.from_rest(equations, self.motion, self.t_end)
+        return ModalSystem(equations, self.motion)
 
     def run_refined(self) -> Transient | None:
         """Integrate by Gauss collocation with more modes; None if there is no larger model or no solution."""
@@ -444,8 +483,9 @@ def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
     t = np.linspace(0, t_end, SPEED_SAMPLES)
     speed = np.abs(motion.at(t).speed)
     critical = model.solver.critical_speed
-    if speed.max() >= critical:
-        k = int((speed >= critical).argmax())
+    past = (speed >= critical) & (speed > 0)
+    if past.any():
+        k = int(past.argmax())
         raise ValueError(
             f"the motion reaches {speed[k]:.6g} rad/s at t = {t[k]:.4g} s, past the critical speed "
             f"{critical:.6g} rad/s: the beam buckles there, and linear theory does not hold; lower the speed"
@@ -469,14 +509,22 @@ def _initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray
         if initial == "rest":
             return np.zeros(2 * n)
         if initial == "equilibrium":
-            _, K, f = system.coefficients(np.zeros(()))
-            return np.concatenate([np.linalg.solve(K, f), np.zeros(n)])
+            return np.concatenate([_equilibrium(system), np.zeros(n)])
         raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
     y0 = as_floats(initial)
     if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():
         bound = f"give {2 * n} finite numbers, coordinates then velocities, or 'rest' or 'equilibrium'"
         raise InvalidValue("initial", initial, bound)
     return y0
+
+
+def _equilibrium(system: ModalSystem) -> np.ndarray:
+    """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
+    _, K, f = system.coefficients(np.zeros(()))
+    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
+        bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
+        raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
+    return np.linalg.solve(K, f)
 
 
 def _add_modes(run: Transient, tolerance: float) -> Transient:

@@ -15,7 +15,7 @@ from beamdyn.transient.record_error import estimate_record_error
 from beamdyn.transient.record_steps import RecordSteps, is_record, propagate_record, smooth_piece_ends
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import ERROR_ORDER, STAGES, CheckedSteps, TimeError, estimate_time_error
-from beamdyn.transient.trajectory import Trajectory
+from beamdyn.transient.trajectory import Trajectory, magnitude
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
 TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the rounding error
@@ -119,7 +119,7 @@ def integrate(
     while True:
         path, error, order = attempt(system, y0, t_end, tolerance, step_size)
         largest = max(
-            float(np.abs(s.state[:, 1 : system.size + 1] @ system.tip).max()) for s in path.segments
+            float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments
         )
         stalled = last / 2 < error.total < _ROUNDING * largest
         finest = step_size.is_finest and order == ERROR_ORDER
@@ -137,7 +137,7 @@ def _attempt(
     steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
     check_number_of_steps(sum(steps), system.size, t_end)
     segments = _propagate(system, edges, steps, y0, tolerance)
-    error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in segments], system.tip)
+    error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in segments], system.tips)
     return Trajectory(segments), error, ERROR_ORDER
 
 
@@ -149,7 +149,7 @@ def _attempt_record(
     check_number_of_steps(len(steps), n, t_end)
     segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES)
     order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
-    return Trajectory((segment,)), estimate_record_error(system, segment, system.tip), order
+    return Trajectory((segment,)), estimate_record_error(system, segment, system.tips), order
 
 
 def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:

@@ -31,6 +31,7 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
+from beamdyn.transient.directions import direction_names
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import Transient, TransientRequest
 from beamdyn.transient.step_size import TOLERANCES
@@ -55,6 +56,9 @@ class Sweep(Result):
         Largest |tip deflection| of the run [m], also between steps; nan where the case failed.
     time_error : ndarray, shape (S,)
         Estimated time-integration error of the tip deflection [m], and so of `peaks` and `largest`.
+    peaks_by_direction : ndarray, shape (S, 1) or (S, 2)
+        Largest |tip deflection| in the window [m] in the direction of bending at the root and, where two
+        planes are modelled, in that across; `peaks` and `largest` then are magnitudes of a vector.
     mode_error : float
         Estimated modal truncation error, relative to the largest deflection: the largest of three sampled
         speeds.  It is an error of `peaks` and `largest` too.
@@ -74,6 +78,7 @@ class Sweep(Result):
     peaks: np.ndarray
     largest: np.ndarray
     time_error: np.ndarray
+    peaks_by_direction: np.ndarray
     mode_error: float
     status: tuple[str, ...]
     window: tuple[float, float]
@@ -86,7 +91,11 @@ class Sweep(Result):
         """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""
         from beamdyn.output.plots import plot_sweep
 
-        return plot_sweep(self.speeds, self.peaks, ax)
+        names = direction_names(self.scene)
+        if len(names) == 1:
+            return plot_sweep(self.speeds, self.peaks, ax)
+        rows = np.vstack([self.peaks, self.peaks_by_direction.T])
+        return plot_sweep(self.speeds, rows, ax, ("magnitude", *names))
 
 
 def sweep(
@@ -295,12 +304,13 @@ def _assemble_result(
     mode_error: float,
     provenance: Provenance,
 ) -> Sweep:
-    peaks, largest, time_error, status = zip(*cases, strict=True)
+    peaks, largest, time_error, status, by_direction = zip(*cases, strict=True)
     result = Sweep(
         speeds=speeds,
         peaks=np.array(peaks),
         largest=np.array(largest),
         time_error=np.array(time_error),
+        peaks_by_direction=np.array(by_direction),
         mode_error=mode_error,
         status=status,
         window=request.window,

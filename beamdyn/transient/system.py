@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import CONSTANT_AT_STEADY_SPEED, Quantity, RootMotion
+from beamdyn.modal.modal_basis import SPEED_SAMPLES
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
 _MEAN_SAMPLES = 257  # of the root's motion, for the mean stiffness
+_GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 
 
 @dataclass(frozen=True)
@@ -34,10 +38,20 @@ class ModalSystem:
         """Number n of coordinates."""
         return self.equations.size
 
+    @cached_property
+    def tips(self) -> np.ndarray:
+        """Tip deflection per unit of each coordinate [kg^-1/2] in each direction, shape (1 or 2, n)."""
+        return self.equations.tips
+
     @property
     def tip(self) -> np.ndarray:
-        """Tip deflection per unit of each coordinate [kg^-1/2], shape (n,)."""
-        return self.equations.tip
+        """Tip deflection per unit of each coordinate [kg^-1/2] in the direction of bending, shape (n,)."""
+        return self.tips[0]
+
+    @classmethod
+    def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
+        """Equations of a run from rest, without the coordinates that nothing excites."""
+        return cls(excited_equations(equations, [motion], t_end), motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
         """Motion of the root at times t [s]."""
@@ -95,6 +109,42 @@ class ModalSystem:
         if C is not None:
             J[n:, n:] = -C
         return J
+
+
+def excited_equations(equations: Equations, motions: Sequence[Motion], t_end: float) -> Equations:
+    """Leave out the coordinates that no motion excites from rest: a plane without loads and coupling.
+
+    Parameters
+    ----------
+    equations : Equations
+        Equations of motion.
+    motions : sequence of Motion
+        Motions of the root.
+    t_end : float
+        End of the runs [s].
+
+    Returns
+    -------
+    Equations
+        The same if all coordinates are excited, or none.
+    """
+    if len(equations.connected) == 1:
+        return equations
+    loaded = np.any([_are_loaded(equations, motion, t_end) for motion in motions], axis=0)
+    still = {n for names in equations.connected if not loaded[equations.places(names)].any() for n in names}
+    if not still or len(still) == len(equations.blocks):
+        return equations
+    sizes = {name: block.stop - block.start for name, block in equations.blocks.items()}
+    kept = {(name,): np.eye(size)[:, : 0 if name in still else size] for name, size in sizes.items()}
+    return equations.reduced(kept)
+
+
+def _are_loaded(equations: Equations, motion: Motion, t_end: float) -> np.ndarray:
+    """Whether each coordinate (n,) is ever loaded, by times spread over the run and its smooth pieces."""
+    spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
+    ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
+    t = np.concatenate([spread, (ends[1:] + ends[:-1]) / 2])
+    return (equations.load(equations.root(motion.at(t))) != 0).any(axis=0)
 
 
 def _stack(values: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:

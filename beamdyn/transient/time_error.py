@@ -9,6 +9,7 @@ import numpy as np
 
 from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import magnitude
 
 STAGES = 8  # of the Gauss collocation that is checked
 ERROR_ORDER = 2 * STAGES  # of its error, in the step size
@@ -67,7 +68,7 @@ class TimeError:
     Parameters
     ----------
     modes : ndarray, shape (n,)
-        Contributions of the coordinates [unit of the output].
+        Contributions of the coordinates, by ascending frequency at rest [unit of the output].
     interpolation : float
         Interpolation error between the ends of steps [unit of the output].
     unresolved : ndarray of bool, shape (n,)
@@ -78,14 +79,24 @@ class TimeError:
     interpolation: float
     unresolved: np.ndarray
 
+    @classmethod
+    def of_coordinates(
+        cls, system: ModalSystem, modes: np.ndarray, interpolation: float, unresolved: np.ndarray
+    ) -> TimeError:
+        """Sort the contributions of the coordinates of a system by frequency."""
+        rank = np.argsort(np.diag(system.equations.matrices[0]["unity"]), kind="stable")
+        return cls(modes[rank], interpolation, unresolved[rank])
+
     @property
     def total(self) -> float:
         """Sum of all contributions, with a safety factor [unit of the output]."""
         return _MARGIN * (float(self.modes.sum()) + self.interpolation)
 
 
-def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps], output: np.ndarray) -> TimeError:
-    """Estimate the time-integration error of an output from the local errors of some steps.
+def estimate_time_error(
+    system: ModalSystem, checks: Sequence[CheckedSteps], outputs: np.ndarray
+) -> TimeError:
+    """Estimate the time-integration error of a quantity from the local errors of some steps.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
@@ -97,25 +108,32 @@ def estimate_time_error(system: ModalSystem, checks: Sequence[CheckedSteps], out
         The equations.
     checks : sequence of CheckedSteps
         Checked steps of each segment.
-    output : ndarray, shape (n,)
-        The quantity whose error is sought, such as the tip deflection, per unit of each coordinate.
+    outputs : ndarray, shape (d, n)
+        The quantity whose error is sought, such as the tip deflection, per unit of each coordinate: the d
+        components of a vector, whose error is the magnitude of that of the vector.
 
     Returns
     -------
     TimeError
     """
-    n = system.size
+    n, frequencies = system.size, vibration_frequencies(system, sum(c.h * c.steps for c in checks))
     total, interpolation, unresolved = np.zeros(n), 0.0, np.zeros(n, dtype=bool)
     for check in checks:
         maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
-        local = local_errors(system, maps.step, finer.step, check.state, check.end_state).mean(axis=0)
-        delta = phase_errors(system, finer.step - maps.step)
+        local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies).mean(axis=0)
+        delta = phase_errors(finer.step - maps.step, frequencies)
         total += total_of_local_errors(local, delta, check.steps)
         unresolved |= delta > UNRESOLVED_PHASE
         accelerations = [(m.acceleration @ check.state[:, None, :, None])[..., 0] for m in (maps, finer)]
         q = [interpolate(check.h, check.state, a, _INTERPOLATION_POINTS)[0] for a in accelerations]
-        interpolation = max(interpolation, float(np.abs((q[0] - q[1]) @ output).max()))
-    return TimeError(total * np.abs(output), interpolation, unresolved)
+        interpolation = max(interpolation, float(magnitude(q[0] - q[1], outputs).max()))
+    modes = total * size_per_coordinate(outputs)
+    return TimeError.of_coordinates(system, modes, interpolation, unresolved)
+
+
+def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
+    """Magnitude of a vector of d components per unit of each coordinate, (n,), from the components (d, n)."""
+    return np.hypot.reduce(np.abs(outputs))
 
 
 def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
@@ -124,41 +142,46 @@ def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> n
 
 
 def local_errors(
-    system: ModalSystem, step: np.ndarray, fine: np.ndarray, state: np.ndarray, end_state: np.ndarray
+    step: np.ndarray, fine: np.ndarray, state: np.ndarray, end_state: np.ndarray, frequencies: np.ndarray
 ) -> np.ndarray:
     """Local error of each step and coordinate, as an amplitude: of the collocation and of its solution.
 
     Parameters
     ----------
-    system : ModalSystem
-        The equations.
     step, fine : ndarray, shape (k, 2 n, 2 n + 1)
         Maps of the steps, and more accurate ones.
     state : ndarray, shape (k, 2 n + 1)
         Augmented states at their beginnings.
     end_state : ndarray, shape (k, 2 n)
         Computed coordinates and velocities at their ends.
+    frequencies : ndarray, shape (n,)
+        As `vibration_frequencies` has them.
 
     Returns
     -------
     ndarray, shape (k, n)
     """
-    n = system.size
+    n = len(frequencies)
     residual = np.einsum("kij,kj->ki", step, state) - end_state
     size = np.einsum("kij,kj->ki", np.abs(step), np.abs(state))
     residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding, which does not add up
     error = np.abs(np.einsum("kij,kj->ki", fine - step, state)) + np.abs(residual)
-    return np.hypot(error[:, :n], error[:, n:] / _frequencies(system))
+    return np.hypot(error[:, :n], error[:, n:] / frequencies)
 
 
-def phase_errors(system: ModalSystem, difference: np.ndarray) -> np.ndarray:
+def phase_errors(difference: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
     """Largest phase error of each coordinate per step [rad], from the difference of two step maps."""
-    n, k = system.size, np.arange(system.size)
-    by_velocity = np.abs(difference[:, k, 1 + n + k]) * _frequencies(system)
+    n, k = len(frequencies), np.arange(len(frequencies))
+    by_velocity = np.abs(difference[:, k, 1 + n + k]) * frequencies
     return np.maximum(np.abs(difference[:, k, 1 + k]), by_velocity).max(axis=0)
 
 
-def _frequencies(system: ModalSystem) -> np.ndarray:
-    """Angular frequency of each coordinate, uncoupled, at time 0 [rad/s]."""
+def vibration_frequencies(system: ModalSystem, duration: float) -> np.ndarray:
+    """Angular frequency of each coordinate, uncoupled, at time 0 [rad/s].
+
+    An error of velocity over it is one of the coordinate.  On a hinge it may be 0: the error of velocity
+    then grows to one of the coordinate over the duration [s] of the run.
+    """
     _, K, _ = system.coefficients(np.zeros(()))
-    return np.sqrt(np.abs(np.diag(K)))
+    slowest = 1 / duration if system.equations.shift else 0.0
+    return np.maximum(np.sqrt(np.abs(np.diag(K))), slowest)

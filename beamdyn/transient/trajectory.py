@@ -91,13 +91,30 @@ class Trajectory:
         return q, v
 
 
-def largest_deflection(tip: np.ndarray, path: Path, start: float, end: float) -> float:
-    """Find the largest |tip deflection| of a path in a time window, also between samples.
+def magnitude(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+    """Magnitude of a vector whose d components are linear functions of coordinates.
 
     Parameters
     ----------
-    tip : ndarray, shape (n,)
-        Tip deflection per unit of each coordinate.
+    q : ndarray, shape (..., n)
+        Coordinates.
+    outputs : ndarray, shape (d, n)
+        The components per unit of each coordinate, such as the tip's deflections in two directions.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
+    return np.hypot.reduce([np.abs(q @ output) for output in outputs])
+
+
+def largest_deflection(tips: np.ndarray, path: Path, start: float, end: float) -> float:
+    """Find the largest magnitude of the tip's deflection on a path in a time window, also between samples.
+
+    Parameters
+    ----------
+    tips : ndarray, shape (d, n)
+        Tip deflection per unit of each coordinate, in each of d directions.
     path : Path
         The coordinates over time.
     start, end : float
@@ -106,17 +123,17 @@ def largest_deflection(tip: np.ndarray, path: Path, start: float, end: float) ->
     Returns
     -------
     float
-        Largest |tip deflection| [m], from refining the highest maxima of the samples.
+        Largest magnitude [m], from refining the highest maxima of the samples.
     """
     times, q, _ = path.samples
     inside = (times >= start) & (times <= end)
-    size = np.abs(q[inside] @ tip)
+    size = magnitude(q[inside], tips)
     ends = np.array([start, end])
     t = np.concatenate([times[inside][_find_highest_maxima(size)], ends])
     half_width = np.diff(times).max()
     for _ in range(_REFINEMENTS):
         near = np.clip(t[:, None] + np.linspace(-half_width, half_width, 35), start, end)
-        size = np.abs(path.at(near.ravel())[0] @ tip).reshape(near.shape)
+        size = magnitude(path.at(near.ravel())[0], tips).reshape(near.shape)
         t, half_width = near[np.arange(len(t)), size.argmax(axis=1)], half_width / 17
     return float(size.max())
 

@@ -128,7 +128,7 @@ def test_a_batch_is_its_cases_one_by_one() -> None:
     batch = integrate_batch([ModalSystem(equations, m) for m in motions], 3.0)
     for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
         run = bd.simulate(replace(ROLLING, motion=motion), 3.0, modes=4, tolerance=1e-9)
-        found = largest_deflection(np.ones(1), tip, 1.0, 3.0)
+        found = largest_deflection(np.ones((1, 1)), tip, 1.0, 3.0)
         assert abs(found - run.peak(1.0, 3.0)) <= 1e-5 * run.largest
         assert error <= 1e-5 * run.largest
 
