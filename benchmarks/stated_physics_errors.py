@@ -17,6 +17,7 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
 
@@ -161,16 +162,19 @@ PARTS = (measure_sample,)
 def load(path: Path) -> list[Answer]:
     """Answers that a run has saved."""
     lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    rows = [json.loads(line) for line in lines]
-    return [Answer(**{k: tuple(v) if isinstance(v, list) else v for k, v in row.items()}) for row in rows]
+    return [_answer_of(json.loads(line)) for line in lines]
 
 
-def measure_and_save(path: Path, numbers: Iterable[int], **options: object) -> list[Answer]:
+def _answer_of(row: dict[str, Any]) -> Answer:
+    return Answer(**{key: tuple(value) if isinstance(value, list) else value for key, value in row.items()})
+
+
+def measure_and_save(path: Path, numbers: Iterable[int], **options: Any) -> list[Answer]:
     """Measure what is not in the file yet, and add it there."""
     before = load(path)
     done = {a.number for a in before}
     with path.open("a", encoding="utf-8") as file:
-        for found in measure_all([n for n in numbers if n not in done], **options):  # type: ignore[arg-type]
+        for found in measure_all([n for n in numbers if n not in done], **options):
             file.write(json.dumps(asdict(found)) + "\n")
             file.flush()
     return load(path)
@@ -186,7 +190,11 @@ def main() -> None:
     parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
     given = parser.parse_args()
     numbers = range(given.first, given.first + given.scenes)
-    options = {"workers": given.workers, "seed": given.seed, "discretization": given.discretization}
+    options: dict[str, Any] = {
+        "workers": given.workers,
+        "seed": given.seed,
+        "discretization": given.discretization,
+    }
     if given.save:
         answers = measure_and_save(given.save, numbers, **options)
     else:

@@ -40,7 +40,7 @@ def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
         finer, rounding = _solve(blade, gamma, count, pieces)
         before, change = change, np.abs(finer - squares)
         squares = finer
-        ratio = np.where(change < _SLOWEST * before, change / before, 1.0)
+        ratio = np.divide(change, before, out=np.ones(count), where=change < _SLOWEST * before)
         error = np.maximum(change * ratio, rounding)  # convergence speeds up: the next change is smaller
         still = np.abs(squares) < _REST * (1 + gamma**2)
         settled = (change * ratio <= rounding) | still
