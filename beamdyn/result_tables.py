@@ -12,7 +12,7 @@ from rich.text import Text
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
-from beamdyn.transient.directions import direction_names
+from beamdyn.equations.directions import modelled_directions
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -138,7 +138,7 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
 
 def _directions(scene: Scene) -> list[tuple[str, int | None]]:
     """What is said of a deflection, its magnitude and where there are two its components, and which it is."""
-    names = direction_names(scene)
+    names = modelled_directions(scene)
     return [("", None), *((f", {name}", i) for i, name in enumerate(names) if len(names) > 1)]
 
 
@@ -247,7 +247,7 @@ def sweep_table(result: Sweep) -> Group:
 
 def sweep_lines(result: Sweep) -> dict[str, np.ndarray]:
     """Largest tip deflections of a sweep, and where there are two directions those in each, by name."""
-    each = zip(direction_names(result.scene), result.peaks_by_direction.T, strict=True)
+    each = zip(modelled_directions(result.scene), result.peaks_by_direction.T, strict=True)
     lines = {"largest tip deflection": result.peaks}
     return lines | (dict(each) if result.scene.physics.planes == 2 else {})
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
@@ -34,15 +34,19 @@ class Fem:
         Number of elements, from 2 to 1000; a node stands at each breakpoint of the beam.
     mesh : {"graded", "uniform"}
         Graded elements shrink towards the root, where a fast outward beam has a boundary layer.
+    on_each : int
+        Fewest elements on each segment between breakpoints, so that half as many are a coarser mesh.
     """
 
     elements: int = 80
     mesh: Literal["graded", "uniform"] = "graded"
+    on_each: int = field(default=2, repr=False)
 
     def __post_init__(self) -> None:
         remedy = "discretization='ritz' needs far fewer"
         set_fields(self, elements=count("elements", self.elements, 2, MOST_ELEMENTS, remedy))
         one_of("mesh", self.mesh, ("graded", "uniform"))
+        set_fields(self, on_each=count("on_each", self.on_each, 1, MOST_ELEMENTS, remedy))
 
     @property
     def order(self) -> int:
@@ -55,9 +59,9 @@ class Fem:
         return 4 * float(np.finfo(float).eps) * self.elements**3
 
     def nodes(self, beam: Beam) -> np.ndarray:
-        """Positions x/L of the nodes: each segment has elements in proportion to its length, at least one."""
+        """Positions x/L of the nodes: each segment has elements in proportion to its length."""
         ends = np.array(beam.breakpoints)
-        steps = _subdivide(ends if self.mesh == "uniform" else _ungrade(ends), self.elements)
+        steps = _subdivide(ends if self.mesh == "uniform" else _ungrade(ends), self.elements, self.on_each)
         nodes = steps if self.mesh == "uniform" else _grade(steps)
         for end in ends:  # rounding must not leave a tiny segment beside a breakpoint
             nodes[np.abs(nodes - end).argmin()] = end
@@ -70,7 +74,7 @@ class Fem:
 
     def coarser(self) -> Fem:
         """A mesh of half as many elements."""
-        return replace(self, elements=max(2, self.elements // 2))
+        return replace(self, elements=max(2, self.elements // 2), on_each=max(1, self.on_each // 2))
 
     def finer(self) -> Fem | None:
         """A mesh of a quarter more elements, up to 100; None at 100 or more."""
@@ -93,16 +97,16 @@ def _ungrade(xi: np.ndarray) -> np.ndarray:
     return (np.sqrt(1 + 4 * _GRADING * (1 + _GRADING) * xi) - 1) / (2 * _GRADING)
 
 
-def _subdivide(ends: np.ndarray, elements: int) -> np.ndarray:
-    """Divide each segment into equal elements, in proportion to its length."""
-    counts = _distribute(elements, np.diff(ends))
+def _subdivide(ends: np.ndarray, elements: int, on_each: int) -> np.ndarray:
+    """Divide each segment into equal elements, in proportion to its length, at least so many on each."""
+    counts = _distribute(elements, np.diff(ends), on_each)
     parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(ends), counts, strict=True)]
     return np.concatenate([*parts, ends[-1:]])
 
 
-def _distribute(total: int, lengths: np.ndarray) -> np.ndarray:
-    """Distribute elements among segments in proportion to their length, at least one each."""
-    counts = np.maximum(1, np.floor(total * lengths / lengths.sum()).astype(int))
+def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
+    """Distribute elements among segments in proportion to their length, at least so many on each."""
+    counts = np.maximum(least, np.floor(total * lengths / lengths.sum()).astype(int))
     while counts.sum() < total:
         counts[np.argmax(lengths / counts)] += 1
     return counts

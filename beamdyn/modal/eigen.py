@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg
@@ -31,10 +32,9 @@ _EPS = np.finfo(float).eps
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms and to its norm
 _CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
-_LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
+LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
 _LARGEST_SHIFT = 256  # largest exponent of 4 of a shift: beyond it numbers overflow
 _LARGEST_BATCHED = 64  # size of matrices up to which one batched call computes all eigenvectors
-_ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it: measured
 _REAL = 1e-8  # relative growth rate of a mode below which it counts as stable: rounding of a double root
 
 
@@ -79,9 +79,11 @@ class Solver:
         Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`.
     """
 
+    ROUNDING_SIZE: ClassVar[int] = 40  # functions above which rounding errors grow with them: measured
+
     def __init__(self, pencil: SteadyPencil) -> None:
         self.pencil = pencil
-        with _explained():
+        with explained():
             L = np.linalg.cholesky(_shifted_stiffness(pencil))
         growth, Q = np.linalg.eigh(_transform_by_inverse(L, pencil.K2))
         self.growth = growth
@@ -129,7 +131,7 @@ class Solver:
         LinAlgError
             A ValueError: if stiffness and mass span more digits than double precision has.
         """
-        with _explained():
+        with explained():
             if self.pencil.conservative:
                 return self._solve_conservative(speeds, count)
             modes = [self._solve_coupled(speed, count) for speed in speeds]
@@ -138,7 +140,7 @@ class Solver:
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
         """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
-        if not self.pencil.conservative or stiffness.min() < _LEAST_STIFFNESS or self.pencil.shift:
+        if not self.pencil.conservative or stiffness.min() < LEAST_STIFFNESS or self.pencil.shift:
             return self.solve(speeds, count).eigenvalue
         scale = 1 / np.sqrt(stiffness)
         mu = np.linalg.eigvalsh(scale[:, :, None] * self.mass * scale[:, None, :])
@@ -171,7 +173,7 @@ class Solver:
 
     def _solve_conservative(self, speeds: np.ndarray, count: int) -> Eigen:
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
-        stiff = stiffness.min(axis=1) >= _LEAST_STIFFNESS
+        stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
         squared, z = np.empty((len(speeds), count)), np.empty((len(speeds), self.size, count))
         rounding = np.empty((len(speeds), count))
         for mask, solve in ((stiff, _solve_scaled), (~stiff, _solve_shifted)):
@@ -194,7 +196,7 @@ class Solver:
             by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
         vector = np.abs(self.basis @ z)
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
-        growth = max(1.0, self.size / _ROUNDING_SIZE)  # rounding adds up over the functions
+        growth = max(1.0, self.size / self.ROUNDING_SIZE)  # rounding adds up over the functions
         rounding = growth * (_BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
         return rounding if self.pencil.planes == 1 else rounding + self._cancelled(speeds, squared, vector)
 
@@ -219,7 +221,7 @@ class Solver:
             gyroscopic = not self.pencil.C.any() and stiffness.min() > 0
             solve = _solve_gyroscopic if gyroscopic else _solve_general
             inverse, y = solve(self.mass / time**2, damping / time, stiffness)
-        s, z = _select_lowest(inverse * time, y[:n], count)
+        s, z = select_lowest(inverse * time, y[:n], count)
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), self.mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(self.growth)).max() / np.abs(stiffness).min()
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
@@ -228,7 +230,7 @@ class Solver:
 
 
 @contextmanager
-def _explained() -> Iterator[None]:
+def explained() -> Iterator[None]:
     """Say what a factorization that fails means."""
     try:
         yield
@@ -258,7 +260,7 @@ def _solve_scaled(
     """Solve diag(d) z = w^2 M z for positive d (S, n): squared frequencies w^2, vectors z, rounding of w."""
     scale = 1 / np.sqrt(d)
     mu, z = _solve_largest(scale[:, :, None] * M * scale[:, None, :], count)
-    return 1 / mu, z * scale[:, :, None] / np.sqrt(mu)[:, None, :], _FORWARD * mu[:, :1] / mu
+    return 1 / mu, z * scale[:, :, None] / np.sqrt(mu)[:, None, :], forward_error(mu)
 
 
 def _solve_shifted(
@@ -274,7 +276,7 @@ def _solve_shifted(
     z = np.linalg.solve(np.swapaxes(L, 1, 2), x) / np.sqrt(mu)[:, None, :]
     squared = 1 / mu - shift[:, None]
     cancellation = np.abs(1 / mu / np.where(squared == 0, np.inf, squared))
-    return squared, z, _FORWARD * mu[:, :1] / mu * cancellation
+    return squared, z, forward_error(mu) * cancellation
 
 
 def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -291,6 +293,11 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 def _above_rounding(mu: np.ndarray) -> np.ndarray:
     """Raise eigenvalues (S, k), descending, to half their rounding error, where it may make them negative."""
     return np.maximum(mu, _FORWARD / 2 * mu[:, :1])
+
+
+def forward_error(mu: np.ndarray) -> np.ndarray:
+    """Relative error of 1/sqrt(mu) (..., k) by the eigensolver, for descending mu."""
+    return _FORWARD * mu[..., :1] / mu
 
 
 def _find_shift(M: np.ndarray, d: np.ndarray, smallest: float) -> np.ndarray:
@@ -319,7 +326,7 @@ def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray
     K = shift[:, None, None] * M
     K[:, np.arange(len(M)), np.arange(len(M))] += d
     values = np.linalg.eigvalsh(K)
-    return values[:, 0] >= np.maximum(_LEAST_STIFFNESS / 2, len(M) * _BACKWARD * values[:, -1])
+    return values[:, 0] >= np.maximum(LEAST_STIFFNESS / 2, len(M) * _BACKWARD * values[:, -1])
 
 
 def _solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -342,7 +349,7 @@ def _solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndar
     return np.linalg.eig(B)
 
 
-def _select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Select the lowest modes from 1/s: Im s > 0, real s > 0, and of each real pair s < 0 the slower."""
     inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)

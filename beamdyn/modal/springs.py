@@ -81,10 +81,10 @@ def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
     )
     if np.linalg.eigvalsh(K0)[0] < _GRADED:
         return None
-    n = len(K0)
-    loss, v = scipy.linalg.eigh(-K2, K0, subset_by_index=(n - 1, n - 1))
-    lost = 2 * _BACKWARD * float(np.abs(v[:, 0]) @ size @ np.abs(v[:, 0]))
-    return (float(loss[0]), lost / float(loss[0])) if loss[0] > lost else (0.0, np.inf)
+    losses, vectors = scipy.linalg.eigh(-K2, K0)
+    loss, v = float(losses[-1]), np.abs(vectors[:, -1])
+    lost = 2 * _BACKWARD * float(v @ size @ v + np.abs(losses).max())
+    return (loss, lost / loss) if loss > lost else (0.0, np.inf)
 
 
 def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> tuple[float, float]:

@@ -8,12 +8,19 @@ import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.modal.eigen import Eigen, Solver
+from beamdyn.modal.large import LargeSolver
+
+LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 
 
-def solver_of(equations: Equations) -> Solver | UncoupledSolver:
+def solver_of(equations: Equations) -> Solver | LargeSolver | UncoupledSolver:
     """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart."""
     pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
-    return Solver(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
+    return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
+
+
+def _solver_of_part(pencil: SteadyPencil) -> Solver | LargeSolver:
+    return LargeSolver(pencil) if len(pencil.M) > LARGE else Solver(pencil)
 
 
 class UncoupledSolver:
@@ -30,7 +37,7 @@ class UncoupledSolver:
     def __init__(self, pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> None:
         self.pencil = pencil
         self.parts = tuple(parts)
-        self.solvers = tuple(Solver(pencil.part(part)) for part in parts)
+        self.solvers = tuple(_solver_of_part(pencil.part(part)) for part in parts)
 
     @property
     def size(self) -> int:
@@ -58,7 +65,7 @@ class UncoupledSolver:
         return self._softest.critical_rounding
 
     @property
-    def _softest(self) -> Solver:
+    def _softest(self) -> Solver | LargeSolver:
         return max(self.solvers, key=lambda solver: solver.softening)
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:

@@ -1,4 +1,4 @@
-"""Two planes of bending: their names, and those that nothing couples, each as a scene in one plane."""
+"""Two planes of bending: those that nothing couples, each as a scene in one plane."""
 
 from __future__ import annotations
 
@@ -6,35 +6,15 @@ import math
 from dataclasses import replace
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.directions import first_drawn as first_drawn
+from beamdyn.equations.directions import name_directions as name_directions
 from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
-# Directions in words, and in a word.
-_EDGE = "in the plane of rotation (edge)", "edge"
-_FLAP = "out of the plane of rotation (flap)", "flap"
-_BENDING = "in the direction of bending", "bending"
-_ACROSS = "across the direction of bending", "across"
 _QUARTER = math.pi / 2
 _ROUNDING = 1e-15  # of the number of quarter turns of a twist
-
-
-def name_directions(mount: Mount) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Name the direction of bending at the root, and that across, each in words and in a word.
-
-    They are edge and flap where the bending angle is a whole number of quarter turns.
-    """
-    c, s = exact_cos_sin(mount.bending_angle)
-    if s == 0:
-        return _EDGE, _FLAP
-    return (_FLAP, _EDGE) if c == 0 else (_BENDING, _ACROSS)
-
-
-def first_drawn(mount: Mount) -> int:
-    """Direction that is drawn solid: flap if one is, else the direction of bending."""
-    return 1 if name_directions(mount)[1] is _FLAP else 0
 
 
 def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:

@@ -197,10 +197,8 @@ def resonance_speeds(
     names = str(model.discretization), str(model.coarser.discretization)
     numbers = np.concatenate([part.loci.numbers for part in parts])
     frequency = np.concatenate([part.loci.tracked for part in parts], axis=1)[:, np.argsort(numbers)]
-    lines = tuple(
-        _distinct(line for of_part in kind for line in of_part)
-        for kind in zip(*(p.lines for p in parts), strict=True)
-    )
+    forced, parametric = ([line for p in parts for line in p.lines[kind]] for kind in (0, 1))
+    lines = _distinct(forced), _distinct(parametric)
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
         lines=tuple(lines[0]),

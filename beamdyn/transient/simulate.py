@@ -17,6 +17,7 @@ from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.directions import modelled_directions
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.modal_basis import (
@@ -30,7 +31,6 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_road
-from beamdyn.transient.directions import direction_names
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.scipy_integrators import check_method, integrate_by_solve_ivp
@@ -232,7 +232,7 @@ class Transient(Result):
         """Draw the tip deflection over time."""
         from beamdyn.output.plots import plot_transient
 
-        names = direction_names(self.scene)
+        names = modelled_directions(self.scene)
         return plot_transient(self.t, np.array([self.tip, self.tip_across][: len(names)]), ax, names)
 
     def export(

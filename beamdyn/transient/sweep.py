@@ -18,6 +18,7 @@ from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, fun
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.directions import modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import (
     FEWEST_MODES,
@@ -31,7 +32,6 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
-from beamdyn.transient.directions import direction_names
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import Transient, TransientRequest
 from beamdyn.transient.step_size import TOLERANCES
@@ -91,7 +91,7 @@ class Sweep(Result):
         """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""
         from beamdyn.output.plots import plot_sweep
 
-        names = direction_names(self.scene)
+        names = modelled_directions(self.scene)
         if len(names) == 1:
             return plot_sweep(self.speeds, self.peaks, ax)
         rows = np.vstack([self.peaks, self.peaks_by_direction.T])

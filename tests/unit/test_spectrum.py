@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from io import StringIO
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
+from rich.console import Console
 
 import beamdyn as bd
+from beamdyn.common.checks import InvalidValue
+from beamdyn.result_tables import locus_csv, locus_table, modes_csv, modes_table
 from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(
@@ -206,3 +211,168 @@ def test_any_speeds_give_an_answer_or_a_sentence(speeds: list[float]) -> None:
     elif not usable:
         with pytest.raises(ValueError, match="speeds"):
             bd.frequency_locus(HARVESTER, speeds)
+
+
+# Two planes, springs at the root --------------------------------------------------------------------
+
+ANGLE = np.polynomial.Polynomial([0.0, 0.3])
+BLADE = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=3.0, twist=ANGLE)
+VEERING = bd.Scene(BLADE, bd.Mount(0.2, np.pi, np.pi / 2), physics=bd.Physics(planes=2))
+
+
+@pytest.mark.parametrize("speed", [0.0, 3.0])
+@pytest.mark.parametrize("discretization", ["ritz", bd.Fem(40)])
+@pytest.mark.parametrize("twist", [None, BLADE.twist])
+def test_a_turn_about_a_hinge_is_neutral(twist, discretization, speed: float) -> None:
+    """In the plane about the axis itself; out of it, the hinge has the frequency of the rotation."""
+    mount = bd.Mount(0.0, np.pi, 0.0, 0.0, 0.0)
+    scene = bd.Scene(replace(BLADE, twist=twist), mount, physics=bd.Physics(planes=2))
+    modes = bd.natural_modes(scene, speed, 3, discretization)
+    assert modes.status.tolist() == ["neutral", "stable" if speed else "neutral", "stable"]
+    assert modes.frequency[0] == modes.error[0] == modes.growth_rate[0] == 0
+    assert abs(2 * np.pi * modes.frequency[1] - speed) <= modes.error[1] * speed
+    assert np.isfinite(modes.error).all() and not any("unstable" in text for text in modes.warnings)
+
+
+@pytest.mark.parametrize("stiffness", [1e-6, 1e-3, 1.0, 100.0])
+@pytest.mark.parametrize("speed", [0.0, 0.3])
+def test_errors_of_finite_elements_on_soft_springs_cover_the_true_ones(
+    stiffness: float, speed: float
+) -> None:
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, np.pi, root_stiffness=stiffness))
+    exact = bd.natural_modes(scene, speed, 2, bd.Ritz(20))
+    for elements in (20, 100):
+        rough = bd.natural_modes(scene, speed, 2, bd.Fem(elements))
+        assert (np.abs(rough.eigenvalue / exact.eigenvalue - 1) <= rough.error + exact.error).all()
+    assert (exact.error < 1e-9).all()
+
+
+def test_errors_of_unstable_modes_on_springs_are_not_negative() -> None:
+    mount = bd.Mount(1.65, -0.97, 0.45, 11.0, 0.036)
+    scene = bd.Scene(replace(BLADE, twist=None), mount, physics=bd.Physics(planes=2))
+    modes = bd.natural_modes(scene, 11.2, 4)
+    assert modes.status[0] == "divergence" and (modes.error > 0).all()
+
+
+def planes_at_random(rng: np.random.Generator) -> tuple[bd.Scene, float]:
+    """A tapered blade with twist, often so little that its planes hardly veer; with springs, and a speed."""
+    ratio, taper = 10 ** rng.uniform(-0.3, 1.2), np.polynomial.Polynomial([1.0, -rng.uniform(0, 0.9)])
+    beam = bd.Beam.from_stiffness(
+        1.0,
+        1.0,
+        taper,
+        second_bending_stiffness=ratio * taper,
+        twist=np.polynomial.Polynomial(
+            [rng.uniform(-0.3, 0.3), rng.uniform(-1.5, 1.5) * rng.choice([0.01, 1])]
+        ),
+        rotary_inertia=1e-3,
+        second_rotary_inertia=1e-3 * ratio,
+        shear_stiffness=300.0,
+    )
+    springs = (rng.choice([np.inf, 10 ** rng.uniform(-4, 2)]) for _ in range(2))
+    angles = rng.choice([np.pi, rng.uniform(-3, 3)]), rng.choice([0, np.pi / 2, rng.uniform(-3, 3)])
+    thick = bool(rng.random() < 0.4)
+    scene = bd.Scene(
+        beam, bd.Mount(rng.uniform(0, 2), *angles, *springs), physics=bd.Physics(2, thick, thick)
+    )
+    return scene, rng.uniform(0, 12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_errors_in_two_planes_cover_the_true_ones(seed: int) -> None:
+    scene, speed = planes_at_random(np.random.default_rng(seed))
+    exact = bd.natural_modes(scene, speed, 4, bd.Ritz(40))
+    for tolerance in (1e-2, 1e-5, None):
+        modes = bd.natural_modes(scene, speed, 4, tolerance=tolerance)
+        assert (np.abs(modes.eigenvalue / exact.eigenvalue - 1) <= modes.error + exact.error).all()
+
+
+def test_flap_and_edge_are_followed_where_they_veer() -> None:
+    """Followed modes exchange their planes where the twist couples them; without twist they cross."""
+    speeds = np.linspace(0, 12, 121)
+    veering = bd.frequency_locus(VEERING, speeds, 2)
+    shares = veering.plane_share[:, :, 0]
+    np.testing.assert_allclose(veering.plane_share.sum(axis=2), 1, rtol=1e-12)
+    assert shares[0, 0] > 0.9 > 0.1 > shares[-1, 0] and shares[0, 1] < 0.1 < 0.9 < shares[-1, 1]
+    nearest = int(np.abs(np.diff(veering.frequency, axis=1))[:, 0].argmin())
+    assert abs(int(veering.confidence[:, 0].argmin()) - nearest) <= 2
+    crossing = bd.frequency_locus(replace(VEERING, beam=replace(BLADE, twist=None)), speeds, 2)
+    assert set(crossing.plane_share[:, 0, 0]) == {1.0} and set(crossing.plane_share[:, 1, 0]) == {0.0}
+    assert (np.diff(crossing.frequency, axis=1)[[0, -1], 0] * [1, -1] > 0).all()
+    assert crossing.confidence.min() > 0.99
+
+
+def test_the_picture_tells_flap_from_edge() -> None:
+    """Solid is out of the plane: mode 1 until it veers, mode 2 from there; the pieces meet."""
+    locus = bd.frequency_locus(VEERING, np.linspace(0, 12, 121), 2)
+    ax = locus.plot(Figure().subplots())
+    first, then, *_ = [line for line in ax.lines if line.get_color() == ax.lines[0].get_color()]
+    assert (first.get_linestyle(), then.get_linestyle()) == ("-", "--")
+    np.testing.assert_array_equal(np.asarray(first.get_xydata())[-1], np.asarray(then.get_xydata())[0])
+    legend = ax.get_legend()
+    assert legend is not None
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words[:2] == ["mode 1", "mode 2"] and "flap" in words[2] and "edge" in words[3]
+    dashes = {line.get_label(): line.get_linestyle() for line in ax.lines}
+    assert (dashes[words[2]], dashes[words[3]]) == ("-", "--")
+
+
+def test_shapes_show_both_directions() -> None:
+    modes = bd.natural_modes(VEERING, 6.0, 2)
+    ax = modes.plot(Figure().subplots())
+    x = ax.lines[1].get_xdata()
+    for line, direction in ((ax.lines[1], 0), (ax.lines[2], 1)):
+        shape = np.real(modes.shape(np.asarray(x), direction)[0])
+        largest = np.abs([modes.shape(np.asarray(x), d)[0] for d in (0, 1)]).max()
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), shape / largest, atol=1e-15)
+
+
+def test_tables_and_rows_have_the_planes() -> None:
+    modes, locus = bd.natural_modes(VEERING, 0.0, 2), bd.frequency_locus(VEERING, [0.0, 1.0], 2)
+    head, first, _ = modes_csv(modes)
+    row = dict(zip(head, first, strict=True))
+    assert row["share_in_direction_of_bending"] == modes.plane_share[0, 0]
+    assert row["share_across"] == pytest.approx(1 - modes.plane_share[0, 0], rel=1e-12)
+    head, first, _ = locus_csv(locus)
+    assert dict(zip(head, first, strict=True))["share_across_2"] == locus.plane_share[0, 1, 1]
+    assert "share" not in str(next(iter(modes_csv(bd.natural_modes(HARVESTER)))))
+    console = Console(width=200, record=True, file=StringIO())
+    console.print(modes_table(modes), locus_table(locus))
+    text = console.export_text()
+    assert "share of flap" in text and " flap " in text and " edge " in text
+
+
+@pytest.mark.parametrize("springs", [(np.inf, np.inf), (3.0, 2.0)])
+@pytest.mark.parametrize("physics", [bd.Physics(2), bd.Physics(2, True, True), bd.Physics(1, True, True)])
+def test_setting_angle_limits_are_where_the_slope_vanishes(physics: bd.Physics, springs) -> None:
+    """By differences of the squared frequency, to which a change of phi by 0.01 adds 0.03."""
+    section = bd.Beam.from_stiffness(
+        1.0,
+        1.0,
+        1.0,
+        tip=bd.TipMass(0.1, 0.05, 1e-3, 9e-4, 2e-4),
+        second_bending_stiffness=3.0,
+        twist=ANGLE,
+        shear_stiffness=300.0,
+        rotary_inertia=1e-3,
+        second_rotary_inertia=3e-3,
+    )
+    scene = bd.Scene(section, bd.Mount(1.2, 0.0, 0.3, *springs), physics=physics)
+    limits = bd.setting_angle_limits(scene, 4.0)
+
+    def slope(angle: float, speed: float) -> float:
+        mounted = replace(scene, mount=replace(scene.mount, setting_angle=angle))
+        low, high = (
+            bd.natural_modes(mounted, v, 1).eigenvalue[0] ** 2 for v in (0.999 * speed, 1.001 * speed)
+        )
+        return float((low - high).real / (0.004 * speed**2))
+
+    assert abs(slope(limits.first, 0.01)) < 1e-3 < abs(slope(limits.first + 0.1, 0.01))
+    assert abs(slope(limits.second, 4.0)) < 1e-6 < abs(slope(limits.second + 0.01, 4.0))
+
+
+def test_limits_of_a_hinge_are_refused_by_name() -> None:
+    with pytest.raises(InvalidValue) as caught:
+        bd.setting_angle_limits(replace(VEERING, mount=bd.Mount(second_root_stiffness=0.0)), 4.0)
+    assert caught.value.field == "second_root_stiffness"
+    bd.setting_angle_limits(bd.Scene(BLADE, bd.Mount(1.0, second_root_stiffness=0.0)), 4.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -33,13 +34,19 @@ def rolling(waves: float, amplitude: float = 0.01) -> bd.RollingWheel:
     return bd.RollingWheel(0.3, speed=60.0, road=road)
 
 
-def strip(width: float = 0.0004, **changes: object) -> bd.Beam:
+def strip(width: float = 0.0004, **changes: Any) -> bd.Beam:
     """A steel strip, twice as wide as it is thick, so that both planes matter."""
     return bd.Beam.rectangular(0.05, width, 0.0002, 200e9, 7850.0, **changes)
 
 
 FLAT = bd.Scene(strip(), bd.Mount(0.215, math.pi), rolling(2 * math.pi), 0.02, 9.81, TWO)
 TWISTED = replace(FLAT, beam=strip(twist=Polynomial([0.0, 0.8])), mount=bd.Mount(0.215, math.pi - 0.2, 0.3))
+
+
+def stiff_way(scene: bd.Scene) -> bd.Beam:
+    """The beam in one plane that bends as the scene's does across."""
+    assert scene.beam.second_bending_stiffness is not None
+    return bd.Beam.from_stiffness(0.05, scene.beam.mass_per_length, scene.beam.second_bending_stiffness)
 
 
 def tips(found: bd.SteadyResponse) -> np.ndarray:
@@ -54,14 +61,19 @@ def tips(found: bd.SteadyResponse) -> np.ndarray:
 def test_planes_without_twist_are_two_beams_in_one_plane(psi: float) -> None:
     mount = bd.Mount(0.215, math.pi - 0.2, psi)
     scene = replace(FLAT, mount=mount)
-    across = bd.Beam.from_stiffness(0.05, scene.beam.mass_per_length, scene.beam.second_bending_stiffness)
+    across = stiff_way(scene)
     alone = [
         replace(scene, physics=bd.Physics()),
         replace(
             scene, physics=bd.Physics(), beam=across, mount=replace(mount, bending_angle=psi + math.pi / 2)
         ),
     ]
-    settings = {"speeds": [40.0, 70.0], "modes": 2, "harmonics": 2, "discretization": bd.Ritz(14)}
+    settings: dict[str, Any] = {
+        "speeds": [40.0, 70.0],
+        "modes": 2,
+        "harmonics": 2,
+        "discretization": bd.Ritz(14),
+    }
     found, parts = (
         bd.steady_response(scene, **settings),
         [bd.steady_response(each, **settings) for each in alone],
@@ -83,12 +95,7 @@ def test_a_constant_twist_of_a_quarter_turn_exchanges_the_stiffnesses() -> None:
     turned = replace(TWISTED, beam=strip(twist=Polynomial([math.pi / 2])))
     exchanged = replace(
         TWISTED,
-        beam=bd.Beam.from_stiffness(
-            0.05,
-            beam.mass_per_length,
-            beam.second_bending_stiffness,
-            second_bending_stiffness=beam.bending_stiffness,
-        ),
+        beam=replace(stiff_way(TWISTED), second_bending_stiffness=beam.bending_stiffness),
     )
     twisted, plain = (
         bd.steady_response(s, [40.0, 70.0], modes=3, harmonics=2, discretization=bd.Ritz(14))
@@ -142,8 +149,11 @@ def test_twisted_response_is_the_tail_of_a_damped_transient() -> None:
     found = bd.steady_response(scene, [speed], modes=2, tolerance=1e-9)
     two = choose_model(scene, "ritz", np.array([speed]), 2).modal_equations(2)
 
+    assert scene.motion is not None
+    motion = scene.motion.with_speed(speed)
+
     def slope(t: float, y: np.ndarray) -> np.ndarray:
-        A, b = first_order(two, scene.motion, np.array([t]))
+        A, b = first_order(two, motion, np.array([t]))
         return A[0] @ y + b[0]
 
     t = np.linspace(0.6, 0.7, 200)
@@ -173,20 +183,40 @@ def monodromy_growth(equations: Equations, motion: Motion, speed: float) -> floa
 
 def test_tongues_of_both_planes_and_between_them() -> None:
     """A twisted strip on a road of four waves a turn, at parametric and combination resonances."""
-    mount = bd.Mount(0.02, math.pi - 0.2, 0.3)
-    scene = replace(TWISTED, mount=mount, motion=rolling(4, 1.0), damping_ratio=0.0, gravity=0.0)
+    mount, wheel = bd.Mount(0.02, math.pi - 0.2, 0.3), rolling(4, 1.0)
+    scene = replace(TWISTED, mount=mount, motion=wheel, damping_ratio=0.0, gravity=0.0)
     crossings = bd.resonance_speeds(scene, 450.0, modes=2, order=2)
     first = [c for c in crossings if c.kind == "parametric" and c.line.name == "road +"]
     kinds = {(c.mode, c.second_mode): c.speed for c in first}
     equations = Model(scene, bd.Ritz(14)).modal_equations(2)
     for pair, least in (((1, None), 6.0), ((2, None), 6.0), ((1, 2), 0.1)):
         speeds = kinds[pair] * np.linspace(0.999, 1.001, 17)
-        rates, errors = growth_rate(periodic_system(equations, scene.motion, speeds))
+        rates, errors = growth_rate(periodic_system(equations, wheel, speeds))
         fastest = rates.argmax()
-        expected = monodromy_growth(equations, scene.motion, speeds[fastest])
+        expected = monodromy_growth(equations, wheel, float(speeds[fastest]))
         assert rates[fastest] > least  # the combination's tongue is narrower than the others
         # 1e-6: the error of the integrator with 600 steps a turn
         assert abs(rates[fastest] - expected) < errors[fastest] + 1e-6 * expected
+
+
+def test_the_plane_that_grows_decides_where_nothing_couples_the_two() -> None:
+    scene = replace(
+        FLAT, mount=bd.Mount(0.02, math.pi), motion=rolling(4, 1.0), damping_ratio=0.0, gravity=0.0
+    )
+    crossings = bd.resonance_speeds(scene, 450.0, modes=2)
+    tongues = [c for c in crossings if c.kind == "parametric" and c.line.name == "road +"]
+    assert [int(np.argmax(c.plane_share)) for c in tongues] == [0, 1]
+    out = replace(
+        scene, physics=bd.Physics(), beam=stiff_way(scene), mount=bd.Mount(0.02, math.pi, math.pi / 2)
+    )
+    for c in tongues:
+        alone = out if np.argmax(c.plane_share) else replace(scene, physics=bd.Physics())
+        found, expected = (
+            bd.steady_response(s, [c.speed], modes=2, harmonics=1, discretization=bd.Ritz(14))
+            for s in (scene, alone)
+        )
+        assert found.status[0] == "parametric instability" and np.isnan(found.amplitude[0])
+        np.testing.assert_allclose(found.growth_rate, expected.growth_rate, rtol=1e-9)
 
 
 # Crossings ----------------------------------------------------------------------------------------
@@ -221,7 +251,7 @@ def test_a_line_meets_only_the_modes_that_it_drives() -> None:
 
 def test_planes_without_twist_have_the_crossings_of_both() -> None:
     found = bd.resonance_speeds(FLAT, 400.0, modes=2)
-    across = bd.Beam.from_stiffness(0.05, FLAT.beam.mass_per_length, FLAT.beam.second_bending_stiffness)
+    across = stiff_way(FLAT)
     alone = [
         replace(FLAT, physics=bd.Physics()),
         replace(FLAT, physics=bd.Physics(), beam=across, mount=bd.Mount(0.215, math.pi, math.pi / 2)),
@@ -302,7 +332,7 @@ def test_csv_has_both_directions() -> None:
 
 
 @pytest.mark.parametrize("direction", [-1, 2, "across"])
-def test_direction_of_the_tip(direction: object) -> None:
+def test_direction_of_the_tip(direction: Any) -> None:
     found = bd.steady_response(TWISTED, [60.0], modes=1, harmonics=0)
     with pytest.raises(ValueError, match="direction = "):
         found.tip(PHASE, 0.0, direction)

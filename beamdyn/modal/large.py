@@ -1,0 +1,174 @@
+"""Eigensolver of large equations, such as those of a blade tabulated at many stations.
+
+A few modes of many coordinates are wanted: they are found by Lanczos iteration on the inverse problem, with
+one factorization of the stiffness at each speed, in place of all eigenvalues of full matrices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
+from scipy.sparse.linalg import LinearOperator, eigs, eigsh
+
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modal.eigen import LEAST_STIFFNESS, Eigen, Solver, explained, forward_error, select_lowest
+
+_EPS = np.finfo(float).eps
+_BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
+_MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
+
+
+class LargeSolver:
+    """Eigensolver with the interface of `Solver`, for the lowest few of many modes.
+
+    Where the stiffness is not safely positive definite, it works as `Solver` does.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Equations at steady speed.
+    """
+
+    def __init__(self, pencil: SteadyPencil) -> None:
+        self.pencil = pencil
+        with explained():
+            self._at_rest = np.linalg.cholesky(pencil.K0 + pencil.shift * pencil.M)
+
+    @cached_property
+    def dense(self) -> Solver:
+        """Solver by full matrices."""
+        return Solver(self.pencil)
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates and modes."""
+        return len(self.pencil.M)
+
+    @cached_property
+    def lowest_at_rest(self) -> float:
+        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        return float(1 / self._largest(self._transformed(self._at_rest, self.pencil.M), 1)[0][0])
+
+    @property
+    def softening(self) -> float:
+        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        return self.dense.softening
+
+    @property
+    def critical_speed(self) -> float:
+        """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
+        return self.dense.critical_speed
+
+    @property
+    def critical_rounding(self) -> float:
+        """Estimated relative rounding error of the critical speed."""
+        return self.dense.critical_rounding
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Compute the `count` lowest modes at each speed [rad/s]: as `Solver.solve`."""
+        each = [self._solve_at(speed, count) for speed in speeds]
+        return Eigen(*(np.array(values) for values in zip(*each, strict=True)))
+
+    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
+        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
+        return self.solve(speeds, count).eigenvalue
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Compute linear functions of the coordinates in static equilibrium: as `Solver.solve_static`."""
+        return np.array([self._static(speed, outputs) for speed in speeds])
+
+    def _static(self, speed: float, outputs: np.ndarray) -> np.ndarray:
+        try:
+            factor = cho_factor(self._stiffness(speed))
+        except LinAlgError:
+            return np.full(len(outputs), np.nan if speed else 0.0)
+        return outputs @ cho_solve(factor, speed**2 * self.pencil.f2)
+
+    def _stiffness(self, speed: float) -> np.ndarray:
+        return self.pencil.K0 + speed**2 * self.pencil.K2
+
+    def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        found = None if self.pencil.shift else self._lowest(speed, count)
+        if found is None:
+            eigen = self.dense.solve(np.array([speed]), count)
+            return eigen.eigenvalue[0], eigen.vector[0], eigen.rounding[0]
+        if self.pencil.conservative:
+            return found
+        return self._lowest_coupled(speed, count)
+
+    # Conservative equations --------------------------------------------------------------------------
+
+    def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Lowest modes without damping and gyroscopic terms; None if the stiffness is not safely positive."""
+        try:
+            L = np.linalg.cholesky(self._stiffness(speed)) if speed else self._at_rest
+        except np.linalg.LinAlgError:
+            return None
+        mu, x = self._largest(self._transformed(L, self.pencil.M), count)
+        if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
+            return None
+        v = solve_triangular(L, x, trans="T", lower=True) / np.sqrt(mu)
+        rounding = forward_error(mu) + self._rounding(speed, 1 / mu, v)
+        return 1j / np.sqrt(mu), v, rounding
+
+    def _rounding(self, speed: float, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Relative error (k,) of frequencies by rounding of the matrices, as `Solver` estimates it."""
+        size = np.abs(v)
+        spin = speed**2 * (size * (self._absolute_spin @ size)).sum(axis=0)
+        terms = (v * (self.pencil.K0 @ v)).sum(axis=0) + spin
+        mass = (size * (self._absolute_mass @ size)).sum(axis=0)
+        by_terms = terms / squared
+        growth = max(1.0, self.size / Solver.ROUNDING_SIZE)
+        return growth * (_BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
+
+    @cached_property
+    def _absolute_spin(self) -> np.ndarray:
+        return np.abs(self.pencil.K2)
+
+    @cached_property
+    def _absolute_mass(self) -> np.ndarray:
+        return np.abs(self.pencil.M)
+
+    def _transformed(self, L: np.ndarray, A: np.ndarray) -> LinearOperator:
+        """The operator L^-1 A L^-T."""
+
+        def product(x: np.ndarray) -> np.ndarray:
+            half = solve_triangular(L, x, trans="T", lower=True, check_finite=False)
+            return solve_triangular(L, A @ half, lower=True, check_finite=False)
+
+        return self._operator(product, self.size)
+
+    def _largest(self, operator: LinearOperator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Largest eigenvalues (k,), descending, and their vectors (n, k)."""
+        start = np.random.default_rng(0).standard_normal(self.size)
+        mu, x = eigsh(operator, count, which="LA", v0=start, tol=0)
+        order = np.argsort(-mu)
+        return mu[order], x[:, order]
+
+    @staticmethod
+    def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearOperator:
+        return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]
+
+    # Gyroscopic and damped equations -----------------------------------------------------------------
+
+    def _lowest_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Lowest modes of M q'' + C q' + K q = 0, by the largest 1/s."""
+        n, M, C = self.size, self.pencil.M, self.pencil.C + speed * self.pencil.G
+        factor = cho_factor(self._stiffness(speed))
+        time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
+
+        def product(y: np.ndarray) -> np.ndarray:
+            q, v = y[:n], y[n:]
+            force = C @ q / time + M @ v / time**2
+            return np.concatenate([-cho_solve(factor, force, check_finite=False), q])
+
+        start = np.random.default_rng(0).standard_normal(2 * n)
+        inverse, y = eigs(self._operator(product, 2 * n), 2 * (count + _MORE), which="LM", v0=start, tol=0)
+        s, q = select_lowest(inverse * time, y[:n], count)
+        mass = np.sqrt(np.einsum("nk,nk->k", q.conj(), M @ q).real)
+        rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + self.size)
+        return s, q / mass, rounding
