@@ -198,13 +198,11 @@ class Solver:
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
         growth = max(1.0, self.size / self.ROUNDING_SIZE)  # rounding adds up over the functions
         rounding = growth * (_BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
-        return rounding if self.pencil.planes == 1 else rounding + self._cancelled(speeds, squared, vector)
-
-    def _cancelled(self, speeds: np.ndarray, squared: np.ndarray, vector: np.ndarray) -> np.ndarray:
-        """Error (S, k) by rounding of the entries of the stiffness, which a stiff plane makes large."""
-        K = np.abs(self.pencil.K0) + speeds[:, None, None] ** 2 * np.abs(self.pencil.K2)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return _CANCELLED * (vector * (K @ vector)).sum(axis=1) / np.abs(squared)
+        return (
+            rounding
+            if self.pencil.planes == 1
+            else rounding + cancelled(self.pencil, speeds, squared, vector)
+        )
 
     # Gyroscopic and damped equations ----------------------------------------------------------------
 
@@ -227,6 +225,16 @@ class Solver:
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
         return s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+
+
+def cancelled(pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Relative error (S, k) of frequencies by rounding of large entries of the stiffness of a stiff plane.
+
+    The absolute values `size` of the modes have shape (S, n, k).
+    """
+    K = np.abs(pencil.K0) + speeds[:, None, None] ** 2 * np.abs(pencil.K2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return _CANCELLED * (size * (K @ size)).sum(axis=1) / np.abs(squared)
 
 
 @contextmanager

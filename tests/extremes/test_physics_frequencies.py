@@ -66,7 +66,7 @@ def twisted(ratio: float, springs: tuple[float, float] = (math.inf, math.inf)) -
 
 @pytest.mark.parametrize("springs", [(math.inf, math.inf), (math.inf, 2.0)], ids=["clamped", "spring"])
 @pytest.mark.parametrize("ratio", [1e2, 1e4])
-@pytest.mark.parametrize("functions", [20, 26, 34])
+@pytest.mark.parametrize("functions", [20, 34, 70])  # 70: more coordinates than are solved densely
 def test_rounding_where_twist_leaves_little_of_a_stiff_plane(
     functions: int, ratio: float, springs: tuple[float, float]
 ) -> None:
