@@ -17,7 +17,7 @@ _NAMES = {
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
-    "equations.left_out": ("LeftOut",),
+    "equations.left_out": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
     "scene.beam": ("Beam", "TipMass"),
     "scene.motion": (
@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from beamdyn.config import load_scene
     from beamdyn.equations.discretization import Discretization
     from beamdyn.equations.fem import Fem
-    from beamdyn.equations.left_out import LeftOut
+    from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.scene.beam import Beam, TipMass

@@ -9,7 +9,7 @@ from beamdyn.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class OmittedEffect:
     """An effect that a model leaves out.
 
     Parameters
@@ -25,39 +25,41 @@ class LeftOut:
 
 
 _NEVER = (
-    LeftOut("large deflection", "the equations are linear about the straight beam"),
-    LeftOut("torsion", "the beam is rigid against torsion"),
-    LeftOut("offsets of sections", "their centres of gravity, tension and shear are on one straight line"),
-    LeftOut("warping and Poisson contraction", "sections keep their shape"),
-    LeftOut("contact", "nothing touches the beam"),
+    OmittedEffect("large deflection", "the equations are linear about the straight beam"),
+    OmittedEffect("torsion", "the beam is rigid against torsion"),
+    OmittedEffect(
+        "offsets of sections", "their centres of gravity, tension and shear are on one straight line"
+    ),
+    OmittedEffect("warping and Poisson contraction", "sections keep their shape"),
+    OmittedEffect("contact", "nothing touches the beam"),
 )
 
 
-def list_left_out(scene: Scene) -> Iterator[LeftOut]:
+def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     """List the effects that the model of a scene leaves out, those that it could include first."""
     yield from _second_plane(scene)
     physics, beam = scene.physics, scene.beam
     if not physics.shear:
         given = _how("shear=True", beam.shear_stiffness is not None, "shear_stiffness or poissons_ratio")
-        yield LeftOut("shear deformation", f"sections stay normal to the axis; {given}")
+        yield OmittedEffect("shear deformation", f"sections stay normal to the axis; {given}")
     if not physics.rotary_inertia:
         given = _how("rotary_inertia=True", beam.rotary_inertia is not None, "rotary_inertia")
-        yield LeftOut("rotary inertia of sections", f"sections turn without inertia; {given}")
+        yield OmittedEffect("rotary inertia of sections", f"sections turn without inertia; {given}")
     if not physics.stretch:
         given = _how("stretch=True", beam.axial_stiffness is not None, "axial_stiffness")
-        yield LeftOut("stretch", f"the beam is inextensible; {given}")
+        yield OmittedEffect("stretch", f"the beam is inextensible; {given}")
     yield from _NEVER
 
 
-def _second_plane(scene: Scene) -> Iterator[LeftOut]:
+def _second_plane(scene: Scene) -> Iterator[OmittedEffect]:
     """The direction across, and what acts on it only."""
     if scene.physics.planes == 2:
         return
     beam = scene.beam
     given = _how("planes=2", beam.second_bending_stiffness is not None, "second_bending_stiffness")
-    yield LeftOut("second plane of bending", f"the direction across is rigid; {given}")
+    yield OmittedEffect("second plane of bending", f"the direction across is rigid; {given}")
     if beam.twist is not None:
-        yield LeftOut("twist", f"sections stand as at the root; {given}")
+        yield OmittedEffect("twist", f"sections stand as at the root; {given}")
 
 
 def _how(switch: str, given: bool, needed: str) -> str:

@@ -15,7 +15,7 @@ from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.explanations import Explanation, SampledScene
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Load, Term
-from beamdyn.equations.left_out import LeftOut, list_left_out
+from beamdyn.equations.left_out import OmittedEffect, list_left_out
 from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
@@ -62,7 +62,7 @@ class Terms(Result):
     ----------
     entries : tuple of Entry
         All terms of the fields that are modelled.
-    left_out : tuple of LeftOut
+    left_out : tuple of OmittedEffect
         Effects that the model leaves out, by name and reason.
     lines : tuple of Line
         Frequencies that translation and gravity excite, as multiples of the speed.
@@ -71,7 +71,7 @@ class Terms(Result):
     """
 
     entries: tuple[Entry, ...]
-    left_out: tuple[LeftOut, ...]
+    left_out: tuple[OmittedEffect, ...]
     lines: tuple[Line, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)

@@ -18,6 +18,7 @@ import scipy.linalg
 from scipy.linalg import solve_triangular
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modal.massless import condense, has_massless
 from beamdyn.modal.springs import (
     remove_shift,
     softening_of_graded,
@@ -123,6 +124,10 @@ class Solver:
             return found
         return softening_on_springs(self.mass, self.growth, self.pencil.shift)
 
+    @cached_property
+    def _has_massless(self) -> bool:
+        return has_massless(self.mass)
+
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """Compute the `count` lowest modes at each speed [rad/s].
 
@@ -212,9 +217,11 @@ class Solver:
         T, n = self.basis, self.size
         damping = T.T @ (self.pencil.C + speed * self.pencil.G) @ T
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
-        if self.pencil.shift:
+        if self.pencil.shift or self._has_massless:
             K = np.diag(stiffness) - self.pencil.shift * self.mass
-            inverse, y = solve_first_order(self.mass / time**2, damping / time, K)
+            R = condense(self.mass, K) if self._has_massless else np.eye(n)
+            inverse, y = solve_first_order(*(R.T @ A @ R for A in (self.mass / time**2, damping / time, K)))
+            y = R @ y[: R.shape[1]]
         else:
             gyroscopic = not self.pencil.C.any() and stiffness.min() > 0
             solve = _solve_gyroscopic if gyroscopic else _solve_general

@@ -47,7 +47,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, count, real
+from beamdyn.common.checks import count, real
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import CLAMPED, Space
@@ -60,7 +60,7 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
-from beamdyn.spectrum.planes import refuse_coupled_planes, separate_planes
+from beamdyn.spectrum.planes import refuse_uncovered, separate_planes
 
 _EPS = float(np.finfo(float).eps)
 _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
@@ -71,7 +71,6 @@ _PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of t
 _CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
 # The parts of the squared Ritz value that are tried as such a bound.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
-_SPRINGS = "root_stiffness", "second_root_stiffness"
 _FLEXIBILITY_DEGREES = (0, 8, 16, 32, 64, 128)
 _FINE, _COARSE = 1e-10, 1e-4  # relative excess of the flexibility over 1/EI: aimed at, and accepted
 
@@ -167,8 +166,7 @@ def _enclose_plane(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, 
 
 
 def _check_input(scene: Scene, speed: float, modes: int) -> None:
-    _check_model(scene)
-    refuse_coupled_planes(scene, speed)
+    refuse_uncovered(scene, speed)
     check_speeds(speed, "speed")
     planes = separate_planes(scene, speed != 0)
     most = min(_most_functions(plane.beam) * (len(plane.beam.breakpoints) - 1) for plane in planes)
@@ -177,20 +175,6 @@ def _check_input(scene: Scene, speed: float, modes: int) -> None:
             f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
             "degree of its properties, the less"
         )
-
-
-def _check_model(scene: Scene) -> None:
-    """Refuse, by name, what the theorem does not cover."""
-    bound = "bounds are known for an undamped slender beam on a clamped root"
-    for name in ("shear", "rotary_inertia", "stretch"):
-        if getattr(scene.physics, name):
-            raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
-    if scene.damping_ratio:
-        raise InvalidValue("damping_ratio", scene.damping_ratio, bound, "give 0")
-    springs = {name: getattr(scene.mount, name) for name in _SPRINGS[: scene.physics.planes]}
-    for name, value in springs.items():
-        if np.isfinite(value):
-            raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
 
 
 def _widen(values: np.ndarray, units: int) -> np.ndarray:

@@ -13,6 +13,7 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
+_SPRINGS = "root_stiffness", "second_root_stiffness"
 _QUARTER = math.pi / 2
 _ROUNDING = 1e-15  # of the number of quarter turns of a twist
 
@@ -48,20 +49,36 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     return _bending(scene, first, angle), _bending(scene, second, across)
 
 
-def refuse_coupled_planes(scene: Scene, speed: float) -> None:
-    """Refuse two planes of bending that the twist couples, or the bending angle at a speed other than 0.
+def refuse_uncovered(scene: Scene, speed: float) -> None:
+    """Refuse, by name, what the theorem of `beamdyn.spectrum.bounds` does not cover.
 
     Raises
     ------
     InvalidValue
         With the remedy.
     """
+    bound = "bounds are known for an undamped slender beam on a clamped root"
+    for name in ("shear", "rotary_inertia", "stretch"):
+        if getattr(scene.physics, name):
+            raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
+    if scene.damping_ratio:
+        raise InvalidValue("damping_ratio", scene.damping_ratio, bound, "give 0")
+    springs = {name: getattr(scene.mount, name) for name in _SPRINGS[: scene.physics.planes]}
+    for name, value in springs.items():
+        if math.isfinite(value):
+            raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
+    if scene.physics.planes == 2:
+        _refuse_coupled_planes(scene, speed)
+
+
+def _refuse_coupled_planes(scene: Scene, speed: float) -> None:
+    """Refuse two planes of bending that the twist couples, or the bending angle at a speed other than 0."""
     bound = "bounds of two planes are known where nothing couples them"
-    if scene.physics.planes == 2 and _quarter_turns(scene.beam) is None:
+    if _quarter_turns(scene.beam) is None:
         remedy = "leave it out, or model one plane"
         raise InvalidValue("twist", scene.beam.tip_twist, bound, remedy, "rad", where=" at the tip")
     angle = scene.mount.bending_angle
-    if scene.physics.planes == 2 and speed and 0.0 not in exact_cos_sin(angle):
+    if speed and 0.0 not in exact_cos_sin(angle):
         remedy = "give 0 or a quarter turn, or speed = 0, or model one plane"
         raise InvalidValue("bending_angle", angle, bound, remedy, "rad")
 

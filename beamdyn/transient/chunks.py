@@ -11,12 +11,13 @@ import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
-from beamdyn.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.batch import integrate_batch
+from beamdyn.transient.model_of_basis import choose_for_basis
 from beamdyn.transient.record_steps import is_record
 from beamdyn.transient.simulate import TransientRequest
 from beamdyn.transient.step_size import StepSize, TooManySteps
@@ -57,8 +58,7 @@ class SweepRequest(FieldsOnly):
     @cached_property
     def model(self) -> Model:
         """The discretized scene, chosen for the modal basis and the tolerance."""
-        modes, target = self.basis.modes or 1, 1e-3 * self.tolerance
-        return choose_model(self.scene, self.discretization, np.array(self.basis.speeds), modes, target)
+        return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
 
 
 class CaseResult(NamedTuple):

@@ -19,7 +19,7 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
+from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import (
     FEWEST_MODES,
     SPEED_SAMPLES,
@@ -32,6 +32,7 @@ from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_road
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
+from beamdyn.transient.model_of_basis import choose_for_basis
 from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.scipy_integrators import check_method, integrate_by_solve_ivp
 from beamdyn.transient.step_size import TOLERANCES, TooManySteps, integrate
@@ -452,8 +453,7 @@ class TransientRequest(FieldsOnly):
     @cached_property
     def model(self) -> Model:
         """The discretized scene, chosen for the modal basis and the tolerance."""
-        modes, target = self.basis.modes or 1, 1e-3 * self.tolerance
-        return choose_model(self.scene, self.discretization, np.array(self.basis.speeds), modes, target)
+        return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
 
     def _integrate(self, system: ModalSystem, y0: np.ndarray) -> tuple[Path, float, str]:
         """Integrate: the path, its time-integration error [m], and the integrator's name."""

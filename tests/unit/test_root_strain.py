@@ -142,3 +142,41 @@ def test_error_on_a_sampled_motion() -> None:
     times = np.linspace(0, 1, 400)
     distance = np.abs(rough.root_strain(times) - tight.root_strain(times)).max()
     assert 0 < distance <= rough.root_strain_error < 0.1 * np.abs(tight.root_strain(times)).max()
+
+
+@pytest.mark.parametrize("springs", [(math.inf, math.inf), (300.0, 200.0), (300.0, math.inf)])
+@pytest.mark.parametrize("twist", [None, (0.4, 0.9)])
+@pytest.mark.parametrize(
+    "physics", [bd.Physics(planes=2), bd.Physics(shear=True), bd.Physics(2, True, True)], ids=str
+)
+def test_weight_in_two_planes(
+    physics: bd.Physics, twist: tuple[float, float] | None, springs: tuple[float, float]
+) -> None:
+    """The moment of the weights about the axis of bending of the section at the root, with a few modes."""
+    if physics.planes == 1 and twist:
+        twist = None  # a beam of one plane does not use it
+    beam = bd.Beam.from_stiffness(
+        LENGTH,
+        MASS,
+        STIFFNESS,
+        outer_fibre=FIBRE,
+        tip=BODY,
+        second_bending_stiffness=4 * STIFFNESS,
+        twist=twist and bd.Table([0, 1], twist),
+        shear_stiffness=1e4,
+        second_shear_stiffness=2e4,
+        rotary_inertia=0.02,
+        second_rotary_inertia=0.05,
+    )
+    scene = replace(HANGING, beam=beam, mount=bd.Mount(0.0, 0.0, 0.5, *springs), physics=physics)
+    run = bd.simulate(scene, 0.1, 3, initial="equilibrium")
+    moment = -9.81 * (MASS * LENGTH**2 / 2 + BODY.mass * (LENGTH + BODY.offset))
+    angle = 0.5 + (twist[0] if twist else 0.0)
+    expected = moment * math.cos(angle) * FIBRE / STIFFNESS
+    assert run.root_strain([0.05])[0] == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_hinge_has_no_moment() -> None:
+    scene = replace(HANGING, mount=bd.Mount(0.0, math.pi, 0.0, 0.0), motion=bd.SpinUp(4.0, 0.3), gravity=0.0)
+    run = bd.simulate(replace(scene, mount=bd.Mount(0.5, math.pi, 0.0, 0.0)), 0.5, 3)
+    assert not run.root_strain(run.t).any()

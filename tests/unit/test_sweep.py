@@ -202,3 +202,27 @@ def test_lambdas_are_refused_by_stores_and_pools(where, tmp_path):
     with pytest.raises(ValueError, match="def at the top of a module"):
         bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW, **{where: given[where]})
     assert not (tmp_path / "store").exists()
+
+
+def test_peaks_in_two_planes_are_those_of_single_transients(tmp_path):
+    """The magnitude of a vector and its components; a store keeps them; a plane without loads stays."""
+    beam = bd.Beam.from_stiffness(1.2, 2.0, 60.0, second_bending_stiffness=900.0, twist=0.5)
+    mount = bd.Mount(0.3, 2.6, np.pi / 2)
+    motion = bd.SpinUp(9.0, 0.3)
+    scene = bd.Scene(beam, mount, motion, damping_ratio=0.01, physics=bd.Physics(planes=2))
+    for given in (scene, replace(scene, beam=replace(beam, twist=None))):
+        found = bd.sweep(given, [3.0, 7.0, 9.0], (0.2, 0.5), modes=4, store=tmp_path)
+        again = bd.sweep(given, [3.0, 7.0, 9.0], (0.2, 0.5), modes=4, store=tmp_path)
+        assert again.peaks_by_direction.tobytes() == found.peaks_by_direction.tobytes()
+        assert found.peaks_by_direction.shape == (3, 2)
+        for k, speed in enumerate(found.speeds):
+            run = bd.simulate(replace(given, motion=motion.with_speed(speed)), 0.5, 4, 1e-8)
+            allowed = found.time_error[k] + 1e-8 * run.largest
+            assert abs(found.peaks[k] - run.peak(0.2, 0.5)) <= allowed
+            for direction in (0, 1):
+                peak = run.peak(0.2, 0.5, direction)
+                assert abs(found.peaks_by_direction[k, direction] - peak) <= allowed
+            assert found.peaks[k] >= found.peaks_by_direction[k].max() > 0
+    assert not found.peaks_by_direction[:, 0].any()  # straight, and out of the plane
+    labels = [text.get_text() for text in found.plot().get_legend().get_texts()]
+    assert labels == ["magnitude", "out of the plane of rotation (flap)", "in the plane of rotation (edge)"]

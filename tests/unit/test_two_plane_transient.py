@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 import beamdyn as bd
 from beamdyn.scene.motion import MotionSample
+from beamdyn.transient.trajectory import Trajectory
 
 LENGTH, MASS, STIFFNESS, SECOND = 1.2, 2.0, 60.0, 900.0
 TWIST = P([0.3, 0.8])
@@ -157,6 +158,7 @@ def test_second_route() -> None:
 def test_energy_is_constant_at_steady_speed(physics: bd.Physics) -> None:
     scene = replace(SCENE, physics=physics, motion=bd.SteadyRotation(7.0), gravity=0.0)
     run = bd.simulate(scene, 2.0, 5)
+    assert isinstance(run.path, Trajectory)
     segment = run.path.segments[0]
     ends = segment.start + segment.h * np.arange(0, len(segment.acceleration), 3)
     kinetic = (run.velocities**2).sum(axis=1).max() / 2
@@ -219,3 +221,27 @@ def test_a_plane_that_nothing_excites_costs_nothing() -> None:
         assert (run.tip, run.tip_across)[1 - still].any()
     shaken = bd.simulate(replace(blade, mount=mount, motion=TUMBLING), 0.5, 3)
     assert shaken.system.size == 6
+
+
+def test_a_hinge_at_rest_has_no_equilibrium_but_moves() -> None:
+    """Its error is covered although its frequency is 0 where it starts."""
+    hinged = replace(SCENE, mount=bd.Mount(0.3, math.pi, 0.0, 0.0), gravity=0.0, damping_ratio=0.01)
+    scene = replace(hinged, beam=beam(), motion=bd.SpinUp(9.0, 0.3))
+    with pytest.raises(ValueError, match=r"initial.*turns freely on its hinge.*root_stiffness"):
+        bd.simulate(scene, 0.5, 3, initial="equilibrium")
+    run, fine = bd.simulate(scene, 0.5, 3, 1e-4), bd.simulate(scene, 0.5, 3, 1e-9)
+    t = np.linspace(0, 0.5, 201)
+    assert run.time_error <= 1e-4 * run.largest
+    assert np.abs(run.deflection(t) - fine.deflection(t)).max() <= run.time_error + fine.time_error
+    assert np.isfinite(run.energy(t)).all()
+
+
+def test_damped_shear_without_its_own_mass() -> None:
+    """Modes at rest and at speed, from equations whose mass is singular."""
+    scene = replace(SCENE, physics=bd.Physics(planes=2, shear=True), damping_ratio=0.02)
+    spun = replace(scene, motion=bd.SpinUp(9.0, 0.3))
+    run, tight = bd.simulate(spun, 0.5, tolerance=1e-3), bd.simulate(spun, 0.5, 12, 1e-8)
+    assert run.mode_error <= 1e-3 * run.largest
+    t = np.linspace(0, 0.5, 201)
+    errors = [run.deflection(t, direction) - tight.deflection(t, direction) for direction in (0, 1)]
+    assert np.hypot(*errors).max() <= run.time_error + run.mode_error
