@@ -1,6 +1,7 @@
 """Whether the stated errors of transients cover the true ones.
 
-Run: python -m benchmarks.stated_transient_errors [--scenes N].  Random scenes in motion.  The
+Run: python -m benchmarks.stated_transient_errors [--scenes N] [--physics].  Random scenes in motion; with
+--physics, of two planes, twist, shear, rotary inertia and springs in all combinations.  The
 time-integration error is measured against DOP853 of `solve_ivp`, or where that takes too long against our
 own steps at a tolerance of 1e-11; the modal truncation error against many modes at three speeds in a large
 basis.
@@ -10,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -22,6 +23,7 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.transient.simulate import Transient
+from benchmarks.cases.random_physics import random_still_scene
 from benchmarks.cases.random_scenes import random_beam
 from benchmarks.rows import Row, show
 
@@ -32,6 +34,7 @@ _DOP853 = 5e3  # largest phase angle of the fastest mode up to which DOP853 is t
 SEED = 7
 _ROUNDING = 1e-8  # of the references, over the largest deflection
 _TIMES = 2000  # at which tips are compared
+_SOFTEST = 0.1  # spring at the root, over EI/L: with a softer one the first period has very many of others
 
 
 @dataclass(frozen=True)
@@ -52,15 +55,29 @@ def random_run(rng: np.random.Generator) -> dict:
         setting_angle=rng.choice([0.0, np.pi, rng.uniform(-np.pi, np.pi)]),
         bending_angle=rng.choice([0.0, rng.uniform(-np.pi, np.pi)]),
     )
-    still = bd.Scene(
-        beam,
-        mount,
+    return _set_in_motion(rng, bd.Scene(beam, mount), (0.5, 1.3))
+
+
+def random_physics_run(rng: np.random.Generator) -> dict:
+    """The same with all physics; clamped or on springs from a tenth of EI/L; 2 to 6 periods."""
+    scene = random_still_scene(rng)
+    least = _SOFTEST * float(scene.beam.bending_stiffness(np.zeros(1))[0]) / scene.beam.length
+    stiff = (k if k >= least else np.inf for k in scene.mount.root_stiffnesses)
+    springs = dict(zip(("root_stiffness", "second_root_stiffness"), stiff, strict=True))
+    return _set_in_motion(rng, replace(scene, mount=replace(scene.mount, **springs)), (0.3, 0.8))
+
+
+def _set_in_motion(rng: np.random.Generator, scene: bd.Scene, periods: tuple[float, float]) -> dict:
+    """Arguments of `simulate` for a scene that is given damping, gravity and motion over 10^periods."""
+    beam = scene.beam
+    still = replace(
+        scene,
         damping_ratio=rng.choice([0.0, 10 ** rng.uniform(-4, -1)]),
         gravity=rng.choice([0.0, 9.81]),
     )
     first = 2 * np.pi * bd.natural_modes(still, 0.0, 1).frequency[0]
     speed = min(rng.uniform(0, 0.9) * bd.critical_speed(still), 10 ** rng.uniform(-1.5, 0.7) * first)
-    t_end = 2 * np.pi / first * 10 ** rng.uniform(0.5, 1.3)
+    t_end = 2 * np.pi / first * 10 ** rng.uniform(*periods)
     return {
         "scene": replace(still, motion=random_motion(rng, speed, t_end, beam.length)),
         "t_end": float(t_end),
@@ -85,9 +102,9 @@ def random_motion(rng: np.random.Generator, speed: float, t_end: float, length: 
     return bd.RollingWheel(radius, rotation, road if rng.integers(4) else None)
 
 
-def measure(number: int, seed: int) -> Case:
+def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] = random_run) -> Case:
     """Stated and true errors of the run with this number."""
-    given = random_run(np.random.default_rng([seed, number]))
+    given = draw(np.random.default_rng([seed, number]))
     t = np.linspace(0, given["t_end"], _TIMES)
     try:
         run = bd.simulate(**given, t_eval=t)
@@ -107,7 +124,7 @@ def find_time_error(run: Transient, t: np.ndarray) -> float:
         exact = replace(run.request, method="DOP853", options=options).run()
     else:
         exact = replace(run.request, tolerance=1e-11).run()
-    return float(np.abs(run.tip - exact.deflection(t)).max())
+    return _largest_distance(run, exact, t)
 
 
 def find_mode_error(run: Transient, t: np.ndarray) -> float:
@@ -121,9 +138,15 @@ def find_mode_error(run: Transient, t: np.ndarray) -> float:
         basis=ModalBasis(max(_MANY, 2 * (run.request.basis.modes or 0)), speeds),
     )
     try:
-        return float(np.abs(few.run().deflection(t) - many.run().deflection(t)).max())
+        return _largest_distance(few.run(), many.run(), t)
     except ArithmeticError:  # with more modes it grows without bound
         return np.inf
+
+
+def _largest_distance(run: Transient, other: Transient, t: np.ndarray) -> float:
+    """Largest distance of the tips of two runs [m], both directions of bending together."""
+    each = (run.deflection(t, i) - other.deflection(t, i) for i in range(run.system.equations.planes))
+    return float(np.hypot.reduce([np.abs(difference) for difference in each]).max())
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
@@ -148,10 +171,16 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
             yield f"refused: run {case.number}", case.refusal, ""
 
 
-def measure_all(first: int, scenes: int, workers: int, seed: int) -> list[Case]:
+def measure_all(
+    first: int,
+    scenes: int,
+    workers: int,
+    seed: int,
+    draw: Callable[[np.random.Generator], dict] = random_run,
+) -> list[Case]:
     """All runs from a first one, on several processes."""
     with ProcessPoolExecutor(workers) as pool:
-        return list(pool.map(partial(measure, seed=seed), range(first, first + scenes)))
+        return list(pool.map(partial(measure, seed=seed, draw=draw), range(first, first + scenes)))
 
 
 def measure_sample() -> Iterator[Row]:
@@ -168,8 +197,10 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--physics", action="store_true", help="with all physics in all combinations")
     options = parser.parse_args()
-    cases = measure_all(options.first, options.scenes, options.workers, options.seed)
+    draw = random_physics_run if options.physics else random_run
+    cases = measure_all(options.first, options.scenes, options.workers, options.seed, draw)
     show("stated errors of transients", lambda: summarize(cases))
 
 

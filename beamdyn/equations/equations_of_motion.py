@@ -38,6 +38,8 @@ class SteadyPencil:
         Static load per squared speed.
     shift : float
         K0 + shift M is positive definite [1/s2]: 0 but for springs at the root that are softer than the beam.
+    planes : int
+        Number of directions in which the beam is deflected: in two that twist couples, stiffnesses cancel.
     """
 
     M: np.ndarray
@@ -47,13 +49,14 @@ class SteadyPencil:
     K2: np.ndarray
     f2: np.ndarray
     shift: float = 0.0
+    planes: int = 1
 
     def part(self, coordinates: np.ndarray) -> SteadyPencil:
         """Extract the equations of some coordinates, which others do not affect."""
         M, C, G, K0, K2 = (
             A[np.ix_(coordinates, coordinates)] for A in (self.M, self.C, self.G, self.K0, self.K2)
         )
-        return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift)
+        return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
 
     def undamped(self) -> SteadyPencil:
         """The same without damping and gyroscopic coupling."""
@@ -222,6 +225,7 @@ class Equations:
             K2=_sum_over_quantities(varying, rotating, (self.size, self.size)),
             f2=self.load(rotating),
             shift=self.shift,
+            planes=self.planes,
         )
 
     @cached_property

@@ -31,6 +31,7 @@ _EPS = np.finfo(float).eps
 # Rounding errors, fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of random scenes.  The
 # matrices are graded, so that the errors are smaller than their norms suggest.
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms and to its norm
+_CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
 _LARGEST_SHIFT = 256  # largest exponent of 4 of a shift: beyond it numbers overflow
@@ -201,7 +202,12 @@ class Solver:
         vector = np.abs(self.basis @ z)
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
         growth = max(1.0, self.size / self.ROUNDING_SIZE)  # rounding adds up over the functions
-        return growth * (_BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
+        rounding = growth * (_BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
+        return (
+            rounding
+            if self.pencil.planes == 1
+            else rounding + cancelled(self.pencil, speeds, squared, vector)
+        )
 
     # Gyroscopic and damped equations ----------------------------------------------------------------
 
@@ -226,6 +232,16 @@ class Solver:
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
         return s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+
+
+def cancelled(pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Relative error (S, k) of frequencies by rounding of large entries of the stiffness of a stiff plane.
+
+    The absolute values `size` of the modes have shape (S, n, k).
+    """
+    K = np.abs(pencil.K0) + speeds[:, None, None] ** 2 * np.abs(pencil.K2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return _CANCELLED * (size * (K @ size)).sum(axis=1) / np.abs(squared)
 
 
 @contextmanager

@@ -14,7 +14,15 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
 from scipy.sparse.linalg import LinearOperator, eigs, eigsh
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.modal.eigen import LEAST_STIFFNESS, Eigen, Solver, explained, forward_error, select_lowest
+from beamdyn.modal.eigen import (
+    LEAST_STIFFNESS,
+    Eigen,
+    Solver,
+    cancelled,
+    explained,
+    forward_error,
+    select_lowest,
+)
 
 _EPS = np.finfo(float).eps
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
@@ -123,7 +131,10 @@ class LargeSolver:
         mass = (size * (self._absolute_mass @ size)).sum(axis=0)
         by_terms = terms / squared
         growth = max(1.0, self.size / Solver.ROUNDING_SIZE)
-        return growth * (_BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
+        rounding = growth * (_BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
+        if self.pencil.planes == 1:
+            return rounding
+        return rounding + cancelled(self.pencil, np.array([speed]), squared, size[None])[0]
 
     @cached_property
     def _absolute_spin(self) -> np.ndarray:

@@ -1,0 +1,71 @@
+"""Frequencies of a scene by the second method, and to how many digits these are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.cases.reference.of_two_planes import blade_of_scene
+from benchmarks.cases.reference.twisted_beam import Blade, solve
+
+_ROUNDING = 2e-14  # least relative uncertainty of a squared frequency
+_FALL = 0.1  # at most, of the change by a refinement to the next: a small one may be so by accident
+_FINEST = 64  # pieces of the whole beam
+_REST = 1e-12  # squared frequency of a beam that turns freely about its hinge: rounding, over 1 + gamma^2
+_QUOTIENT = 1.0  # distance from the quotient that the extrapolation of both may leave, at worst
+
+
+@dataclass(frozen=True)
+class Known:
+    """Angular frequencies [rad/s], the lowest first, and their relative uncertainties.
+
+    A frequency of 0 has the uncertainty 0.
+    """
+
+    omega: np.ndarray
+    uncertainty: np.ndarray
+
+
+def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
+    """Those of the first mesh whose refinement changes nothing but rounding."""
+    blade, unit = blade_of_scene(scene)
+    gamma = speed * unit
+    meshes = _meshes(len(scene.beam.breakpoints) - 1)
+    squares, _ = _solve(blade, gamma, count, next(meshes))
+    change, error = np.full(count, np.nan), np.full(count, np.inf)
+    for pieces in meshes:
+        finer, rounding = _solve(blade, gamma, count, pieces)
+        before, change = change, np.abs(finer - squares)
+        squares = finer
+        next_change = np.where(change < _FALL * before, _FALL, 1.0) * change
+        error = np.maximum(next_change, rounding)
+        still = np.abs(squares) < _REST * (1 + gamma**2)
+        settled = (next_change <= rounding) | still
+        if settled.all() and np.isfinite(before).all():
+            break
+    still = np.abs(squares) < _REST * (1 + gamma**2)
+    error = np.where(still, 0.0, error / np.where(still, 1.0, np.abs(squares)))
+    return Known(np.sqrt(np.where(still, 0.0, squares)) / unit, error)
+
+
+def _solve(blade: Blade, gamma: float, count: int, pieces: int) -> tuple[np.ndarray, np.ndarray]:
+    """Squared frequencies by collocation on one mesh, and their uncertainty by rounding.
+
+    Rounding in the solution usually changes the quotient of energies twice as much as the eigenvalue:
+    both together give the value without it.
+    """
+    found = solve(blade, gamma, count, pieces)
+    apart = found.quotients - found.squares
+    squares = found.squares - apart
+    return squares, np.maximum(_ROUNDING * np.abs(squares), _QUOTIENT * np.abs(apart))
+
+
+def _meshes(segments: int) -> Iterator[int]:
+    """Numbers of pieces of each segment."""
+    pieces = 2 if segments < 3 else 1
+    while pieces < 8 or pieces * segments <= _FINEST:
+        yield pieces
+        pieces *= 2

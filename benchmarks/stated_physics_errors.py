@@ -1,0 +1,206 @@
+"""Whether the stated errors of frequencies cover the true ones, with all physics in all combinations.
+
+Run: python -m benchmarks.stated_physics_errors [--scenes N] [--discretization fem] [--save FILE].  Random
+scenes with two planes, twist, shear, rotary inertia and springs at the root, at three tolerances, against
+collocation of the differential equations, which shares nothing with the package.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.cases.random_physics import random_physics_scene
+from benchmarks.cases.reference.resolved import Known, known_frequencies
+from benchmarks.rows import Row, show, time_text
+
+_COVERED, _OVER_ESTIMATE = 0.999, 30.0  # share covered and median over-estimate that are aimed at
+SEED = 6
+TOLERANCES = (None, 1e-3, 1e-6)
+_MODES = {1: 3, 2: 5}  # by the number of planes
+_KNOWN = 1e-9  # uncertainty above which a reference says nothing
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Modes of one scene at one tolerance: stated and true errors, or why it was refused.
+
+    `known` are the uncertainties of the true errors.
+    """
+
+    number: int
+    tolerance: float | None
+    time: float
+    stated: tuple[float, ...] = ()
+    true: tuple[float, ...] = ()
+    known: tuple[float, ...] = ()
+    refusal: str = ""
+
+    @property
+    def covered(self) -> np.ndarray:
+        """Whether each stated error reaches the true one, as far as that is known; a nan does not."""
+        stated, true, known = map(np.array, (self.stated, self.true, self.known))
+        return (stated == np.inf) | (true <= stated + known)
+
+    @property
+    def resolved(self) -> np.ndarray:
+        """Whether each true error is above the uncertainty of the reference, and one is stated."""
+        stated, true, known = map(np.array, (self.stated, self.true, self.known))
+        return np.isfinite(stated) & (true > known) & (stated > 0)
+
+
+def measure(number: int, seed: int, discretization: str, tolerances: Sequence[float | None]) -> list[Answer]:
+    """Answers for the scene with this number."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of beams that no material has
+        scene, speed = random_physics_scene(np.random.default_rng([seed, number]))
+        count = _MODES[scene.physics.planes]
+        try:
+            known = known_frequencies(scene, speed, count)
+        except ArithmeticError as error:
+            return [Answer(number, None, 0.0, refusal=f"reference: {error}")]
+        return [answer(number, scene, speed, discretization, tolerance, known) for tolerance in tolerances]
+
+
+def answer(
+    number: int, scene: bd.Scene, speed: float, discretization: str, tolerance: float | None, known: Known
+) -> Answer:
+    """Solve a scene and compare it with what is known."""
+    start = perf_counter()
+    try:
+        modes = bd.natural_modes(scene, speed, len(known.omega), discretization, tolerance)
+    except (ValueError, ArithmeticError) as error:
+        return Answer(number, tolerance, perf_counter() - start, refusal=str(error))
+    time = perf_counter() - start
+    with np.errstate(divide="ignore", invalid="ignore"):
+        true = np.abs(modes.eigenvalue / (1j * known.omega) - 1)
+    true = np.where(known.omega == 0, np.where(modes.eigenvalue == 0, 0.0, np.inf), true)
+    return Answer(
+        number, tolerance, time, *(tuple(v.tolist()) for v in (modes.error, true, known.uncertainty))
+    )
+
+
+def measure_all(
+    numbers: Iterable[int],
+    workers: int,
+    seed: int,
+    discretization: str = "ritz",
+    tolerances: Sequence[float | None] = TOLERANCES,
+) -> Iterator[Answer]:
+    """All answers, on several processes, as they come."""
+    each = partial(measure, seed=seed, discretization=discretization, tolerances=tolerances)
+    with ProcessPoolExecutor(workers) as pool:
+        for answers in pool.map(each, numbers, chunksize=2):
+            yield from answers
+
+
+# Report -------------------------------------------------------------------------------------------
+
+
+def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
+    """Share of the true errors that the stated ones cover, and the over-estimate, at each tolerance."""
+    yield "random scenes", str(len({a.number for a in answers})), "3000"
+    lost = [a for a in answers if a.refusal.startswith("reference")]
+    yield "... of which the reference is not known", str(len(lost)), "0"
+    for tolerance in dict.fromkeys(a.tolerance for a in answers):
+        yield from _summarize_tolerance([a for a in answers if a.tolerance == tolerance and a not in lost])
+    for a in lost:
+        yield f"reference of scene {a.number}", a.refusal, ""
+
+
+def _summarize_tolerance(answers: Sequence[Answer]) -> Iterator[Row]:
+    found = [a for a in answers if not a.refusal]
+    covered = np.concatenate([a.covered for a in found])
+    whole = np.array([a.covered.all() for a in found])
+    stated, true = (
+        np.concatenate([np.array(getattr(a, name))[a.resolved] for a in found]) for name in ("stated", "true")
+    )
+    unresolved = np.mean(np.concatenate([np.isinf(a.stated) for a in found]))
+    yield f"tolerance {answers[0].tolerance}: frequencies covered", f"{covered.mean():.2%}", f"{_COVERED:.1%}"
+    yield "... scenes covered", f"{whole.mean():.2%} ({whole.sum()} of {whole.size})", f"{_COVERED:.1%}"
+    yield "... refused", str(len(answers) - len(found)), "0"
+    yield "... stated to be unresolved", f"{unresolved:.2%}", ""
+    bound = f"{_OVER_ESTIMATE:g}" if answers[0].tolerance is None else ""
+    yield "... median over-estimate", f"{np.median(stated / true):.1f}", bound
+    yield "... largest ratio of true to stated error", f"{np.max(true / stated, initial=0):.2g}", "1"
+    yield "... largest true error, where one is stated", f"{true.max(initial=0):.1e}", ""
+    times = np.array([a.time for a in found])
+    yield "... median and longest time", f"{time_text(np.median(times))}, {time_text(times.max())}", ""
+    for a in (a for a in found if not a.covered.all()):
+        worst = int(np.argmax(np.array(a.true) - np.array(a.stated)))
+        what = f"... not covered: scene {a.number}, mode {worst + 1}"
+        yield what, f"{a.true[worst]:.1e} > {a.stated[worst]:.1e}", f"known to {a.known[worst]:.0e}"
+    for a in (a for a in answers if a.refusal):
+        yield f"... refused: scene {a.number}", a.refusal, ""
+
+
+def measure_sample() -> Iterator[Row]:
+    """The first 100 scenes."""
+    yield from summarize(list(measure_all(range(100), 2, SEED)))
+
+
+PARTS = (measure_sample,)
+
+
+# Answers in a file, so that a long run can go on ----------------------------------------------------
+
+
+def load(path: Path) -> list[Answer]:
+    """Answers that a run has saved."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    return [_answer_of(json.loads(line)) for line in lines]
+
+
+def _answer_of(row: dict[str, Any]) -> Answer:
+    return Answer(**{key: tuple(value) if isinstance(value, list) else value for key, value in row.items()})
+
+
+def measure_and_save(path: Path, numbers: Iterable[int], **options: Any) -> list[Answer]:
+    """Measure what is not in the file yet, and add it there."""
+    before = load(path)
+    done = {a.number for a in before}
+    with path.open("a", encoding="utf-8") as file:
+        for found in measure_all([n for n in numbers if n not in done], **options):
+            file.write(json.dumps(asdict(found)) + "\n")
+            file.flush()
+    return load(path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=3000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--discretization", choices=("ritz", "fem"), default="ritz")
+    parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
+    given = parser.parse_args()
+    numbers = range(given.first, given.first + given.scenes)
+    options: dict[str, Any] = {
+        "workers": given.workers,
+        "seed": given.seed,
+        "discretization": given.discretization,
+    }
+    if given.save:
+        answers = measure_and_save(given.save, numbers, **options)
+    else:
+        answers = list(measure_all(numbers, **options))
+    show(f"stated errors of frequencies with all physics, {given.discretization}", lambda: summarize(answers))
+
+
+if __name__ == "__main__":
+    main()
