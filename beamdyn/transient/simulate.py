@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, as_floats, ascending, positive, real, real_array, within
+from beamdyn.common.checks import InvalidValue, ascending, positive, real, real_array, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result
@@ -31,6 +31,8 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_road
+from beamdyn.transient.initial_state import initial_state
+from beamdyn.transient.limits import check_growth, check_motion
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.model_of_basis import choose_for_basis
 from beamdyn.transient.root_strain import RootStrain
@@ -42,14 +44,12 @@ from beamdyn.transient.trajectory import SAMPLES, Path, largest_deflection
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as unbounded
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
 _STRAIN_MARGIN = 3.0  # error of the root strain over its distance from the refined run
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
 _MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
 _SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
 _FAST = 4.0
-_FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
 _TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried as well
 
 
@@ -365,12 +365,12 @@ class TransientRequest(FieldsOnly):
         start = perf_counter()
         motion, t_end = self.motion, self.t_end
         model = self.model
-        _check_motion(motion, t_end, model)
+        check_motion(motion, t_end, model)
         system = self._system(model.modal_equations(self.basis))
-        path, error, name = self._integrate(system, _initial_state(self.initial, system))
+        path, error, name = self._integrate(system, initial_state(self.initial, system))
         t, q, v = path.samples
         largest = largest_deflection(system.tips, path, path.start, path.end)
-        _check_growth(self.scene, largest)
+        check_growth(self.scene, largest)
         if self.t_eval is not None:
             t = self.t_eval
             q, v = path.at(t)
@@ -476,55 +476,6 @@ def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
     if t[0] < 0 or t[-1] > t_end:
         raise ValueError(f"t_eval = {t[0]:g} ... {t[-1]:g} s: times must lie in the run, 0 ... {t_end:g} s")
     return t
-
-
-def _check_motion(motion: Motion, t_end: float, model: Model) -> None:
-    """Raise a ValueError for a motion that ends early or passes the critical speed, before any long work."""
-    t = np.linspace(0, t_end, SPEED_SAMPLES)
-    speed = np.abs(motion.at(t).speed)
-    critical = model.solver.critical_speed
-    past = (speed >= critical) & (speed > 0)
-    if past.any():
-        k = int(past.argmax())
-        raise ValueError(
-            f"the motion reaches {speed[k]:.6g} rad/s at t = {t[k]:.4g} s, past the critical speed "
-            f"{critical:.6g} rad/s: the beam buckles there, and linear theory does not hold; lower the speed"
-        )
-
-
-def _check_growth(scene: Scene, largest: float) -> None:
-    """Raise an ArithmeticError for a motion that has grown without bound: its error estimates are void."""
-    length = scene.beam.length
-    if not largest <= _LIMIT_DEFLECTION * length:
-        raise ArithmeticError(
-            f"the motion grows without bound, to {largest / length:.1g} times the length: the beam buckles "
-            "under its weight, or it is parametrically unstable, and linear theory does not hold; lower "
-            "gravity or the speed, or end the run earlier"
-        )
-
-
-def _initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
-    n = system.size
-    if isinstance(initial, str):
-        if initial == "rest":
-            return np.zeros(2 * n)
-        if initial == "equilibrium":
-            return np.concatenate([_equilibrium(system), np.zeros(n)])
-        raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
-    y0 = as_floats(initial)
-    if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():
-        bound = f"give {2 * n} finite numbers, coordinates then velocities, or 'rest' or 'equilibrium'"
-        raise InvalidValue("initial", initial, bound)
-    return y0
-
-
-def _equilibrium(system: ModalSystem) -> np.ndarray:
-    """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
-    _, K, f = system.coefficients(np.zeros(()))
-    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
-        bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
-        raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
-    return np.linalg.solve(K, f)
 
 
 def _add_modes(run: Transient, tolerance: float) -> Transient:

@@ -1,0 +1,41 @@
+"""Coordinates and velocities at the beginning of a transient."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue, as_floats
+from beamdyn.transient.system import ModalSystem
+
+_FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
+
+
+def initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
+    """Coordinates and velocities (2 n,) that "rest", "equilibrium" or an array stand for.
+
+    Raises
+    ------
+    ValueError
+        If it is another word, an array of another shape, or there is no equilibrium.
+    """
+    n = system.size
+    if isinstance(initial, str):
+        if initial == "rest":
+            return np.zeros(2 * n)
+        if initial == "equilibrium":
+            return np.concatenate([_equilibrium(system), np.zeros(n)])
+        raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
+    y0 = as_floats(initial)
+    if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():
+        bound = f"give {2 * n} finite numbers, coordinates then velocities, or 'rest' or 'equilibrium'"
+        raise InvalidValue("initial", initial, bound)
+    return y0
+
+
+def _equilibrium(system: ModalSystem) -> np.ndarray:
+    """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
+    _, K, f = system.coefficients(np.zeros(()))
+    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
+        bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
+        raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
+    return np.linalg.solve(K, f)
