@@ -53,7 +53,7 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
     for note in (*frequencies.notes(), *motion.notes()):
         screen.print(note)
     screen.print("")
-    if summaries := [*others.summarize_sources()] if tables else []:
+    if summaries := [*others.summarize_sources(), *others.summarize_twisted()] if tables else []:
         screen.print(others.summary_table(summaries))
     for path in draw(folder, fig_6_sweep):
         screen.print(f"drawn: {path}", soft_wrap=True)

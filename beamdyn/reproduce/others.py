@@ -71,6 +71,36 @@ def summarize_sources() -> Iterator[Summary]:
             yield summarize(source, name, [solve_case(case, discretization) for case in cases])
 
 
+def summarize_twisted() -> Iterator[Summary]:
+    """Compare all cases of the tables of twisted and stocky beams, by what they are of and discretization."""
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for case in load("twisted_beams")["case"]:
+        groups.setdefault(case["source"], []).append(case)
+    for source, cases in groups.items():
+        for name, discretization in (("Ritz", "ritz"), ("FE", "fem")):
+            yield summarize(source, name, [_solve_twisted(case, discretization) for case in cases])
+
+
+def _solve_twisted(case: dict[str, Any], discretization: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Solve a case of twisted beams: the values of the table, ours, and our relative errors."""
+    printed = np.array(case["frequency"], dtype=float)
+    modes = natural_modes(twisted_scene(case), case["gamma"], len(printed), discretization)
+    return printed, np.abs(modes.eigenvalue), modes.error
+
+
+def twisted_scene(case: dict[str, Any]) -> Scene:
+    """Build the scene of a case of ``twisted_beams.toml``; its speed is gamma rad/s."""
+    names = ("second_bending_stiffness", "twist", "shear_stiffness", "rotary_inertia")
+    given = {name: Polynomial(case[name]) for name in names if name in case}
+    beam = Beam.from_stiffness(
+        1.0, Polynomial(case["mass_per_length"]), Polynomial(case["bending_stiffness"]), **given
+    )
+    angles = (float(np.radians(case[name])) for name in ("setting_angle_deg", "bending_angle_deg"))
+    shear, rotary = "shear_stiffness" in case, "rotary_inertia" in case
+    physics = Physics(planes=case["planes"], shear=shear, rotary_inertia=rotary)
+    return Scene(beam, Mount(case["radius"], *angles), physics=physics)
+
+
 def summary_table(rows: Sequence[Summary]) -> Group:
     """Table of summaries."""
     heads = (

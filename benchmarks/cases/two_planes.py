@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.published import load
 from benchmarks.cases.reference.twisted_beam.cases import piecewise
 
 _DATA = Path(__file__).parent / "data"
@@ -27,7 +28,7 @@ _PROPERTIES = (
 
 def models() -> dict[str, Any]:
     """The rows of the models: tables `case`, `carnegie` and `blade`."""
-    return tomllib.loads((_DATA / "models.toml").read_text(encoding="utf-8"))
+    return load("twisted_beams") | tomllib.loads((_DATA / "models.toml").read_text(encoding="utf-8"))
 
 
 def second_method_cases() -> list[dict[str, Any]]:
