@@ -67,7 +67,7 @@ def test_parseval_of_the_modal_load() -> None:
     model = Model(HARVESTER, bd.Ritz(60))
     v = model.solver.solve(np.zeros(1), 60).vector[0]
     total = 7850 * 0.01 * 0.0002 * 0.05
-    assert abs(((v.T @ model.equations.P) ** 2).sum() / total - 1) < 0.01
+    assert abs(((v.T @ model.equations.P(0)) ** 2).sum() / total - 1) < 0.01
 
 
 def test_coriolis_lowers_the_first_frequency_of_an_outward_beam() -> None:

@@ -64,7 +64,8 @@ def test_symbols_that_a_console_lacks_are_spelled_and_columns_stay_aligned(run_i
     run_into(io.TextIOWrapper(printed, "ascii"), *COMMANDS["terms"])
     lines = printed.getvalue().decode().splitlines()
     assert any("omega^2 KGB q2" in line for line in lines)
-    assert len({len(line) for line in lines[1:-1] if line}) == 1
+    rows = lines[1 : next(k for k, line in enumerate(lines) if line.startswith("Lines:"))]
+    assert len({len(line) for line in rows if line}) == 1
 
 
 def test_rules_and_titles_are_spelled_too():
