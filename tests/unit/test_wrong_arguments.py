@@ -93,7 +93,7 @@ CALLS = {
     "RollingWheel": (bd.RollingWheel, {"rolling_radius": 0.3, "speed": 5.0, "road": None}),
     "UserMotion": (bd.UserMotion, {"function": bd.SpinUp(5.0, 1.0).at, "breakpoints": (), "t_end": 1.0}),
     "Ritz": (bd.Ritz, {"functions": 14, "basis": "legendre"}),
-    "Fem": (bd.Fem, {"elements": 40, "mesh": "graded"}),
+    "Fem": (bd.Fem, {"elements": 40, "mesh": "graded", "on_each": 2}),
     "natural_modes": (
         bd.natural_modes,
         {"scene": SCENE, "speed": 5.0, "modes": 2, "discretization": "ritz", "tolerance": 0.1},
