@@ -247,16 +247,14 @@ class ResponseRequest(FieldsOnly):
         equations = model.modal_equations(self.basis)
         system = periodic_system(equations, scene.motion, speeds)
         parts = split_uncoupled(system, equations)
-        rate, rate_error, status = _decide_stability(model, parts, speeds)
+        rate, rate_error, status, undecided = _decide_stability(model, parts, speeds)
         used, c, error = _solve_parts(parts, equations.tips, self.harmonics, self.tolerance)
-        undecided = (np.abs(rate) < rate_error) & ~np.isin(status, _WITHOUT_STIFFNESS)
         stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
         amplitude = np.full(len(speeds), np.nan)
         motion = check_steady_state(scene.motion)
         harmonic, line = _combine_pairs(c, used, motion)
         amplitude[stable] = largest_over_phases(line[stable], harmonic)
-        road = np.array([motion.road_acceleration(v) for v in speeds])
         return SteadyResponse(
             speeds=speeds,
             amplitude=amplitude,
@@ -271,9 +269,7 @@ class ResponseRequest(FieldsOnly):
             line_amplitude=_along(line),
             line_amplitude_across=_across(line),
             harmonics=harmonic,
-            warnings=tuple(
-                _warnings(scene, speeds, status, amplitude, error, self.tolerance, road, undecided)
-            ),
+            warnings=tuple(_warnings(scene, speeds, status, amplitude, error, self.tolerance, undecided)),
             provenance=self._provenance(len(used), start),
             request=self,
         )
@@ -310,12 +306,13 @@ class ResponseRequest(FieldsOnly):
 
 def _decide_stability(
     model: Model, parts: list[tuple[PeriodicSystem, np.ndarray]], speeds: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Growth rates of free motion, their errors, and the status at each speed: (S,) each."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Growth rates of free motion, their errors, the status, and whether it is undecided: (S,) each."""
     free = _turns_freely(model, speeds)
     rate, error = np.full((2, len(speeds)), np.nan)
     rate[~free], error[~free] = fastest_growth([part[~free] for part, _ in parts])
-    return rate, error, _status(rate, speeds, model.solver.critical_speed, free)
+    status = _status(rate, speeds, model.solver.critical_speed, free)
+    return rate, error, status, (np.abs(rate) < error) & ~np.isin(status, _WITHOUT_STIFFNESS)
 
 
 def _status(rate: np.ndarray, speeds: np.ndarray, critical: float, free: np.ndarray) -> np.ndarray:
@@ -413,7 +410,6 @@ def _warnings(
     amplitude: np.ndarray,
     error: np.ndarray,
     tolerance: float,
-    road: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[str]:
     yield from warn_of_left_out(scene)
@@ -426,7 +422,8 @@ def _warnings(
             "that takes gravity, or a wavy road and a speed other than 0"
         )
     yield from warn_of_deflection(amplitude, scene.beam.length, speeds)
-    yield from warn_of_road(road, speeds)
+    motion = check_steady_state(scene.motion)
+    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := speeds[error > tolerance]).size:
         yield f"the harmonics are not resolved to {tolerance:g} at {list_range(at)}; see error"
     if (at := speeds[undecided]).size:
