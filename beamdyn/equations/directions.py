@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
@@ -11,6 +12,14 @@ _EDGE = "in the plane of rotation (edge)", "edge"
 _FLAP = "out of the plane of rotation (flap)", "flap"
 _BENDING = "in the direction of bending", "bending"
 _ACROSS = "across the direction of bending", "across"
+
+
+def check_direction(direction: int) -> int:
+    """Refuse what is no direction of deflection: 0 is that of bending at the root, 1 that across."""
+    if direction not in (0, 1):
+        bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
+        raise InvalidValue("direction", direction, bound)
+    return direction
 
 
 def name_directions(mount: Mount) -> tuple[tuple[str, str], tuple[str, str]]:

@@ -17,6 +17,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.equations.damping import modal_damping
+from beamdyn.equations.directions import check_direction
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Deflection, Load, Term
@@ -163,13 +164,18 @@ class Equations:
         return self._over_coordinates(lambda d: d.P, direction)
 
     def Q(self, direction: int) -> np.ndarray:
-        """Load under a unit angular acceleration in the plane of a direction [kg m], shape (n,)."""
-        return self._over_coordinates(lambda d: d.Q, direction)
+        """Load under a unit angular acceleration in the plane of a direction [kg m], shape (n,).
+
+        Oblique sections and an oblique tip body are also tilted towards the other direction.
+        """
+        of_direction = self._over_coordinates(lambda d: d.Q, direction)
+        return of_direction + self._over_coordinates(lambda d: d.Q_across, 1 - direction)
 
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
         """Gather a quantity of the functions over all coordinates; 0 for fields without that direction."""
+        check_direction(direction)
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:
@@ -348,17 +354,17 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
         shapes={name: Shape(name, np.eye(field.size)) for name, field in fields.items()},
         deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
     )
-    if hinged := [name for name, field in fields.items() if field.hinged]:
-        equations = replace(equations, shift=_find_shift(equations, hinged))
+    if turning := [name for name, field in fields.items() if field.turns_at_root]:
+        equations = replace(equations, shift=_find_shift(equations, turning))
     if not scene.damping_ratio:
         return equations
     return replace(equations, terms=(*equations.terms, *_damping(equations, scene.damping_ratio)))
 
 
-def _find_shift(equations: Equations, hinged: list[str]) -> float:
+def _find_shift(equations: Equations, turning: list[str]) -> float:
     """Find the lowest squared angular frequency of the beam with a clamped root [1/s2]."""
     pencil = equations.steady()
-    clamped = np.delete(np.arange(equations.size), [equations.blocks[name].start for name in hinged])
+    clamped = np.delete(np.arange(equations.size), [equations.blocks[name].start for name in turning])
     K, M = (A[np.ix_(clamped, clamped)] for A in (pencil.K0, pencil.M))
     return float(1 / scipy.linalg.eigh(M, K, eigvals_only=True)[-1])
 

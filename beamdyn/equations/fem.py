@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
@@ -40,13 +40,17 @@ class Fem:
 
     elements: int = 80
     mesh: Literal["graded", "uniform"] = "graded"
-    on_each: int = field(default=2, repr=False)
+    on_each: int = 2
 
     def __post_init__(self) -> None:
         remedy = "discretization='ritz' needs far fewer"
         set_fields(self, elements=count("elements", self.elements, 2, MOST_ELEMENTS, remedy))
         one_of("mesh", self.mesh, ("graded", "uniform"))
         set_fields(self, on_each=count("on_each", self.on_each, 1, MOST_ELEMENTS, remedy))
+
+    def __repr__(self) -> str:
+        on_each = "" if self.on_each == 2 else f", on_each={self.on_each}"
+        return f"Fem(elements={self.elements}, mesh={self.mesh!r}{on_each})"
 
     @property
     def order(self) -> int:

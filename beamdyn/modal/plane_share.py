@@ -8,12 +8,15 @@ from beamdyn.equations.equations_of_motion import Equations
 
 
 def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Share of the kinetic energy of modes (S, n, k) in the two directions of deflection: (S, k, 2)."""
+    """Share of the two directions in the kinetic energy of deflection of modes (S, n, k): (S, k, 2).
+
+    The energy of other fields, such as the stretch, is not counted: the two add up to 1, or to 0 without any.
+    """
     if equations.planes == 1:
         return np.tile([1.0, 0.0], (len(vectors), vectors.shape[2], 1))
     energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
     by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
-    total = energy.sum(axis=1)
+    total = by_plane[0] + by_plane[1]
     return np.stack(by_plane, axis=2) / np.where(total == 0, 1.0, total)[..., None]
 
 

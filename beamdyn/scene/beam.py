@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse, set_fields, size
 from beamdyn.common.described import Described
-from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness
+from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.profile import (
     Profile,
     Property,
@@ -202,7 +202,8 @@ class Beam:
         Warns
         -----
         UserWarning
-            If waves along the beam would run at less than 100 or more than 20 000 m/s: a mistake of units.
+            If waves along the beam would run at less than 100 or more than 20 000 m/s: a mistake of units;
+            or if the twist seems to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
         length = size("length", length, "m")
         e = size("youngs_modulus", youngs_modulus, "Pa")
@@ -211,6 +212,8 @@ class Beam:
         h = as_profile("thickness", thickness, breakpoints)
         _check_section(length, b, h)
         warn_of_material(e, rho)
+        turned = None if twist is None else to_profile("twist", twist, breakpoints)
+        warn_of_twist(turned)
         area = b * h
         flat, edge = area * h * h, area * b * b
         shear = None if poissons_ratio is None else area.scaled(e * _shear_modulus_ratio(poissons_ratio))
@@ -222,7 +225,7 @@ class Beam:
             outer_fibre=h.scaled(0.5),
             tip=tip,
             second_bending_stiffness=edge.scaled(e / 12),
-            twist=None if twist is None else to_profile("twist", twist, breakpoints),
+            twist=turned,
             shear_stiffness=shear,
             second_shear_stiffness=shear,
             rotary_inertia=flat.scaled(rho / 12),
@@ -287,7 +290,8 @@ class Beam:
         -----
         UserWarning
             If the properties do not fit together: waves along the beam would run at more than 20 000 m/s, or
-            the section's radius of gyration would exceed the outer fibre or the length.
+            the section's radius of gyration would exceed the outer fibre or the length; or if the twist seems
+            to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
 
         def profile(name: str, value: Property | None) -> Profile | None:
@@ -317,6 +321,7 @@ class Beam:
             beam.axial_stiffness,
             beam.outer_fibre,
         )
+        warn_of_twist(beam.twist)
         return beam
 
     @property

@@ -20,11 +20,26 @@ _ROUNDING = 1e-9  # relative
 def warn_of_degrees(name: str, angle: float) -> None:
     """Warn of an angle [rad] beyond half a turn with few decimals: in radians it would be written by pi."""
     if abs(angle) > math.pi and round(angle, 2) == angle:
-        sentence = (
-            f"{name} = {angle:g} rad: angles are in radians, and this is {math.degrees(angle):.4g} degrees; "
-            f"if {angle:g} degrees were meant, give math.radians({angle:g})"
-        )
-        warnings.warn(sentence, stacklevel=4)  # at the user's call of the class
+        warnings.warn(f"{name} = {_say_degrees(angle)}", stacklevel=4)  # at the user's call of the class
+
+
+def warn_of_twist(twist: Profile | None) -> None:
+    """Warn of a twist [rad] beyond one turn anywhere, or beyond half a turn with few decimals."""
+    if twist is None:
+        return
+    values = np.concatenate([*twist.end_values(), twist(np.linspace(0, 1, 33))])
+    largest = float(values[np.abs(values).argmax()])
+    few_decimals = abs(round(largest, 2) - largest) <= _ROUNDING
+    if abs(largest) > 2 * math.pi or (abs(largest) > math.pi and few_decimals):
+        warnings.warn(f"twist reaches {_say_degrees(largest)}", stacklevel=3)
+
+
+def _say_degrees(angle: float) -> str:
+    """Say what an angle [rad] is in degrees, and how degrees are given."""
+    return (
+        f"{angle:g} rad: angles are in radians, and this is {math.degrees(angle):.4g} degrees; "
+        f"if {angle:g} degrees were meant, give math.radians({angle:g})"
+    )
 
 
 def warn_of_material(youngs_modulus: float, density: float) -> None:

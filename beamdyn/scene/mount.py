@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
-from beamdyn.common.checks import angle, not_negative, set_fields
+from beamdyn.common.checks import InvalidValue, angle, not_negative, set_fields
 from beamdyn.common.described import Described
 from beamdyn.scene.doubts import warn_of_degrees
 
@@ -97,4 +97,7 @@ def _spring(name: str, value: object) -> float:
     """A stiffness of zero or more, which may be infinite [N m/rad]."""
     if isinstance(value, float) and value == math.inf:
         return value
-    return not_negative(name, value, "N m/rad", _SPRING["remedy"])
+    try:
+        return not_negative(name, value, "N m/rad", _SPRING["remedy"])
+    except InvalidValue as refusal:
+        raise replace(refusal, bound="give a number of 0 or more, or inf") from None

@@ -1,12 +1,14 @@
-"""Limits of the theory in deflection, strain and road acceleration, and the warnings beyond them."""
+"""What makes an answer doubtful: limits of the theory, and input that the model leaves out."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from beamdyn.common.checks import MOST, refuse
+from beamdyn.scene.scene import Scene
 
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
@@ -18,6 +20,17 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
     """Raise an `InvalidValue` for speeds [rad/s], the argument of that name, whose powers would overflow."""
     bound = "give at most {limit} either way"
     refuse(np.abs(speeds) > FASTEST, name, speeds, "rad/s", bound, limit=FASTEST)
+
+
+def warn_of_left_out(scene: Scene) -> Iterator[str]:
+    """Yield a warning for what is given for a second plane of bending that is not modelled."""
+    given = {
+        "twist": scene.beam.twist is not None,
+        "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
+    }
+    for name, is_given in given.items():
+        if is_given and scene.physics.planes == 1:
+            yield f"{name} is given, but physics.planes is 1: it is left out; Physics(planes=2) models it"
 
 
 def warn_of_strain(strain: float) -> Iterator[str]:

@@ -29,9 +29,7 @@ coefficients of F and EI p are columns of the matrices of a slightly larger basi
 
 **The theorem.**  Q_z(v + w) >= Q_z(v) - 2 sqrt(R a(w, w)) + q a(w, w) >= (Q_z - R / q)(v).  So, if q > 0
 and this last matrix has at most k - 1 negative eigenvalues, the k-th eigenvalue is at least z.
-Nothing is assumed of the other eigenvalues, of signs, or of the speed.
-
-docs/bounds.md has the same with its assumptions, and the allowance for rounding errors.
+Nothing is assumed of other eigenvalues, signs or the speed.  Assumptions and rounding: docs/bounds.md.
 """
 
 from __future__ import annotations

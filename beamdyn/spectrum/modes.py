@@ -26,7 +26,12 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
+from beamdyn.scene.validity import (
+    check_speeds,
+    warn_of_left_out,
+    warn_of_static_deflection,
+    warn_of_strain,
+)
 from beamdyn.spectrum.planes import first_drawn, name_directions
 
 if TYPE_CHECKING:
@@ -60,13 +65,14 @@ class Modes(Result):
         Tip deflections of the mass-normalised modes [kg^-1/2] in the direction of bending at the root and
         across it, the larger one positive; 0 across where one plane is modelled.
     plane_share : ndarray, shape (m, 2)
-        Share of each mode's kinetic energy in the two directions.
+        Share of each direction in the kinetic energy of the mode's deflection: without that of its stretch.
     load, load_across : ndarray, shape (m,)
         Modal loads under a unit root acceleration in either direction, P in modal coordinates [kg^1/2].
     angular_load, angular_load_across : ndarray, shape (m,)
         Modal loads under a unit angular acceleration in either plane, Q in modal coordinates [kg^1/2 m].
     static_deflection : float
-        Static tip deflection under the rotation [m]; nan past the critical speed.
+        Static tip deflection under the rotation [m], with its sign; its magnitude where two planes are
+        modelled; nan past the critical speed.
     axial_strain : float
         Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
     warnings : tuple of str
@@ -243,7 +249,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     Returns
     -------
     deflection : ndarray, shape (S,)
-        Static tip deflection [m]; nan from the critical speed on.
+        Static tip deflection [m], its magnitude in two planes; nan from the critical speed on.
     strain : ndarray, shape (S,)
         Largest static axial strain; nan if the axial stiffness is not given.
     """
@@ -267,6 +273,7 @@ def _warnings(
     status: np.ndarray,
     tolerance: float | None,
 ) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
     unstable = np.isin(status, ("divergence", "flutter"))
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
@@ -308,9 +315,9 @@ class Locus(Result):
     eigenvalue : ndarray of complex, shape (S, m)
         s in exp(s t) [1/s].
     plane_share : ndarray, shape (S, m, 2)
-        Share of each mode's kinetic energy in the two directions of bending at the root.
+        Share of each direction of bending at the root in the kinetic energy of the mode's deflection.
     static_deflection : ndarray, shape (S,)
-        Static tip deflection under the rotation [m]; nan past the critical speed.
+        Static tip deflection under the rotation [m], signed or a magnitude as in `Modes`.
     axial_strain : ndarray, shape (S,)
         Largest static axial strain; nan if it is unknown.
     warnings : tuple of str

@@ -22,7 +22,7 @@ from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import AnySolver, UncoupledSolver
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds
+from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
 from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, generate_harmonics
 
@@ -183,31 +183,21 @@ def resonance_speeds(
     model = choose_model(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)
-    system = periodic_system(model.equations, scene.motion, np.array([top]))
-    parts = [
-        _Part(
-            loci, *(_excitation_lines(system.part(loci.places), scene.motion, n) for n in (order, order + 1))
-        )
-        for loci in _split(model, min(top, critical), modes)
-    ]
+    parts = _find_parts(model, min(top, critical), modes, order)
     sought = [(part.loci, each) for part in parts for each in part.resonances(order)]
     crossings = [c for loci, each in sought for c in loci.crossings(*each)]
-    left_out = sum(part.count_further(order) for part in parts)
     names = str(model.discretization), str(model.coarser.discretization)
-    numbers = np.concatenate([part.loci.numbers for part in parts])
-    frequency = np.concatenate([part.loci.tracked for part in parts], axis=1)[:, np.argsort(numbers)]
-    forced, parametric = ([line for p in parts for line in p.lines[kind]] for kind in (0, 1))
-    lines = _distinct(forced), _distinct(parametric)
+    forced, parametric = (_distinct(line for p in parts for line in p.lines[kind]) for kind in (0, 1))
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
-        lines=tuple(lines[0]),
+        lines=tuple(forced),
         speeds=parts[0].loci.speeds,
-        frequency=frequency / (2 * np.pi),
+        frequency=_tracked(parts) / (2 * np.pi),
         order=order,
-        left_out=left_out,
+        left_out=sum(part.count_further(order) for part in parts),
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
-            *_warnings(scene, lines, len(crossings), order, top, critical),
+            *_warnings(scene, (forced, parametric), len(crossings), order, top, critical),
         ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
@@ -267,6 +257,22 @@ class _Part:
         return sum(self.loci.count_crossings(*each[1:]) for each in more if each not in sought)
 
 
+def _find_parts(model: Model, top: float, modes: int, order: int) -> list[_Part]:
+    """Parts that no term couples, with their lines up to an order and up to the next."""
+    motion = model.scene.motion
+    system = periodic_system(model.equations, motion, np.array([top]))
+    return [
+        _Part(loci, *(_excitation_lines(system.part(loci.places), motion, n) for n in (order, order + 1)))
+        for loci in _split(model, top, modes)
+    ]
+
+
+def _tracked(parts: list[_Part]) -> np.ndarray:
+    """Angular frequencies [rad/s] of all parts over speed, numbered at rest: shape (S, m)."""
+    numbers = np.concatenate([part.loci.numbers for part in parts])
+    return np.concatenate([part.loci.tracked for part in parts], axis=1)[:, np.argsort(numbers)]
+
+
 def _list_resonances(
     forced: list[Line], parametric: list[Line], modes: int, order: int
 ) -> list[tuple[str, Line, tuple[int, ...]]]:
@@ -284,6 +290,7 @@ def _warnings(
     top: float,
     critical: float,
 ) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
     if top >= critical:
         yield f"searched up to the critical speed, {critical:.6g} rad/s"
     names = ", ".join(dict.fromkeys(line.name for kind in lines for line in kind))

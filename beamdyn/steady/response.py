@@ -11,16 +11,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, ascending, count, positive
+from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result, plain
+from beamdyn.equations.directions import check_direction
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, list_range, warn_of_deflection, warn_of_road
+from beamdyn.scene.validity import (
+    check_speeds,
+    list_range,
+    warn_of_deflection,
+    warn_of_left_out,
+    warn_of_road,
+)
 from beamdyn.steady.excitation_phases import (
     check_steady_state,
     name_line,
@@ -156,11 +163,7 @@ class SteadyResponse(Result):
 
     def _lines(self, direction: int) -> np.ndarray:
         """Amplitudes of the lines (S, l) in a direction."""
-        if direction not in (0, 1):
-            raise InvalidValue(
-                "direction", direction, "0 is the direction of the bending angle, 1 that across"
-            )
-        return self.line_amplitude_across if direction else self.line_amplitude
+        return self.line_amplitude_across if check_direction(direction) else self.line_amplitude
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the resonance curve, and where the beam bends in two directions also that in each."""
@@ -244,19 +247,14 @@ class ResponseRequest(FieldsOnly):
         equations = model.modal_equations(self.basis)
         system = periodic_system(equations, scene.motion, speeds)
         parts = split_uncoupled(system, equations)
-        free = _turns_freely(model, speeds)
-        rate, rate_error = np.full((2, len(speeds)), np.nan)
-        rate[~free], rate_error[~free] = fastest_growth([part[~free] for part, _ in parts])
-        status = _status(rate, speeds, model.solver.critical_speed, free)
+        rate, rate_error, status, undecided = _decide_stability(model, parts, speeds)
         used, c, error = _solve_parts(parts, equations.tips, self.harmonics, self.tolerance)
-        undecided = (np.abs(rate) < rate_error) & ~np.isin(status, _WITHOUT_STIFFNESS)
         stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
         amplitude = np.full(len(speeds), np.nan)
         motion = check_steady_state(scene.motion)
         harmonic, line = _combine_pairs(c, used, motion)
         amplitude[stable] = largest_over_phases(line[stable], harmonic)
-        road = np.array([motion.road_acceleration(v) for v in speeds])
         return SteadyResponse(
             speeds=speeds,
             amplitude=amplitude,
@@ -271,17 +269,15 @@ class ResponseRequest(FieldsOnly):
             line_amplitude=_along(line),
             line_amplitude_across=_across(line),
             harmonics=harmonic,
-            warnings=tuple(
-                _warnings(scene, speeds, status, amplitude, error, self.tolerance, road, undecided)
-            ),
-            provenance=Provenance(
-                __version__,
-                f"{model.discretization}, {self.basis}, {len(used)} harmonics",
-                "without the harmonics of the last interaction",
-                perf_counter() - start,
-            ),
+            warnings=tuple(_warnings(scene, speeds, status, amplitude, error, self.tolerance, undecided)),
+            provenance=self._provenance(len(used), start),
             request=self,
         )
+
+    def _provenance(self, harmonics: int, start: float) -> Provenance:
+        method = f"{self.model.discretization}, {self.basis}, {harmonics} harmonics"
+        estimated = "without the harmonics of the last interaction"
+        return Provenance(__version__, method, estimated, perf_counter() - start)
 
     def run_refined(self) -> SteadyResponse | None:
         """Solve with more modes; None if there is no larger model."""
@@ -306,6 +302,17 @@ class ResponseRequest(FieldsOnly):
     def model(self) -> Model:
         """The discretized scene, chosen for the number of modes and the speeds."""
         return choose_model(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
+
+
+def _decide_stability(
+    model: Model, parts: list[tuple[PeriodicSystem, np.ndarray]], speeds: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Growth rates of free motion, their errors, the status, and whether it is undecided: (S,) each."""
+    free = _turns_freely(model, speeds)
+    rate, error = np.full((2, len(speeds)), np.nan)
+    rate[~free], error[~free] = fastest_growth([part[~free] for part, _ in parts])
+    status = _status(rate, speeds, model.solver.critical_speed, free)
+    return rate, error, status, (np.abs(rate) < error) & ~np.isin(status, _WITHOUT_STIFFNESS)
 
 
 def _status(rate: np.ndarray, speeds: np.ndarray, critical: float, free: np.ndarray) -> np.ndarray:
@@ -403,9 +410,9 @@ def _warnings(
     amplitude: np.ndarray,
     error: np.ndarray,
     tolerance: float,
-    road: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
     for name in ("parametric instability", *_WITHOUT_STIFFNESS):
         if (at := speeds[status == name]).size:
             yield f"{name} at {len(at)} speed(s), {list_range(at)}: no steady response"
@@ -415,7 +422,8 @@ def _warnings(
             "that takes gravity, or a wavy road and a speed other than 0"
         )
     yield from warn_of_deflection(amplitude, scene.beam.length, speeds)
-    yield from warn_of_road(road, speeds)
+    motion = check_steady_state(scene.motion)
+    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := speeds[error > tolerance]).size:
         yield f"the harmonics are not resolved to {tolerance:g} at {list_range(at)}; see error"
     if (at := speeds[undecided]).size:

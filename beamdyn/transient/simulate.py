@@ -17,7 +17,7 @@ from beamdyn.common.checks import InvalidValue, ascending, positive, real, real_
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import (
@@ -30,7 +30,7 @@ from beamdyn.modal.modal_basis import (
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import warn_of_deflection, warn_of_road
+from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.initial_state import initial_state
 from beamdyn.transient.limits import check_growth, check_motion
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
@@ -166,7 +166,7 @@ class Transient(Result):
         The direction is 0 for that of bending at the root, 1 for that across, in which a beam of one plane
         is rigid.
         """
-        direction, xi = _direction(direction), np.asarray(x) / self.scene.beam.length
+        xi = np.asarray(x) / self.scene.beam.length
         return self.at(t)[0] @ self.system.equations.deflection(xi, direction=direction)
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
@@ -224,10 +224,9 @@ class Transient(Result):
         """
         _check_window(start, end, self.path)
         if direction is None:
-            tips = self.system.tips
-        else:
-            tips = (self.system.tip, self.system.equations.tip_across)[_direction(direction)][None]
-        return largest_deflection(tips, self.path, start, end)
+            return largest_deflection(self.system.tips, self.path, start, end)
+        tip = (self.system.tip, self.system.equations.tip_across)[check_direction(direction)]
+        return largest_deflection(tip[None], self.path, start, end)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
@@ -246,14 +245,6 @@ class Transient(Result):
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)
         write_series(path, x, t, self.shape(x, t), force=force, across=self.shape(x, t, 1))
-
-
-def _direction(direction: int) -> int:
-    """Refuse what is no direction of deflection."""
-    if direction not in (0, 1):
-        bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
-        raise InvalidValue("direction", direction, bound)
-    return direction
 
 
 def _check_window(start: float, end: float, path: Path) -> None:
@@ -495,6 +486,7 @@ def _work(run: Transient) -> float:
 
 
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
     yield from warn_of_deflection(np.array([largest]), scene.beam.length)
     if scene.motion is not None:
         road = scene.motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]

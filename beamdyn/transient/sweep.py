@@ -29,7 +29,7 @@ from beamdyn.modal.modal_basis import (
 )
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_road
+from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
@@ -324,6 +324,7 @@ def _assemble_result(
 
 def _warnings(sweep: Sweep, tolerance: float) -> Iterator[str]:
     speeds, motion = sweep.speeds, sweep.scene.motion
+    yield from warn_of_left_out(sweep.scene)
     if (at := speeds[np.array([s != DONE for s in sweep.status])]).size:
         yield f"{len(at)} of {len(speeds)} cases failed, at {list_range(at)}: see status"
     yield from warn_of_deflection(sweep.largest, sweep.scene.beam.length, speeds)

@@ -19,16 +19,14 @@ from numpy.polynomial import Polynomial
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from beamdyn.equations.discretization import CLAMPED, FIXED
 from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
+from tests.invariants.power_spaces import BENDING, STRETCH, PowerSeries
 
-BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
-STRETCH = (1, 2)
 FIELDS = ("bending",) * len(BENDING) + ("stretch",) * len(STRETCH)
 RTOL = 1e-12
 
@@ -288,72 +286,6 @@ def derived_loads():
 
 
 # The same beam in beamdyn -------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Powers:
-    """Space of the functions x^k, with exact integrals of polynomial weights."""
-
-    powers: tuple
-    length: float
-
-    @property
-    def size(self):
-        return len(self.powers)
-
-    def functions(self, order):
-        return [self.length**k * Polynomial([0] * k + [1]).deriv(order) for k in self.powers]
-
-    def gram(self, weight, order):
-        phi = self.functions(order)
-        return np.array([[over_the_beam(weight, p * q) for q in phi] for p in phi])
-
-    def load(self, weight, order=0):
-        return np.array([over_the_beam(weight, p) for p in self.functions(order)])
-
-    def end(self, order):
-        return np.array([p(1.0) for p in self.functions(order)])
-
-    def evaluate(self, xi, order=0):
-        return np.array([p(xi) for p in self.functions(order)])
-
-
-@dataclass(frozen=True)
-class PowerSpaces:
-    length: float
-
-    def functions(self, conditions):
-        return Powers({CLAMPED: BENDING, FIXED: STRETCH}[conditions], self.length)
-
-    def product(self, weight, rows, columns, orders=(0, 0)):
-        each = zip((rows, columns), orders, strict=True)
-        first, second = (self.functions(conditions).functions(order) for conditions, order in each)
-        pairs = [[p * q for q in second] for p in first]
-        return np.array([[over_the_beam(weight, pq) for pq in row] for row in pairs])
-
-
-@dataclass(frozen=True)
-class PowerSeries:
-    """The discretization."""
-
-    def spaces(self, beam):
-        return PowerSpaces(beam.length)
-
-    def coarser(self):
-        return self
-
-    def finer(self):
-        return None
-
-    def fits(self, modes):
-        return True
-
-
-def over_the_beam(weight, p):
-    """Integral of a profile of one segment times a polynomial over xi."""
-    series = np.polynomial.Legendre(weight.coefficients[0], domain=[0, 1]).convert(kind=Polynomial)
-    whole = (series * p).integ()
-    return whole(1.0) - whole(0.0)
 
 
 @dataclass(frozen=True)

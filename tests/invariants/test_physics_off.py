@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
+import scipy.linalg
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
+from beamdyn.modal import eigen, large
+from beamdyn.spectrum import buckling, critical
 from benchmarks.cases.scenes import ROLLING
 
 STIFFNESS = bd.Table((0, 0.4, 1), (2e-3, 1.5e-3, 1e-3))
@@ -38,16 +42,24 @@ ANALYSES: dict[str, Callable[[bd.Scene], list[np.ndarray | float]]] = {
     "resonances": lambda s: [np.array([c.speed for c in bd.resonance_speeds(s, 60.0)])],
     "steady": lambda s: [(r := bd.steady_response(s, SPEEDS)).amplitude, r.growth_rate, r.bound],
 }
-FACTORIZATIONS = ("cholesky", "eigh", "eigvalsh", "solve", "eig")
+FACTORIZATIONS: dict[ModuleType, tuple[str, ...]] = {  # by the module in which the name is looked up
+    np.linalg: ("cholesky", "eigh", "eigvalsh", "solve", "eig"),
+    scipy.linalg: ("eigh", "eig", "cho_factor", "solve_triangular"),
+    critical: ("eigh",),
+    buckling: ("eigh",),
+    large: ("cho_factor", "solve_triangular"),
+    eigen: ("solve_triangular",),
+}
 
 
 def run(analysis: str, beam: bd.Beam) -> tuple[list[np.ndarray | float], Counter[tuple[str, object]]]:
     """Results, and how often matrices of each size were factorized."""
     counted: Counter[tuple[str, object]] = Counter()
     with pytest.MonkeyPatch.context() as patch:
-        for name in FACTORIZATIONS:
-            original = getattr(np.linalg, name)
-            patch.setattr(np.linalg, name, counting(name, original, counted))
+        for module, names in FACTORIZATIONS.items():
+            for name in names:
+                original = getattr(module, name)
+                patch.setattr(module, name, counting(f"{module.__name__}.{name}", original, counted))
         return ANALYSES[analysis](replace(ROLLING, beam=beam)), counted
 
 

@@ -86,10 +86,13 @@ def test_second_method_on_carnegies_blade() -> None:
 
 
 def test_carnegies_theory_and_experiment_are_of_the_same_blade() -> None:
-    """His theory approximates the same model: 1 %; the measured blade was not ideally clamped."""
+    """His theory approximates the same model: 1 %.
+
+    The measured blade was not ideally clamped: his own theory is above his experiment by 3.8 to 9.4 %.
+    """
     found = carnegie_frequencies()
     np.testing.assert_allclose(found, numbers(CARNEGIE["printed"]), rtol=0.01)
-    np.testing.assert_allclose(found, numbers(CARNEGIE["measured"]), rtol=0.11)
+    np.testing.assert_allclose(found, numbers(CARNEGIE["measured"]), rtol=1.094 * 1.01 - 1)  # both
 
 
 # beamdyn ------------------------------------------------------------------------------------------

@@ -73,8 +73,8 @@ class Deflection:
         Trial functions phi_i of x/L.
     P : ndarray, shape (n,)
         Load under a unit root acceleration in the direction of the deflection [kg].
-    Q : ndarray, shape (n,)
-        Load under a unit angular acceleration in its plane [kg m].
+    Q, Q_across : ndarray, shape (n,)
+        Loads under a unit angular acceleration in its plane, and in that of the other direction [kg m].
     direction : int
         0 for deflection in the direction of the bending angle, 1 for the direction across.
     """
@@ -82,6 +82,7 @@ class Deflection:
     space: Space
     P: np.ndarray
     Q: np.ndarray
+    Q_across: np.ndarray
     direction: int = 0
 
 
@@ -99,7 +100,7 @@ class FieldEquations:
         Terms of the right-hand side.
     deflection : Deflection or None
         Deflection of the beam by the coordinates; None for a field that does not deflect it.
-    hinged : bool
+    turns_at_root : bool
         Whether the first coordinate turns the beam about its root.
     """
 
@@ -107,7 +108,7 @@ class FieldEquations:
     terms: tuple[Term, ...]
     loads: tuple[Load, ...]
     deflection: Deflection | None = None
-    hinged: bool = False
+    turns_at_root: bool = False
 
 
 class Field(ABC):
@@ -123,7 +124,7 @@ class Field(ABC):
        the beam transversely, the `Deflection`.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
        every quantity.  Its own stiffness, under the quantity "unity", is positive definite; only that of a
-       field that is `hinged` may lack stiffness against its first coordinate.
+       field that `turns_at_root` may lack stiffness against its first coordinate.
     5. Of two coupled fields, one supplies the coupling terms in the equations of both.
     6. `explanations` has, by the name of each term and load, its symbol, the reason for its presence and its
        conditions, for `beamdyn.terms`.

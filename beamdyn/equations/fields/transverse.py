@@ -213,7 +213,7 @@ class TransverseField(Field):
             if partner.is_modelled(scene):
                 above = [*self._terms_with(Pair(Trial(partner, scene, spaces), own))]
                 terms += [*above, *map(_transposed, above)]
-        deflection = Deflection(own.space, own.P, own.Q, self.direction)
+        deflection = Deflection(own.space, own.P, own.Q, own.tilting_load(1 - self.direction), self.direction)
         turning = own.conditions.held == 1 and self.rotates
         return FieldEquations(own.space.size, (*terms,), (*_loads(own),), deflection, turning)
 
