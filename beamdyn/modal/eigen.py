@@ -20,6 +20,9 @@ from scipy.linalg import solve_triangular
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.massless import condense, has_massless
 from beamdyn.modal.springs import (
+    find_free_turns,
+    insert_free_turns,
+    leave_out_slowest,
     remove_shift,
     softening_of_graded,
     softening_on_springs,
@@ -226,12 +229,23 @@ class Solver:
             gyroscopic = not self.pencil.C.any() and stiffness.min() > 0
             solve = _solve_gyroscopic if gyroscopic else _solve_general
             inverse, y = solve(self.mass / time**2, damping / time, stiffness)
+        turns = self._free_turns(speed)
+        if turns.size:
+            inverse, y = leave_out_slowest(inverse, y, 2 * turns.shape[1])  # each turn has 0 twice
         s, z = select_lowest(inverse * time, y[:n], count)
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), self.mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(self.growth)).max() / np.abs(stiffness).min()
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
-        return s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+        modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+        return insert_free_turns(turns, *modes, count) if turns.size else modes
+
+    def _free_turns(self, speed: float) -> np.ndarray:
+        """Mass-normalised turns about hinges (n, r) on which neither stiffness nor damping acts."""
+        if not self.pencil.shift:
+            return np.empty((self.size, 0))
+        conservative = self._solve_conservative(np.array([speed]), min(self.pencil.planes, self.size))
+        return find_free_turns(self.pencil, conservative.eigenvalue[0], conservative.vector[0])
 
 
 def cancelled(pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ _LOW = 0.1  # squared frequency relative to the shift, below which its removal w
 _ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it
 _BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
 _GRADED = 1e-6  # lowest eigenvalue of a stiffness of unit diagonal, above which it is well-conditioned
+_UNDAMPED = 1e-6  # damping of a turn over the frequency of a clamped beam: a root of rounding
 _SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
@@ -59,6 +60,43 @@ def remove_shift(
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
     nonzero = np.where(removed == 0, 1.0, np.abs(removed))
     return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
+
+
+def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Select the modes (n, r) without stiffness on which damping does not act either.
+
+    They have the eigenvalue 0 twice, which rounding of general equations would part by its square root.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Equations with damping or gyroscopic terms, which do no work on a mode.
+    eigenvalue : ndarray, shape (k,)
+        Eigenvalues of the lowest modes without these [1/s].
+    v : ndarray, shape (n, k)
+        Their mass-normalised vectors.
+    """
+    damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
+    return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
+
+
+def leave_out_slowest(inverse: np.ndarray, y: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Leave out a number of the smallest eigenvalues of 1/s (m,) and vectors (n, m)."""
+    kept = np.sort(np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - number])
+    return inverse[kept], y[:, kept]
+
+
+def insert_free_turns(
+    turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Insert turns (n, r) of eigenvalue 0 into the lowest modes, after those that grow without oscillation."""
+    growing = int(((s.imag == 0) & (s.real > 0)).sum())
+    zeros, unknown = np.zeros(turns.shape[1]), np.full(turns.shape[1], np.inf)
+    return (
+        np.insert(s, [growing], zeros)[:count],
+        np.hstack([v[:, :growing], turns, v[:, growing:]])[:, :count],
+        np.insert(rounding, [growing], unknown)[:count],
+    )
 
 
 def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
