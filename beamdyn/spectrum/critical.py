@@ -201,7 +201,7 @@ def _list_models(
 
 @dataclass(frozen=True)
 class _Found:
-    """Critical speed of a model [rad/s], its relative error by a coarser model, and what rounding has in it."""
+    """Critical speed of a model [rad/s], its relative error by a coarser model, and rounding's part in it."""
 
     model: Model
     coarse: Model

@@ -220,10 +220,10 @@ def _choose_resolved(
 ) -> Model:
     """Choose a model; of assumed modes where finite elements do not resolve springs at the root."""
     model = choose_model(scene, discretization, speeds, modes)
-    if discretization == "fem" and model.equations.shift:
-        if not np.isfinite(solve_with_error(model, speeds, modes).error).all():
-            return choose_model(scene, "ritz", speeds, modes)
-    return model
+    if discretization != "fem" or not model.equations.shift:
+        return model
+    resolved = np.isfinite(solve_with_error(model, speeds, modes).error).all()
+    return model if resolved else choose_model(scene, "ritz", speeds, modes)
 
 
 def _check_stiffness(scene: Scene, critical: float) -> None:
