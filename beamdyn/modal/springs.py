@@ -89,7 +89,7 @@ def insert_free_turns(
     turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Insert turns (n, r) of eigenvalue 0 into the lowest modes, after those that diverge."""
-    growing = int(((s.imag == 0) & (s.real > 0)).sum())
+    growing = int(((np.imag(s) == 0) & (np.real(s) > 0)).sum())
     zeros, unknown = np.zeros(turns.shape[1]), np.full(turns.shape[1], np.inf)
     return (
         np.insert(s, [growing], zeros)[:count],
