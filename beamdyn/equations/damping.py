@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+_BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
+
 
 def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarray:
     """Damping matrix [kg/s] with which every mode of (K, M) has a damping ratio of 1.
@@ -17,5 +19,13 @@ def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarra
         L, scipy.linalg.solve_triangular(L, M, lower=True).T, lower=True
     )
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
-    root = (U * np.sqrt(np.maximum(mu * (1 - shift * mu), 0))) @ U.T
+    unshifted = _quotients(K, scipy.linalg.solve_triangular(L, U, trans="T", lower=True)) if shift else 1.0
+    root = (U * np.sqrt(np.maximum(mu * unshifted, 0))) @ U.T
     return 2 * L @ root @ L.T
+
+
+def _quotients(K: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Quotients v^T K v (k,), 0 within rounding: 1 - shift mu, without its loss of digits on soft springs."""
+    quotient = np.einsum("nk,nk->k", v, K @ v)
+    lost = _BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))
+    return np.where(quotient > lost, quotient, 0.0)

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 import scipy.linalg
@@ -19,7 +18,11 @@ from scipy.linalg import solve_triangular
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.massless import condense, has_massless
+from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.springs import (
+    find_free_turns,
+    insert_free_turns,
+    leave_out_slowest,
     remove_shift,
     softening_of_graded,
     softening_on_springs,
@@ -28,9 +31,7 @@ from beamdyn.modal.springs import (
 )
 
 _EPS = np.finfo(float).eps
-# Rounding errors, fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of random scenes.  The
-# matrices are graded, so that the errors are smaller than their norms suggest.
-_BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms and to its norm
+# Rounding errors beyond those of `beamdyn.modal.rounding`.
 _CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
@@ -80,8 +81,6 @@ class Solver:
         Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`.
     """
 
-    ROUNDING_SIZE: ClassVar[int] = 40  # functions above which rounding errors grow with them: measured
-
     def __init__(self, pencil: SteadyPencil) -> None:
         self.pencil = pencil
         with explained():
@@ -103,7 +102,7 @@ class Solver:
         if self.pencil.shift:
             return self._softening_on_springs[0]
         lowest = -float(self.growth[0])
-        return lowest if lowest > 2 * _BACKWARD * np.abs(self.growth).max() else 0.0
+        return lowest if lowest > 2 * BACKWARD * np.abs(self.growth).max() else 0.0
 
     @property
     def critical_speed(self) -> float:
@@ -116,7 +115,7 @@ class Solver:
         if self.pencil.shift:
             return self._softening_on_springs[1]
         softening = self.softening
-        return float(2 * _BACKWARD * np.abs(self.growth).max() / softening) if softening else np.inf
+        return float(2 * BACKWARD * np.abs(self.growth).max() / softening) if softening else np.inf
 
     @cached_property
     def _softening_on_springs(self) -> tuple[float, float]:
@@ -201,8 +200,8 @@ class Solver:
             by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
         vector = np.abs(self.basis @ z)
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
-        growth = max(1.0, self.size / self.ROUNDING_SIZE)  # rounding adds up over the functions
-        rounding = growth * (_BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
+        growth = max(1.0, self.size / ROUNDING_SIZE)  # rounding adds up over the functions
+        rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
         return (
             rounding
             if self.pencil.planes == 1
@@ -226,12 +225,23 @@ class Solver:
             gyroscopic = not self.pencil.C.any() and stiffness.min() > 0
             solve = _solve_gyroscopic if gyroscopic else _solve_general
             inverse, y = solve(self.mass / time**2, damping / time, stiffness)
+        turns = self._free_turns(speed)
+        if turns.size:
+            inverse, y = leave_out_slowest(inverse, y, 2 * turns.shape[1])  # each turn has 0 twice
         s, z = select_lowest(inverse * time, y[:n], count)
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), self.mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(self.growth)).max() / np.abs(stiffness).min()
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
-        return s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+        modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+        return insert_free_turns(turns, *modes, count) if turns.size else modes
+
+    def _free_turns(self, speed: float) -> np.ndarray:
+        """Mass-normalised turns about hinges (n, r) on which neither stiffness nor damping acts."""
+        if not self.pencil.shift:
+            return np.empty((self.size, 0))
+        conservative = self._solve_conservative(np.array([speed]), min(self.pencil.planes, self.size))
+        return find_free_turns(self.pencil, conservative.eigenvalue[0], conservative.vector[0])
 
 
 def cancelled(pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray) -> np.ndarray:
@@ -341,7 +351,7 @@ def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray
     K = shift[:, None, None] * M
     K[:, np.arange(len(M)), np.arange(len(M))] += d
     values = np.linalg.eigvalsh(K)
-    return values[:, 0] >= np.maximum(LEAST_STIFFNESS / 2, len(M) * _BACKWARD * values[:, -1])
+    return values[:, 0] >= np.maximum(LEAST_STIFFNESS / 2, len(M) * BACKWARD * values[:, -1])
 
 
 def _solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -68,7 +68,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         truncation = relative / 3 if order is not None else _ritz_error(distance, squared, model)
-    error = truncation + fine.rounding[:, :modes] + _integration_error(model, squared)
+    error = truncation + fine.rounding[:, :modes] + integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
@@ -76,7 +76,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     return EstimatedModes(model, coarse, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
 
 
-def _integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
+def integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
     """Relative error of eigenvalues by rounding of the integrals, which is that of a clamped beam's.
 
     A root that turns on soft springs has lower frequencies of the same absolute error.

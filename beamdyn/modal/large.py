@@ -23,9 +23,9 @@ from beamdyn.modal.eigen import (
     forward_error,
     select_lowest,
 )
+from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 
 _EPS = np.finfo(float).eps
-_BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
 
 
@@ -130,8 +130,8 @@ class LargeSolver:
         terms = (v * (self.pencil.K0 @ v)).sum(axis=0) + spin
         mass = (size * (self._absolute_mass @ size)).sum(axis=0)
         by_terms = terms / squared
-        growth = max(1.0, self.size / Solver.ROUNDING_SIZE)
-        rounding = growth * (_BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
+        growth = max(1.0, self.size / ROUNDING_SIZE)
+        rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
         if self.pencil.planes == 1:
             return rounding
         return rounding + cancelled(self.pencil, np.array([speed]), squared, size[None])[0]

@@ -10,12 +10,12 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
-_ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it
-_BACKWARD = 8 * _EPS  # backward error of the stiffness, relative to the sum of its terms
 _GRADED = 1e-6  # lowest eigenvalue of a stiffness of unit diagonal, above which it is well-conditioned
+_UNDAMPED = 1e-6  # damping of a turn over the frequency of a clamped beam: a root of rounding
 _SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
 
@@ -51,14 +51,51 @@ def remove_shift(
     # K2 of a turn about the root is a small difference of tension and spin softening, each as large as M.
     size = np.abs(pencil.K0) + spin * (np.abs(pencil.K2) + np.abs(pencil.M))
     quotient = np.einsum("snk,snk->sk", v, K @ v)
-    count = max(1.0, len(K[0]) / _ROUNDING_SIZE)
-    lost = count * _BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
-    lost += pencil.shift * (count * _BACKWARD) ** 2  # the quotient has the error of the vector squared
+    count = max(1.0, len(K[0]) / ROUNDING_SIZE)
+    lost = count * BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
+    lost += pencil.shift * (count * BACKWARD) ** 2  # the quotient has the error of the vector squared
     difference = squared - pencil.shift
     low = np.abs(difference) < _LOW * pencil.shift
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
     nonzero = np.where(removed == 0, 1.0, np.abs(removed))
     return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
+
+
+def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Select the modes (n, r) without stiffness on which damping does not act either.
+
+    They have the eigenvalue 0 twice, which rounding of general equations would part by its square root.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Equations with damping or gyroscopic terms, which do no work on a mode.
+    eigenvalue : ndarray, shape (k,)
+        Eigenvalues of the lowest modes without these [1/s].
+    v : ndarray, shape (n, k)
+        Their mass-normalised vectors.
+    """
+    damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
+    return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
+
+
+def leave_out_slowest(inverse: np.ndarray, y: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Leave out a number of the smallest eigenvalues of 1/s (m,) and vectors (n, m)."""
+    kept = np.sort(np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - number])
+    return inverse[kept], y[:, kept]
+
+
+def insert_free_turns(
+    turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Insert turns (n, r) of eigenvalue 0 into the lowest modes, after those that diverge."""
+    growing = int(((np.imag(s) == 0) & (np.real(s) > 0)).sum())
+    zeros, unknown = np.zeros(turns.shape[1]), np.full(turns.shape[1], np.inf)
+    return (
+        np.insert(s, [growing], zeros)[:count],
+        np.hstack([v[:, :growing], turns, v[:, growing:]])[:, :count],
+        np.insert(rounding, [growing], unknown)[:count],
+    )
 
 
 def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
@@ -83,7 +120,7 @@ def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
         return None
     losses, vectors = scipy.linalg.eigh(-K2, K0)
     loss, v = float(losses[-1]), np.abs(vectors[:, -1])
-    lost = 2 * _BACKWARD * float(v @ size @ v + np.abs(losses).max())
+    lost = 2 * BACKWARD * float(v @ size @ v + np.abs(losses).max())
     return (loss, lost / loss) if loss > lost else (0.0, np.inf)
 
 
@@ -115,10 +152,10 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
         stiffness = at_rest + squared * spin
         if lowest := _lowest_if_definite(stiffness):
             loss = float(scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1])
-            lost = 2 * _BACKWARD * float(np.abs(growth).max()) / lowest
+            lost = 2 * BACKWARD * float(np.abs(growth).max()) / lowest
             if loss <= lost:
                 return 0.0, np.inf
-            return loss / (1 + squared * loss), lost / loss + 2 * _BACKWARD / lowest
+            return loss / (1 + squared * loss), lost / loss + 2 * BACKWARD / lowest
         squared /= 4
     turn = np.linalg.eigh(at_rest)[1][:, 0]
     softened = turn @ spin @ turn < -len(growth) * _EPS * np.abs(growth).max()

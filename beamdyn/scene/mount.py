@@ -30,7 +30,7 @@ class Mount:
         0 in the plane (chordwise, lead-lag), pi/2 out of it (flapwise).
     root_stiffness : float
         Stiffness of the root against rotation by bending in the direction of the bending angle [N m/rad]:
-        inf is clamped, 0 a hinge.
+        inf is clamped, 0 a hinge; a scene takes finite ones up to 1e16 times EI/L of the beam.
     second_root_stiffness : float
         The same by bending in the direction across, where a second plane is modelled.
 

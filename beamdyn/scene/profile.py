@@ -151,6 +151,11 @@ def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> t
     return tuple((((2 * k + 1) / 2) * (legendre.legvander(t, len(t) - 1).T @ (w * values))).tolist())
 
 
+def mean(profile: Profile) -> float:
+    """Mean over the length."""
+    return float(profile.outboard_integral()(np.zeros(1))[0])
+
+
 FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # x/L itself
 ONE = Profile((0.0, 1.0), ((1.0,),))
 

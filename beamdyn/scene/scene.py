@@ -11,6 +11,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
+from beamdyn.scene.profile import mean
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,8 @@ class Scene:
     Raises
     ------
     ValueError
-        If the damping ratio is outside [0, 1), or the beam lacks a property that the physics needs.
+        If the damping ratio is outside [0, 1), the beam lacks a property that the physics needs, or a spring
+        at the root is so stiff against the beam that rounding does not tell it from a clamp.
     """
 
     beam: Beam
@@ -57,6 +59,7 @@ class Scene:
         remedy = "physics = Physics(planes=2, shear=True) models both planes and shear deformation"
         kind("physics", self.physics, Physics, remedy)
         _check_properties(self.beam, self.physics)
+        _check_springs(self.mount, self.modelled_beam)
 
     @property
     def modelled_beam(self) -> Beam:
@@ -74,6 +77,23 @@ def check_scene(scene: object) -> None:
     """Refuse what is no scene, such as a beam, as an argument of an analysis."""
     remedy = "Scene(beam, mount) makes one of a beam, load_scene(path) reads one from a file"
     kind("scene", scene, Scene, remedy)
+
+
+# Springs at the root ------------------------------------------------------------------------------
+
+_STIFFEST = 1e16  # spring over EI/L of the beam: its turn is then below the rounding of the beam's bending
+
+
+def _check_springs(mount: Mount, beam: Beam) -> None:
+    """Refuse springs beside which the stiffness of the beam is lost to rounding, where they are modelled."""
+    bending = [EI for EI in (beam.bending_stiffness, beam.second_bending_stiffness) if EI is not None]
+    for name, spring in zip(("root_stiffness", "second_root_stiffness"), mount.root_stiffnesses, strict=True):
+        modelled = name == "root_stiffness" or beam.second_bending_stiffness is not None
+        if modelled and spring < math.inf and spring > 0:
+            stiffest = _STIFFEST * max(map(mean, bending)) / beam.length
+            bound = "it must be at most {limit}, 1e16 EI/L of the beam: rounding hides the turn beyond"
+            remedy = "leave it out: the root is clamped"
+            refuse(spring > stiffest, f"mount.{name}", spring, "N m/rad", bound, remedy, limit=stiffest)
 
 
 # Properties that the physics needs ----------------------------------------------------------------

@@ -27,7 +27,7 @@ from beamdyn.modal.choice import (
     warn_of_missed_tolerance,
 )
 from beamdyn.modal.eigen import Solver
-from beamdyn.modal.error_estimate import UNRESOLVED
+from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
@@ -201,12 +201,13 @@ def _list_models(
 
 @dataclass(frozen=True)
 class _Found:
-    """Critical speed of a model [rad/s] and its relative error, by comparison with a coarser model."""
+    """Critical speed of a model [rad/s], its relative error by a coarser model, and rounding's part in it."""
 
     model: Model
     coarse: Model
     speed: float
     error: float
+    rounding: float
 
 
 def _search(models: Iterator[Model], target: float) -> _Found:
@@ -219,7 +220,7 @@ def _search(models: Iterator[Model], target: float) -> _Found:
             if found is None:
                 raise
             break
-        if np.isfinite(found.speed) and found.error <= max(target, 3 * model.solver.critical_rounding):
+        if np.isfinite(found.speed) and found.error <= max(target, 3 * found.rounding):
             break
     assert found is not None
     return found
@@ -236,10 +237,20 @@ def _compare(model: Model) -> _Found:
     fine_softening, coarse_softening = solver.softening, coarse.solver.softening
     distance = fine_softening - coarse_softening
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
-    if softening <= 0:
-        return _Found(model, coarse, np.inf, np.inf)
-    error = abs(distance) / (2 * softening) + solver.critical_rounding + model.discretization.rounding
-    return _Found(model, coarse, float(softening**-0.5), float(error) if error < UNRESOLVED else np.inf)
+    if not 0 < softening < np.inf:  # False for nan, too
+        return _Found(model, coarse, np.inf, np.inf, np.inf)
+    rounding, by_springs = solver.critical_rounding, _rounding_on_springs(model)
+    error = abs(distance) / (2 * softening) + rounding + model.discretization.rounding + by_springs
+    error = float(error) if error < UNRESOLVED else np.inf
+    return _Found(model, coarse, float(softening**-0.5), error, rounding + by_springs)
+
+
+def _rounding_on_springs(model: Model) -> float:
+    """Relative error of the critical speed by the integrals of elements, beside which springs are soft."""
+    if not (model.equations.shift and model.discretization.rounding):
+        return 0.0
+    lowest = Solver(model.equations.steady().undamped()).eigenvalues(np.zeros(1), 1)[0] ** 2
+    return float(np.max(integration_error(model, lowest))) if lowest.all() else np.inf
 
 
 def _halve(model: Model) -> Model:

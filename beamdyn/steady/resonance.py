@@ -180,7 +180,7 @@ def resonance_speeds(
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = replace(scene, damping_ratio=0.0)
-    model = choose_model(scene, discretization, np.array([0.0, top]), modes)
+    model = _choose_resolved(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)
     parts = _find_parts(model, min(top, critical), modes, order)
@@ -197,6 +197,7 @@ def resonance_speeds(
         left_out=sum(part.count_further(order) for part in parts),
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
+            *_warn_of_replacement(discretization, model),
             *_warnings(scene, (forced, parametric), len(crossings), order, top, critical),
         ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
@@ -204,18 +205,40 @@ def resonance_speeds(
     )
 
 
+def _choose_resolved(
+    scene: Scene, discretization: DiscretizationChoice, speeds: np.ndarray, modes: int
+) -> Model:
+    """Choose a model; of assumed modes where finite elements do not resolve springs at the root."""
+    model = choose_model(scene, discretization, speeds, modes)
+    if discretization != "fem" or not model.equations.shift:
+        return model
+    resolved = np.isfinite(solve_with_error(model, speeds, modes).error).all()
+    return model if resolved else choose_model(scene, "ritz", speeds, modes)
+
+
 def _check_stiffness(scene: Scene, critical: float) -> None:
     """Refuse a beam that the slightest rotation turns over about its root."""
-    if critical == 0:
-        names = ("root_stiffness", "second_root_stiffness")
-        hinged = [n for n in names if getattr(scene.mount, n) == 0]
-        raise InvalidValue(
-            f"mount.{hinged[0]}",
-            0.0,
+    if critical > 0:
+        return
+    name, spring = _softest_spring(scene)
+    bound, remedy = (
+        ("the discretization does not resolve so soft a spring", 'give a stiffer one, or "ritz"')
+        if spring
+        else (
             "the beam is unstable at any speed, and does not vibrate",
             "give the hinge a spring, or a beam that points outward",
-            "N m/rad",
         )
+    )
+    raise InvalidValue(f"mount.{name}", spring, bound, remedy, "N m/rad")
+
+
+def _softest_spring(scene: Scene) -> tuple[str, float]:
+    """Name and stiffness of the softest spring; of two alike, of that in the plane of rotation."""
+    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
+    in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
+    springs = zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False)
+    spring, _, name = min(springs)
+    return name, spring
 
 
 def _excitation_lines(
@@ -280,6 +303,12 @@ def _list_resonances(
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
     by_load = [("forced", line, (i,)) for line in forced for i in range(modes)]
     return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]
+
+
+def _warn_of_replacement(discretization: DiscretizationChoice, model: Model) -> Iterator[str]:
+    """Say that other functions than finite elements were taken."""
+    if discretization == "fem" and model.discretization.order is None:
+        yield f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
 
 
 def _warnings(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -235,6 +236,21 @@ def test_a_turn_in_the_plane_about_the_axis_is_not_softened(stiffness: float) ->
     scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(root_stiffness=stiffness))
     assert math.isinf(Model(scene, bd.Ritz(20)).solver.critical_speed)
     assert math.isinf(bd.critical_point(scene).none_below)
+
+
+@pytest.mark.parametrize("stiffness", [1e-3, 1e-6, 1e-10, 1e-13])
+@pytest.mark.parametrize("elements", ["fem", bd.Fem(20)])
+def test_errors_of_elements_on_soft_springs_cover_the_true_ones(stiffness: float, elements: Any) -> None:
+    """What rounding leaves of the integrals of elements is as large as the springs."""
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(1.0, root_stiffness=stiffness))
+    exact, found = bd.critical_point(scene), bd.critical_point(scene, elements)
+    # A straight turn in the plane is softened by a S_1 = 1/2; bending adds terms of the order of k.
+    assert exact.speed == pytest.approx(math.sqrt(2 * stiffness), rel=stiffness + 1e-12)
+    assert not math.isnan(found.speed)
+    if math.isfinite(found.error):
+        assert abs(found.speed / exact.speed - 1) <= found.error + exact.error
+    else:
+        assert found.warnings and isinstance(elements, bd.Fem)
 
 
 @pytest.mark.parametrize("physics", [bd.Physics(), bd.Physics(2), bd.Physics(2, True, True)])

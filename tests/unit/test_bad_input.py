@@ -296,6 +296,20 @@ def test_twist_in_radians_is_not_doubted(twist):
     strip(twist=twist)  # a warning fails the test
 
 
+@pytest.mark.parametrize("stiffness", [1e17, 1e50, 1e200])
+@pytest.mark.parametrize(("name", "planes"), [("root_stiffness", 1), ("second_root_stiffness", 2)])
+def test_a_spring_that_rounding_does_not_tell_from_a_clamp(name, planes, stiffness):
+    mount, physics = Mount(**{name: stiffness}), Physics(planes)
+    beam = Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=2.0)
+    says = f"mount.{name} = ", "at most 2e+16" if planes == 2 else "at most 1e+16", "leave it out"
+    refused(lambda: Scene(beam, mount, physics=physics), *says)
+
+
+def test_springs_of_a_plane_that_is_not_modelled_may_be_of_any_stiffness():
+    Scene(Beam.from_stiffness(1.0, 1.0, 1.0), Mount(second_root_stiffness=1e50))
+    Scene(Beam.from_stiffness(1.0, 1.0, 1.0), Mount(root_stiffness=0.9e16, second_root_stiffness=0.0))
+
+
 # Known gaps: the mark goes when the core refuses these ----------------------------------------------
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from io import StringIO
 
@@ -232,6 +233,37 @@ def test_a_turn_about_a_hinge_is_neutral(twist, discretization, speed: float) ->
     assert modes.frequency[0] == modes.error[0] == modes.growth_rate[0] == 0
     assert abs(2 * np.pi * modes.frequency[1] - speed) <= modes.error[1] * speed
     assert np.isfinite(modes.error).all() and not any("unstable" in text for text in modes.warnings)
+
+
+@pytest.mark.parametrize("twist", [None, BLADE.twist])
+@pytest.mark.parametrize("springs", [(0.0, np.inf), (0.0, 0.0)])
+@pytest.mark.parametrize("speeds", [[0.0], [50.0], [0.0, 3.0]])
+def test_a_damped_turn_about_a_hinge_is_neutral(twist, springs: tuple[float, float], speeds) -> None:
+    """Modal damping does not act on such a turn, whose eigenvalue is 0 twice.
+
+    At rest damping multiplies each frequency by sqrt(1 - ratio^2).
+    """
+    beam = replace(BLADE, twist=twist)
+    undamped = bd.Scene(beam, bd.Mount(0.0, np.pi, 0.0, *springs), physics=bd.Physics(planes=2))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of rounding, too
+        found = bd.frequency_locus(replace(undamped, damping_ratio=0.02), speeds, 3)
+    expected = bd.frequency_locus(undamped, speeds, 3)
+    np.testing.assert_array_equal(found.status, expected.status)
+    neutral = found.status == "neutral"
+    assert neutral[:, 0].all() and not np.abs(found.eigenvalue[neutral]).any()
+    assert (found.error[neutral] == 0).all() and (found.error < 1e-9).all()
+    if speeds == [0.0]:
+        exact = expected.frequency * np.sqrt(1 - 0.02**2)
+        np.testing.assert_allclose(found.frequency, exact, rtol=1e-12)
+
+
+def test_a_damped_flapping_hinge_at_rest_needs_no_large_basis() -> None:
+    beam = bd.Beam.rectangular(1.0, 0.06, 0.03, 70e9, 2700.0)
+    mount = bd.Mount(0.3, np.pi, np.pi / 2, root_stiffness=0.0)
+    modes = bd.natural_modes(bd.Scene(beam, mount, damping_ratio=0.02), 0.0, 2)
+    assert modes.status.tolist() == ["neutral", "stable"] and modes.eigenvalue[0] == modes.error[0] == 0
+    assert modes.model.equations.size < 40
 
 
 @pytest.mark.parametrize("stiffness", [1e-6, 1e-3, 1.0, 100.0])

@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import beamdyn as bd
+from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import choose_model
 from beamdyn.modal.model import Model
@@ -272,6 +273,41 @@ def test_a_hinged_beam_that_the_slightest_rotation_turns_over_is_refused() -> No
     scene = replace(FLAT, mount=bd.Mount(0.215, 0.0, 0.0, root_stiffness=0.0))
     with pytest.raises(ValueError, match="root_stiffness = 0 N m/rad: the beam is unstable at any speed"):
         bd.resonance_speeds(scene, 50.0, 1, discretization=bd.Ritz(10))
+
+
+def test_the_hinge_in_the_plane_of_rotation_is_named() -> None:
+    """The one that turns over; not one of a plane that is not modelled, and no spring that there is not."""
+    for bending, hinges, name in (
+        (0.0, (0.0, math.inf), "root_stiffness"),
+        (math.pi / 2, (0.0, 0.0), "second_root_stiffness"),
+        (math.pi / 2, (math.inf, 0.0), "second_root_stiffness"),
+    ):
+        scene = replace(FLAT, mount=bd.Mount(0.215, 0.0, bending, *hinges))
+        with pytest.raises(InvalidValue) as refusal:
+            bd.resonance_speeds(scene, 50.0, 1, discretization=bd.Ritz(10))
+        assert (refusal.value.field, refusal.value.value) == (f"mount.{name}", 0.0)
+
+
+def test_resonances_on_springs_too_soft_for_elements() -> None:
+    def found(stiffness: float, discretization: Any) -> bd.Crossings:
+        mount = bd.Mount(1.0, root_stiffness=stiffness, second_root_stiffness=0.0)
+        scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), mount, bd.SteadyRotation(1.0), gravity=9.81)
+        return bd.resonance_speeds(scene, 10.0, 2, discretization=discretization)
+
+    by_elements, exact = found(1e-6, "fem"), found(1e-6, "ritz")
+    assert [c.speed for c in by_elements] == [c.speed for c in exact] and len(exact) == 2
+    assert by_elements.warnings[0].startswith("finite elements do not resolve the springs")
+    with pytest.raises(ValueError, match="does not resolve so soft a spring"):
+        found(1e-13, bd.Fem(20))
+
+
+def test_the_response_of_a_damped_hinge_needs_no_large_basis_at_rest() -> None:
+    """At rest the turn has the frequency 0 exactly, whatever the basis: the first that is tried is taken."""
+    beam = bd.Beam.rectangular(1.0, 0.06, 0.03, 70e9, 2700.0)
+    mount = bd.Mount(0.3, math.pi, root_stiffness=0.0)
+    found = bd.steady_response(bd.Scene(beam, mount, damping_ratio=0.02, gravity=9.81), [0.0, 20.0])
+    assert found.status.tolist() == ["turns freely about the root", "stable"]
+    assert found.request.model.equations.size <= 40
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.02])
