@@ -15,6 +15,7 @@ from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -27,7 +28,6 @@ from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection, warn_of_strain
-from beamdyn.spectrum.planes import first_drawn, name_directions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
