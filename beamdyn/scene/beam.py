@@ -187,8 +187,9 @@ class Beam:
         twist : float, Polynomial, Table or callable, optional
             Angle by which the section is turned [rad], added to the bending angle of the mount.
         poissons_ratio : float, optional
-            Poisson's ratio, above -1 and at most 0.5; without it there is no shear stiffness.  That is kappa G A with
-            kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33, 335-340.
+            Poisson's ratio, above -1 and at most 0.5; without it there is no shear stiffness.  That is
+            kappa G A with kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33,
+            335-340.
 
         Returns
         -------

@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 
@@ -64,7 +65,10 @@ def _map_twist(twist: Profile, function: Callable[[np.ndarray], np.ndarray]) -> 
     try:
         return twist.map(function)
     except ValueError as error:
-        raise ValueError(f"twist: {error}; is it in degrees? give math.radians(...)") from None
+        remedy = "is it in degrees? give math.radians(...)"
+        raise InvalidValue(
+            "twist", float(twist(1.0)), str(error), remedy, "rad", where=" at the tip"
+        ) from None
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:

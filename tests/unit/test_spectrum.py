@@ -342,6 +342,19 @@ def test_tables_and_rows_have_the_planes() -> None:
     assert "share of flap" in text and "f: mostly flap" in text and "e: mostly edge" in text
 
 
+@pytest.mark.parametrize("modes", [5, 12])
+def test_no_column_of_a_locus_is_cut(modes: int) -> None:
+    """At the width of a pipe every frequency stands with its letter, in as many tables as it takes."""
+    console = Console(width=120, record=True, file=StringIO(), markup=False)
+    found = bd.frequency_locus(VEERING, [0.0, 1000.0 / 3], modes)
+    console.print(locus_table(found))
+    text = console.export_text()
+    assert "…" not in text and text.count("speed [rad/s]") == (1 if modes == 5 else 2)
+    for mode, (frequency, share) in enumerate(zip(found.frequency[0], found.plane_share[0], strict=True), 1):
+        cell = f"{frequency:.{6 - math.floor(math.log10(frequency))}f} {'fe'[int(share.argmax())]}"
+        assert f"mode {mode} [Hz]" in text and cell in text
+
+
 @pytest.mark.parametrize("springs", [(np.inf, np.inf), (3.0, 2.0)])
 @pytest.mark.parametrize("physics", [bd.Physics(2), bd.Physics(2, True, True), bd.Physics(1, True, True)])
 def test_setting_angle_limits_are_where_the_slope_vanishes(physics: bd.Physics, springs) -> None:
