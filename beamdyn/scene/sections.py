@@ -67,7 +67,7 @@ def _map_twist(twist: Profile, function: Callable[[np.ndarray], np.ndarray]) -> 
     except ValueError as error:
         remedy = "is it in degrees? give math.radians(...)"
         raise InvalidValue(
-            "twist", float(twist(1.0)), str(error), remedy, "rad", where=" at the tip"
+            "twist", float(twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
         ) from None
 
 

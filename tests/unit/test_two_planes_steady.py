@@ -367,7 +367,9 @@ def test_one_set_of_words(angle: float, words: tuple[str, str], names: tuple[str
         assert "largest tip deflection [mm]" in text and "status" in text
     crossings = bd.resonance_speeds(scene, 400.0, modes=2)
     assert f"{words[0]}, {words[1]} [%]" in printed(crossings_table(crossings))
-    labels = [text.get_text() for text in steady.plot(Figure().subplots()).get_legend().get_texts()]
+    legend = steady.plot(Figure().subplots()).get_legend()
+    assert legend is not None
+    labels = [text.get_text() for text in legend.get_texts()]
     assert [label for label in labels if label in names] == [*names]
     heads = [list(next(rows)) for rows in (steady_csv(steady), sweep_csv(sweep), crossings_csv(crossings))]
     for row, name in zip(heads, ("largest_{}_m", "largest_{}_m", "share_{}"), strict=True):
