@@ -12,7 +12,11 @@ from rich.text import Text
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.directions import (
+    first_drawn,
+    modelled_directions,
+    words_of_directions,
+)
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -24,6 +28,9 @@ if TYPE_CHECKING:
     from beamdyn.transient.sweep import Sweep
 
 _MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
+_WIDTH = 118  # of a table's columns, so that none is cut at 120
+_FEW = 4  # modes of a locus whose frequencies have all digits
+_DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
 
 
 def modes_table(result: Modes) -> Group:
@@ -49,34 +56,52 @@ def modes_table(result: Modes) -> Group:
 
 def _share_heads(scene: Scene) -> list[str]:
     """Head of the column of the shares of a plane; none where one plane is modelled."""
-    from beamdyn.spectrum.planes import first_drawn, name_directions
-
-    if scene.physics.planes == 1:
-        return []
-    return [f"share of {name_directions(scene.mount)[first_drawn(scene.mount)][1]}"]
+    words = words_of_directions(scene)
+    return [f"share of {words[first_drawn(scene.mount)]}"] if words else []
 
 
 def _share_cells(scene: Scene, share: np.ndarray) -> list[str]:
     """Share of a mode's energy in the direction that `_share_heads` names."""
-    from beamdyn.spectrum.planes import first_drawn
-
     return [] if scene.physics.planes == 1 else [f"{share[first_drawn(scene.mount)]:.3f}"]
 
 
 def locus_table(result: Locus) -> Group:
     """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes."""
-    rows = []
-    size = np.abs(result.eigenvalue) * result.error
-    for s in (shown := _select_speeds(result)):
-        cells = [_locus_cell(result, size, s, mode) for mode in range(result.frequency.shape[1])]
-        confidence = f"{result.confidence[s].min():.2f}"
-        rows.append((f"{result.speeds[s]:.8g}", *cells, f"{result.error[s].max():.0e}", confidence))
-    heads = [f"mode {mode} [Hz]" for mode in range(1, result.frequency.shape[1] + 1)]
+    size, shown = np.abs(result.eigenvalue) * result.error, _select_speeds(result)
+    modes = {
+        f"mode {mode + 1} [Hz]": [_locus_cell(result, size, s, mode) for s in shown]
+        for mode in range(result.frequency.shape[1])
+    }
+    speeds = {"speed [rad/s]": [f"{result.speeds[s]:.8g}" for s in shown]}
+    quality = {
+        "largest error": [f"{result.error[s].max():.0e}" for s in shown],
+        "tracking": [f"{result.confidence[s].min():.2f}" for s in shown],
+    }
     title = (
         f"Natural frequencies{_direction_note(result.scene)}, by {result.provenance.method}"
         f"{_selection_note(shown, result.speeds)}"
     )
-    return table(title, ("speed [rad/s]", *heads, "largest error", "tracking"), rows, ())
+    blocks = [speeds | block for block in _blocks(modes | quality, _WIDTH - _column_width(*speeds.items()))]
+    tables = (zip(*block.values(), strict=True) for block in blocks)
+    titles = (title, *["The same speeds, further columns"] * (len(blocks) - 1))
+    return Group(*(table(t, [*b], rows, ()) for t, b, rows in zip(titles, blocks, tables, strict=True)))
+
+
+def _blocks(columns: dict[str, list[str]], width: int) -> list[dict[str, list[str]]]:
+    """Pack columns, in their order, into as few tables of at most a width as will do."""
+    blocks, left = [], -1
+    for column in columns.items():
+        left -= _column_width(column)
+        if left < 0:
+            blocks.append({})
+            left = width - _column_width(column)
+        blocks[-1] |= [column]
+    return blocks
+
+
+def _column_width(column: tuple[str, list[str]]) -> int:
+    """Width of a column with the space after it."""
+    return max(map(len, (column[0], *column[1]))) + 2
 
 
 def _select_speeds(result: Locus) -> np.ndarray:
@@ -91,24 +116,21 @@ def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
     """Frequency of a mode at speed s, or its status and growth rate; `size` is the absolute error [rad/s]."""
     if result.status[s, mode] not in ("stable", "neutral"):
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
-    frequency = supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi))
+    digits = _DIGITS if result.frequency.shape[1] <= _FEW else _DIGITS_OF_MANY
+    frequency = supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi), digits)
     return " ".join([frequency, *_direction_cells(result.scene, result.plane_share[s, mode])])
 
 
 def _direction_cells(scene: Scene, share: np.ndarray) -> list[str]:
     """Letter of the direction in which a mode mostly bends; none where one plane is modelled."""
-    from beamdyn.equations.directions import name_directions
-
-    return [] if scene.physics.planes == 1 else [name_directions(scene.mount)[int(share.argmax())][1][0]]
+    return [word[0] for word in words_of_directions(scene)[int(share.argmax()) :][:1]]
 
 
 def _direction_note(scene: Scene) -> str:
     """What the letters beside frequencies mean; empty where one plane is modelled."""
-    from beamdyn.equations.directions import name_directions
-
-    words = [word for _, word in name_directions(scene.mount)]
+    words = words_of_directions(scene)
     note = "; ".join(f"{word[0]}: mostly {word}" for word in words)
-    return "" if scene.physics.planes == 1 else f" ({note})"
+    return f" ({note})" if words else ""
 
 
 def limits_table(result: SettingAngleLimits) -> Group:
@@ -207,7 +229,7 @@ def crossings_table(result: Crossings) -> Group:
     ]
     number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
     title = f"{number}, by {result.provenance.method}. {result.extent}"
-    plane = ["along, across [%]"] * (result.scene.physics.planes == 2)
+    plane = [f"{', '.join(words)} [%]"] if (words := words_of_directions(result.scene)) else []
     heads = ("speed [rad/s]", "line", "mode", *plane, "frequency [Hz]", "kind")
     return table(title, heads, rows, (1, len(heads) - 1))
 
@@ -216,7 +238,7 @@ def _plane_cells(result: Crossings, crossing: Crossing) -> Iterator[str]:
     """Share of the energy of each mode in the two directions, where two are modelled."""
     if result.scene.physics.planes == 2:
         shares = [s for s in (crossing.plane_share, crossing.second_plane_share) if s is not None]
-        yield " and ".join(f"{100 * along:.0f}, {100 * across:.0f}" for along, across in shares)
+        yield " and ".join(f"{100 * bending:.0f}, {100 * across:.0f}" for bending, across in shares)
 
 
 def steady_table(result: SteadyResponse) -> Group:
@@ -225,34 +247,33 @@ def steady_table(result: SteadyResponse) -> Group:
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
     shown = _select_response_speeds(result.status, peaks_at)
     error = result.error * result.bound
-    by_direction = _largest_by_direction(result)
-    sizes = result.amplitude, *by_direction.values(), result.bound
+    names, by_direction = words_of_directions(result.scene), _largest_by_direction(result)
+    sizes = result.amplitude, *by_direction, result.bound
     cells = [_millimetres(values, error) for values in sizes]
     columns = [_speed_cells(result.speeds), *cells, _status_cells(result.status, peaks_at)]
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
-    largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in by_direction))
+    largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in names))
     heads = ("speed [rad/s]", *largest, "sum of the lines [mm]", "status")
     return table(
         title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
     )
 
 
-def _largest_by_direction(result: SteadyResponse) -> dict[str, np.ndarray]:
+def _largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
     """Largest tip deflection in the direction of bending and across, where both are modelled."""
-    names = ("along", "across") if result.scene.physics.planes == 2 else ()
-    return {name: result.largest_tip(direction) for direction, name in enumerate(names)}
+    return [result.largest_tip(direction) for direction in range(len(words_of_directions(result.scene)))]
 
 
 def sweep_table(result: Sweep) -> Group:
     """Table of a sweep at some of its speeds, the peaks included."""
     peaks_at = sweep_peaks(result)
     shown = _select_response_speeds(np.array(result.status), peaks_at)
-    drawn = sweep_lines(result)
+    words, drawn = words_of_directions(result.scene), sweep_lines(result)
     sizes = [_millimetres(values, result.time_error) for values in drawn.values()]
     columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
     start, end = result.window
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
-    heads = ("speed [rad/s]", *(f"{name} [mm]" for name in drawn), "status")
+    heads = ("speed [rad/s]", *(f"{name} [mm]" for name in ("largest tip deflection", *words)), "status")
     rows = _rows(columns, shown)
     return table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
 
@@ -311,6 +332,11 @@ def _selection_note(shown: np.ndarray, all_: np.ndarray) -> str:
 # Rows of CSV files, with their heads ----------------------------------------------------------------
 
 
+def _directions_of_csv(scene: Scene) -> tuple[str, ...]:
+    """What heads say of the two directions, at any bending angle; nothing where one plane is modelled."""
+    return ("bending", "across") if scene.physics.planes == 2 else ()
+
+
 def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
     """Frequency, error, growth rate and status of each mode; of two planes the share of each."""
     names, shares = _share_columns(result)
@@ -322,10 +348,8 @@ def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
 
 def _share_columns(result: Modes | Locus) -> tuple[list[str], list[np.ndarray]]:
     """Names and values of the shares of the two directions of bending; none where one plane is modelled."""
-    if result.scene.physics.planes == 1:
-        return [], []
-    names = ["share_in_direction_of_bending", "share_across"]
-    return names, [result.plane_share[..., 0], result.plane_share[..., 1]]
+    names = [f"share_{direction}" for direction in _directions_of_csv(result.scene)]
+    return names, [result.plane_share[..., direction] for direction in range(len(names))]
 
 
 def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
@@ -342,15 +366,15 @@ def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
 
 def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
     """Tip deflection over time, in both directions where two are modelled."""
-    planes = run.scene.physics.planes
-    yield "time_s", *("tip_deflection_m", "tip_deflection_across_m")[:planes]
-    columns = run.t, *(run.tip, run.tip_across)[:planes]
+    names = [f"tip_deflection_{direction}_m" for direction in _directions_of_csv(run.scene)]
+    yield "time_s", *(names or ["tip_deflection_m"])
+    columns = run.t, *(run.tip, run.tip_across)[: run.scene.physics.planes]
     yield from zip(*(column.tolist() for column in columns), strict=True)
 
 
 def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
     """Largest deflection, where two directions are modelled also in each, and error of time integration."""
-    names = ("largest_along_m", "largest_across_m") if result.scene.physics.planes == 2 else ()
+    names = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
     yield "speed_rad_per_s", "largest_deflection_m", *names, "time_error_m"
     each = result.peaks_by_direction.T if names else ()
     columns = result.speeds, result.peaks, *each, result.time_error
@@ -360,21 +384,23 @@ def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
 def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
     """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
     first = "speed_rad_per_s", "relative_error", "frequency_Hz"
-    planes = ("share_across", "second_share_across") if result.scene.physics.planes == 2 else ()
-    yield *first, "line", "multiple", "mode", "second_mode", "kind", *planes
+    directions = _directions_of_csv(result.scene)
+    shares = [f"{mode}share_{direction}" for mode in ("", "second_") for direction in directions]
+    yield *first, "line", "multiple", "mode", "second_mode", "kind", *shares
     for c in result:
         second = "" if c.second_mode is None else c.second_mode
-        shares = c.plane_share[1], "" if c.second_plane_share is None else c.second_plane_share[1]
+        values = *c.plane_share, *(c.second_plane_share or ("", ""))
         row = c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
-        yield *row, *shares[: len(planes)]
+        yield *row, *values[: len(shares)]
 
 
 def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
     """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
     growth = "growth_rate_per_s", "growth_rate_error_per_s"
     by_direction = _largest_by_direction(result)
-    heads = "amplitude_m", *(f"largest_{name}_m" for name in by_direction), "sum_of_lines_m"
+    largest = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
+    heads = "amplitude_m", *largest, "sum_of_lines_m"
     yield "speed_rad_per_s", *heads, "relative_error", *growth, "status"
-    sizes = result.speeds, result.amplitude, *by_direction.values(), result.bound, result.error
+    sizes = result.speeds, result.amplitude, *by_direction, result.bound, result.error
     columns = *sizes, result.growth_rate, result.growth_rate_error, result.status
     yield from zip(*(column.tolist() for column in columns), strict=True)

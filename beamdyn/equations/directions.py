@@ -41,3 +41,8 @@ def first_drawn(mount: Mount) -> int:
 def modelled_directions(scene: Scene) -> tuple[str, ...]:
     """Names of the directions in which a scene's beam bends, that of bending at the root first."""
     return tuple(words for words, _ in name_directions(scene.mount))[: scene.physics.planes]
+
+
+def words_of_directions(scene: Scene) -> tuple[str, ...]:
+    """The same, each in a word; none where one plane is modelled, which needs no telling apart."""
+    return tuple(word for _, word in name_directions(scene.mount) if scene.physics.planes == 2)

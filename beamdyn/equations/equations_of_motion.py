@@ -38,9 +38,11 @@ class SteadyPencil:
     f2 : ndarray, shape (n,)
         Static load per squared speed.
     shift : float
-        K0 + shift M is positive definite [1/s2]: 0 but for springs at the root that are softer than the beam.
+        Squared first angular frequency of the beam with a clamped root [1/s2]; 0 if the root is clamped.
+        K0 + shift M is positive definite.
     planes : int
-        Number of directions in which the beam is deflected: in two that twist couples, stiffnesses cancel.
+        Number of directions in which the beam bends, 1 or 2; with 2, rounding by cancelling entries is
+        counted.
     """
 
     M: np.ndarray

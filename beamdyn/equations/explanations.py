@@ -105,7 +105,7 @@ class Explanation:
     Parameters
     ----------
     symbol : str
-        The term as written in docs/conventions.md.
+        The term as written in docs/conventions.md, for one plane of bending.
     reason : str or callable
         Why the term is present.
     conditions : tuple of Condition
@@ -174,7 +174,7 @@ def _has_oblique_inertia(scene: SampledScene) -> bool:
     """Whether sections or tip body have a product of inertia about the axis of rotation and the beam."""
     (c, s), beam = exact_cos_sin(scene.scene.mount.bending_angle), scene.scene.modelled_beam
     d, n, xi = np.array([c, -s]), np.array([s, c]), np.linspace(0, 1, 101)
-    sections = (d[p] * n[q] * E(xi) for (p, q), E in section_tensor(beam, "rotary_inertia").items())
+    sections = (d[p] * n[q] * R(xi) for (p, q), R in section_tensor(beam, "rotary_inertia").items())
     tip = beam.tip and d @ centrifugal_inertia(beam.tip, beam.tip_twist) @ n
     return bool(np.any(sum(sections, np.zeros(1))) or tip)
 
@@ -183,6 +183,14 @@ def _is_on_springs(scene: SampledScene) -> bool:
     """Whether a spring holds the root in a direction that is modelled."""
     springs = scene.scene.mount.root_stiffnesses[: scene.scene.physics.planes]
     return any(0 < k < math.inf for k in springs)
+
+
+def _say_root(scene: SampledScene) -> str:
+    """Say how the root is held where no spring holds it."""
+    springs = scene.scene.mount.root_stiffnesses[: scene.scene.physics.planes]
+    if math.inf not in springs:
+        return "the root is a hinge: it turns freely"
+    return "the root is clamped" if 0 not in springs else "the root is clamped or a hinge: no spring holds it"
 
 
 # Conditions of terms in several fields.
@@ -209,4 +217,4 @@ OBLIQUE = Condition(
     _has_oblique_inertia,
     "sections and tip body have no product of inertia about the axis of rotation",
 )
-ON_SPRINGS = Condition(_is_on_springs, "no spring holds the root")
+ON_SPRINGS = Condition(_is_on_springs, _say_root)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from beamdyn.equations.directions import name_directions
 from beamdyn.scene.scene import Scene
 
 
@@ -57,7 +58,8 @@ def _second_plane(scene: Scene) -> Iterator[OmittedEffect]:
         return
     beam = scene.beam
     given = _how("planes=2", beam.second_bending_stiffness is not None, "second_bending_stiffness")
-    yield OmittedEffect("second plane of bending", f"the direction across is rigid; {given}")
+    across = name_directions(scene.mount)[1][0]
+    yield OmittedEffect("second plane of bending", f"the beam is rigid {across}; {given}")
     if beam.twist is not None:
         yield OmittedEffect("twist", f"sections stand as at the root; {given}")
 

@@ -32,7 +32,7 @@ class Entry:
     name : str
         Name of the term.
     symbol : str
-        The term as written in docs/conventions.md.
+        The term as written in docs/conventions.md, for one plane of bending.
     fields : tuple of str
         The fields in whose equations it stands.
     quantity : str

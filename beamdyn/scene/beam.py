@@ -92,7 +92,7 @@ class TipMass:
 
 @dataclass(frozen=True)
 class Beam:
-    """A straight cantilever.  Build it by `rectangular` or `from_stiffness`.
+    """A straight beam, held at its root.  Build it by `rectangular` or `from_stiffness`.
 
     Which of its properties a model reads is said by `Physics`.
 
@@ -187,8 +187,9 @@ class Beam:
         twist : float, Polynomial, Table or callable, optional
             Angle by which the section is turned [rad], added to the bending angle of the mount.
         poissons_ratio : float, optional
-            Poisson's ratio, from -1 to 0.5; without it there is no shear stiffness.  That is kappa G A with
-            kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33, 335-340.
+            Poisson's ratio, above -1 and at most 0.5; without it there is no shear stiffness.  That is
+            kappa G A with kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33,
+            335-340.
 
         Returns
         -------

@@ -1,18 +1,20 @@
 """Tensors of the sections: their stiffnesses and inertias in directions that do not turn with the twist.
 
 A section with the values f (bending in the direction of the bending angle) and g (in the direction across)
-that is turned by tau has, along the directions e1, e2 at the root,
+that is turned by beta has, along the directions e1, e2 at the root,
 
-    T11 = f cos^2 tau + g sin^2 tau,  T22 = f sin^2 tau + g cos^2 tau,  T12 = (f - g) cos tau sin tau.
+    Y11 = f cos^2 beta + g sin^2 beta,  Y22 = f sin^2 beta + g cos^2 beta,  Y12 = (f - g) cos beta sin beta.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 
@@ -48,14 +50,25 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
 
 def _turn(first: Profile, second: Profile, twist: Profile) -> Tensor:
     """Turn the values in the axes of the sections by the twist."""
-    cos2, sin2 = twist.map(lambda tau: np.cos(tau) ** 2), twist.map(lambda tau: np.sin(tau) ** 2)
-    oblique = (first + second.scaled(-1.0)) * twist.map(lambda tau: np.cos(tau) * np.sin(tau))
+    cos2, sin2 = (_map_twist(twist, lambda beta, f=f: f(beta) ** 2) for f in (np.cos, np.sin))
+    oblique = (first + second.scaled(-1.0)) * _map_twist(twist, lambda beta: np.cos(beta) * np.sin(beta))
     return {
         (0, 0): first * cos2 + second * sin2,
         (0, 1): oblique,
         (1, 0): oblique,
         (1, 1): first * sin2 + second * cos2,
     }
+
+
+def _map_twist(twist: Profile, function: Callable[[np.ndarray], np.ndarray]) -> Profile:
+    """Apply a function to the twist; refuse by name one that is not resolved."""
+    try:
+        return twist.map(function)
+    except ValueError as error:
+        remedy = "is it in degrees? give math.radians(...)"
+        raise InvalidValue(
+            "twist", float(twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
+        ) from None
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:

@@ -33,7 +33,7 @@ with S_1 = int rho A x + m (L + eps).  If F(x) < 0, the beam is unstable at ever
 **Rotary inertia** of sections that tilt out of the plane of rotation, and a tip body with a product of
 inertia between both planes, may lower F without limit in a bend of no length.  Where F without them is
 positive, `beamdyn.spectrum.toppling` says below which speed they buckle nothing, usually one at which the
-beam would long have been torn apart.
+axial strain of the beam has passed 1 %, where linear theory ends.
 
 **String.**  Else, least over D, F is the form of a string with a mass at its end.  Its lowest eigenvalue
 decides; it converges fast, as without bending stiffness there are no thin layers.
@@ -59,7 +59,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 from beamdyn.spectrum.toppling import (
     least_toppling_speed,
-    tears_before_toppling,
+    strain_limit_comes_first,
     topples_in_slender_limit,
 )
 
@@ -80,7 +80,7 @@ class Buckling:
         The argument, in words.
     speed : float or None
         Critical speed [rad/s], where the argument supplies it: 0 if the beam is unstable at every speed, inf
-        if it is torn apart first; None if it is to be sought.
+        if its axial strain passes 1 % first; None if it is to be sought.
     none_below : float
         Where only the inertia of tilting sections can buckle the beam: a speed [rad/s] below which it does
         not; else 0.
@@ -117,7 +117,7 @@ def _decide_toppling(scene: Scene, none_below: float) -> Buckling:
         "the rotation stiffens the beam; only the rotary inertia of what tilts out of the plane can buckle it"
     )
     exists = True if topples_in_slender_limit(scene) else None
-    return Buckling(exists, why, math.inf if tears_before_toppling(scene) else None, none_below)
+    return Buckling(exists, why, math.inf if strain_limit_comes_first(scene) else None, none_below)
 
 
 def _decide_in_plane(form: _SpinForm) -> Buckling:

@@ -15,6 +15,7 @@ from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -32,7 +33,6 @@ from beamdyn.scene.validity import (
     warn_of_static_deflection,
     warn_of_strain,
 )
-from beamdyn.spectrum.planes import first_drawn, name_directions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

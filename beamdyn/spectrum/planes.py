@@ -6,8 +6,6 @@ import math
 from dataclasses import replace
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.equations.directions import first_drawn as first_drawn
-from beamdyn.equations.directions import name_directions as name_directions
 from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.physics import Physics

@@ -8,7 +8,8 @@ it), the tensor I of their rotary inertia and that of the tip body, B, rotation 
     + int g (theta2 theta3' - theta3 theta2'),    g(x) = int_x^L I23 - B23,
 
 in which B33 theta3^2 at the tip counts to F0.  With the compliance C(x), the integral of the sections' from
-the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what is added is at least -r E with
+the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what rotation adds is at least -r E per
+squared speed, with
 
     r = int (I33 C33 + |I23| (C22 C33)^(1/2)) + |B23| (C22 C33)^(1/2) + (int g^2 trace(C) / EI)^(1/2),
 
@@ -41,7 +42,7 @@ from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
 _CELLS = 2000  # of the midpoint rule on all segments together
 _MARGIN = 1.01  # for its error
-_LARGE_STRAIN = 0.01
+_LARGE_STRAIN = 0.01  # axial, in order of magnitude (speed L / speed of sound)^2: linear theory ends
 _ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
 
 
@@ -61,11 +62,11 @@ def least_toppling_speed(scene: Scene) -> float:
     inertia = _Inertia(scene)
     if not inertia.topples:
         return np.inf
-    return float((_MARGIN * min(inertia.ratio, inertia.ratio_at_hinge)) ** -0.5)
+    return float((_MARGIN * min(inertia.softening, inertia.softening_at_hinge)) ** -0.5)
 
 
-def tears_before_toppling(scene: Scene) -> bool:
-    """Whether `least_toppling_speed` is one at which rotation would stretch a beam of one material by 1 %."""
+def strain_limit_comes_first(scene: Scene) -> bool:
+    """Whether a beam of one material passes an axial strain of 1 % below `least_toppling_speed`."""
     inertia = _Inertia(scene)
     return inertia.topples and least_toppling_speed(scene) >= _LARGE_STRAIN**0.5 * inertia.sound_speed
 
@@ -181,8 +182,8 @@ class _Inertia:
         return (inertia * compliance) ** -0.5 if inertia else 0.0
 
     @property
-    def ratio(self) -> float:
-        """The ratio r of a root that is clamped or on springs [s2]; inf at a hinge."""
+    def softening(self) -> float:
+        """The number r of the docstring of this module [s2], of a root without hinges; inf at a hinge."""
         if self.hinged:
             return np.inf
         width, C, product = self.cells[1], self.compliance, self.products
@@ -192,8 +193,8 @@ class _Inertia:
         return float(ratio + abs(self.body) * both[-1] + twisting)
 
     @property
-    def ratio_at_hinge(self) -> float:
-        """The ratio r by the argument for a hinge, which soft springs do not harm [s2]; inf if it fails."""
+    def softening_at_hinge(self) -> float:
+        """The number r by the argument for a hinge, which soft springs do not harm [s2]; inf if it fails."""
         width, shear = self.cells[1], self.scene.physics.shear
         tilting = float(width @ self.moments)
         spare = float(width @ self.tension) / (2 if shear else 1) - 2 * tilting

@@ -14,7 +14,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, Result, plain
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
@@ -169,7 +169,7 @@ class SteadyResponse(Result):
         """Draw the resonance curve, and where the beam bends in two directions also that in each."""
         from beamdyn.output.plots import plot_response
 
-        names = ("in the direction of bending", "across") if self.scene.physics.planes == 2 else ()
+        names = modelled_directions(self.scene) if self.scene.physics.planes == 2 else ()
         by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction)
 

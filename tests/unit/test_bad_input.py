@@ -15,6 +15,7 @@ from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Profile, Table, as_profile
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import section_tensor
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
 STIFFNESS = {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3}
@@ -66,6 +67,13 @@ def test_stiffness_may_leave_out(name):
 def test_twist_needs_a_finite_number(value):
     refused(lambda: strip(twist=value), "twist")
     refused(lambda: Beam.from_stiffness(**STIFFNESS, twist=value), "twist")
+
+
+def test_twist_in_degrees_is_named():
+    """Hundreds of turns within a segment are not resolved; fewer are only doubted."""
+    beam = Beam.from_stiffness(**STIFFNESS, twist=Polynomial([0, 3000.0]))
+    words = "twist = 3000 rad at the tip", "varies too quickly", "in degrees? give math.radians"
+    refused(lambda: section_tensor(beam, "bending_stiffness"), *words)
 
 
 def test_twist_needs_a_second_stiffness():

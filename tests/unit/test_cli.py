@@ -131,8 +131,8 @@ def test_two_planes_are_told_apart(run, tmp_path):
     scene, found = tmp_path / "twisted.toml", tmp_path / "found.csv"
     scene.write_text(TWISTED)
     code, out, _ = run("modes", scene, "--modes", "2", "--csv", found)
-    assert code == DONE and "share in bending direction" in out
-    shares = [(float(r["share_in_bending_direction"]), float(r["share_across"])) for r in read_csv(found)]
+    assert code == DONE and "share of flap" in out
+    shares = [(float(r["share_bending"]), float(r["share_across"])) for r in read_csv(found)]
     assert shares[0][0] > 0.9 and shares[1][1] > 0.5  # flat first, then mainly on edge
     np.testing.assert_allclose(np.sum(shares, axis=1), 1, rtol=1e-12)
     code, _, _ = run("locus", scene, "--speeds", "0, 50 rad/s", "--modes", "2", "--csv", found, "--force")

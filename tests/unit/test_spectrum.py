@@ -363,7 +363,7 @@ def test_tables_and_rows_have_the_planes() -> None:
     modes, locus = bd.natural_modes(VEERING, 0.0, 2), bd.frequency_locus(VEERING, [0.0, 1.0], 2)
     head, first, _ = modes_csv(modes)
     row = dict(zip(head, first, strict=True))
-    assert row["share_in_direction_of_bending"] == modes.plane_share[0, 0]
+    assert row["share_bending"] == modes.plane_share[0, 0]
     assert row["share_across"] == pytest.approx(1 - modes.plane_share[0, 0], rel=1e-12)
     head, first, _ = locus_csv(locus)
     assert dict(zip(head, first, strict=True))["share_across_2"] == locus.plane_share[0, 1, 1]
@@ -371,7 +371,20 @@ def test_tables_and_rows_have_the_planes() -> None:
     console = Console(width=200, record=True, file=StringIO())
     console.print(modes_table(modes), locus_table(locus))
     text = console.export_text()
-    assert "share of flap" in text and " flap " in text and " edge " in text
+    assert "share of flap" in text and "f: mostly flap" in text and "e: mostly edge" in text
+
+
+@pytest.mark.parametrize("modes", [5, 12])
+def test_no_column_of_a_locus_is_cut(modes: int) -> None:
+    """At the width of a pipe every frequency stands with its letter, in as many tables as it takes."""
+    console = Console(width=120, record=True, file=StringIO(), markup=False)
+    found = bd.frequency_locus(VEERING, [0.0, 1000.0 / 3], modes)
+    console.print(locus_table(found))
+    text = console.export_text()
+    assert "…" not in text and text.count("speed [rad/s]") == (1 if modes == 5 else 2)
+    for mode, (frequency, share) in enumerate(zip(found.frequency[0], found.plane_share[0], strict=True), 1):
+        cell = f"{frequency:.{6 - math.floor(math.log10(frequency))}f} {'fe'[int(share.argmax())]}"
+        assert f"mode {mode} [Hz]" in text and cell in text
 
 
 @pytest.mark.parametrize("springs", [(np.inf, np.inf), (3.0, 2.0)])

@@ -34,6 +34,7 @@ def turned(setting: float = 0.0, bending: float = 0.0) -> bd.Scene:
     return replace(HARVESTER, mount=bd.Mount(0.215, setting, bending))
 
 
+HINGED_IN_ONE = replace(in_two_planes(), mount=bd.Mount(0.2, 0.3, 0.4, second_root_stiffness=0.0))
 EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
 SCENES = {
@@ -82,7 +83,10 @@ def test_every_term_of_the_equations_has_a_meaning() -> None:
         (HARVESTER, "root acceleration", "no setting angle, so no static load"),
         (HARVESTER, "damping", "no damping"),
         (HARVESTER, "spin of the tip body", "no tip body"),
-        (SCENES["on a hinge"], "root spring", "no spring"),
+        (SCENES["on a hinge"], "root spring", "the root is a hinge: it turns freely"),
+        (HARVESTER, "root spring", "the root is clamped"),
+        (SCENES["two planes"], "root spring", "the root is clamped"),
+        (HINGED_IN_ONE, "root spring", "clamped or a hinge"),
         (SCENES["two planes, straight"], "twisting by inertia", "no product of inertia"),
         (HARVESTER, "angular acceleration", "constant speed"),
         (turned(bending=math.pi / 2), "spin softening", "bending angle is 90 deg"),

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from io import StringIO
 from typing import Any
 
 import numpy as np
 import pytest
 import scipy.linalg
+from matplotlib.figure import Figure
 from numpy.polynomial import Polynomial
+from rich.console import Console
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -18,7 +21,15 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import choose_model
 from beamdyn.modal.model import Model
-from beamdyn.result_tables import crossings_csv, steady_csv
+from beamdyn.result_tables import (
+    crossings_csv,
+    crossings_table,
+    steady_csv,
+    steady_table,
+    sweep_csv,
+    sweep_table,
+    transient_csv,
+)
 from beamdyn.scene.motion import Motion
 from beamdyn.steady.excitation_phases import periodic_system
 from beamdyn.steady.harmonic_balance import largest_over_phases
@@ -365,6 +376,42 @@ def test_csv_has_both_directions() -> None:
     heads, *rows = crossings_csv(bd.resonance_speeds(FLAT, 400.0, modes=2))
     across = {row[heads.index("mode")]: row[heads.index("share_across")] for row in rows}
     assert across == {1: 0.0, 2: pytest.approx(1.0, abs=1e-12)}
+
+
+def printed(part: Any) -> str:
+    """As it is printed at the width of a pipe."""
+    console = Console(width=120, record=True, file=StringIO(), markup=False)
+    console.print(part)
+    return console.export_text()
+
+
+@pytest.mark.parametrize(
+    ("angle", "words", "names"),
+    [
+        (0.0, ("edge", "flap"), ("in the plane of rotation (edge)", "out of the plane of rotation (flap)")),
+        (0.3, ("bending", "across"), ("in the direction of bending", "across the direction of bending")),
+    ],
+)
+def test_one_set_of_words(angle: float, words: tuple[str, str], names: tuple[str, str]) -> None:
+    """Tables, plots and CSV heads name the two directions alike; no table is cut."""
+    scene = replace(TWISTED, mount=replace(TWISTED.mount, bending_angle=angle))
+    steady = bd.steady_response(scene, [10 / 3, 60.0], modes=2, harmonics=1)
+    sweep = bd.sweep(scene, [10 / 3, 60.0], (0.0, 0.02), modes=2)
+    tables = printed(steady_table(steady)), printed(sweep_table(sweep))
+    for text in tables:
+        assert all(f"{word} [mm]" in text for word in words) and "…" not in text
+        assert "largest tip deflection [mm]" in text and "status" in text
+    crossings = bd.resonance_speeds(scene, 400.0, modes=2)
+    assert f"{words[0]}, {words[1]} [%]" in printed(crossings_table(crossings))
+    legend = steady.plot(Figure().subplots()).get_legend()
+    assert legend is not None
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert [label for label in labels if label in names] == [*names]
+    heads = [list(next(rows)) for rows in (steady_csv(steady), sweep_csv(sweep), crossings_csv(crossings))]
+    for row, name in zip(heads, ("largest_{}_m", "largest_{}_m", "share_{}"), strict=True):
+        assert all(name.format(direction) in row for direction in ("bending", "across"))
+    run = transient_csv(bd.simulate(scene, 0.01, 2))
+    assert next(run) == ("time_s", "tip_deflection_bending_m", "tip_deflection_across_m")
 
 
 @pytest.mark.parametrize("direction", [-1, 2, "across"])

@@ -8,10 +8,11 @@ v_i, each of which bends or shears the beam in one of two directions e1, e2 fixe
 with c, s the cosine and sine of the bending angle.  Two fields thus share the mass, the tension, and what
 rotation does to the mass; bending also turns the sections and the tip body, shear does not.
 
-A body with centrifugal inertia B (in the sections' rotary inertia -E) and a tilt u' = (u2', u3') has the
-energy of rotation omega^2/2 u3' (B u')_3.  And as no section is free to twist, bending in both planes turns
-them about the beam by int (u2' u3'' - u3' u2'')/2, on which their product of inertia works.  Derivation:
-docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
+A body with the centrifugal inertia B (of sections -R, with R their rotary inertia) and the tilt
+u' = (u2', u3') has the centrifugal potential energy omega^2/2 u3' (B u')_3: a body slender along the beam,
+B > 0, is held in the plane of rotation; a section, -R < 0, is turned out of it.  And as no section is free to
+twist, bending in both planes turns them about the beam by int (u2' u3'' - u3' u2'')/2, on which their product
+of inertia works.  Derivation: docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
 """
 
 from __future__ import annotations
@@ -187,7 +188,7 @@ class TransverseField(Field):
             "-ω² s² R22 q2", "sections tilt out of the plane of rotation", (why.OUT_OF_PLANE, why.TURNS)
         ),
         "twisting by inertia": Explanation(
-            "ω² G (u2' u3'' - u3' u2'')/2",
+            "ω² H (u2' u3'' - u3' u2'')/2",
             "bending in both planes turns sections with a product of inertia",
             (why.OBLIQUE, why.TURNS),
         ),
