@@ -129,6 +129,8 @@ def critical_point(
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
+    if buckling.speed == np.inf and _is_resolved(models(scene, "ritz")):
+        buckling = replace(buckling, speed=None)  # sections so heavy that a long bend topples
     if buckling.speed == 0 or (not _can_be_sought(buckling) and not scene.physics.stretch):
         return _argued(buckling, start)
     found, reason = _search(first, target), buckling.why
@@ -147,6 +149,11 @@ def critical_point(
         warnings=tuple(_critical_warnings(found, buckling, none_below, discretization, tolerance)),
         provenance=Provenance(__version__, *names, perf_counter() - start),
     )
+
+
+def _is_resolved(models: Iterator[Model]) -> bool:
+    """Whether the first of some models has a critical speed that does not hang on its size."""
+    return np.isfinite(_compare(next(models)).error)
 
 
 def _can_be_sought(buckling: Buckling) -> bool:

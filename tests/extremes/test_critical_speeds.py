@@ -340,3 +340,20 @@ def test_none_below_of_two_planes_apart_is_the_lower_of_both() -> None:
         for psi, planes in ((0.0, 2), (0.0, 1))
     )
     assert math.isinf(both.error) and both.none_below == single[0].none_below > 1e3
+
+
+@pytest.mark.parametrize(
+    "inertia, mass, chain, rtol",
+    [(0.3, 1.0, 5.2674, 1e-5), (1.0, 1.0, 1.7893, 3e-5), (0.05, 1e-3, 7.0411, 1e-4)],
+)
+def test_heavy_sections_topple_a_long_bend(inertia: float, mass: float, chain: float, rtol: float) -> None:
+    """A slender rod with discs buckles at a strain of 1e-5; values by a chain of up to 80 rigid bodies.
+
+    The tolerance is the chain's: half a unit of its last digit, or its distance from its limit.
+    """
+    beam = bd.Beam.from_stiffness(1.0, mass, 1.0, rotary_inertia=inertia)
+    scene = bd.Scene(beam, bd.Mount(0.0, np.pi, np.pi / 2), physics=bd.Physics(rotary_inertia=True))
+    point = bd.critical_point(scene)
+    assert point.speed == pytest.approx(chain, rel=rtol) and point.error < 1e-9
+    below, above = (bd.natural_modes(scene, factor * point.speed, 1).status[0] for factor in (0.999, 1.001))
+    assert (below, above) == ("stable", "divergence")
