@@ -91,7 +91,7 @@ def _solve_twisted(case: dict[str, Any], discretization: str) -> tuple[np.ndarra
 def twisted_scene(case: dict[str, Any]) -> Scene:
     """Build the scene of a case of ``twisted_beams.toml``; its speed is gamma rad/s."""
     names = ("second_bending_stiffness", "twist", "shear_stiffness", "rotary_inertia")
-    given = {name: Polynomial(case[name]) for name in names if name in case}
+    given: dict[str, Any] = {name: Polynomial(case[name]) for name in names if name in case}
     beam = Beam.from_stiffness(
         1.0, Polynomial(case["mass_per_length"]), Polynomial(case["bending_stiffness"]), **given
     )

@@ -30,7 +30,7 @@ from beamdyn.modal.eigen import Solver
 from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
+from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.modes import static_load
@@ -129,7 +129,7 @@ def critical_point(
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
-    if buckling.speed == np.inf and _is_resolved(models(scene, "ritz")):
+    if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
         buckling = replace(buckling, speed=None)  # sections so heavy that a long bend topples
     if buckling.speed == 0 or (not _can_be_sought(buckling) and not scene.physics.stretch):
         return _argued(buckling, start)
@@ -151,9 +151,13 @@ def critical_point(
     )
 
 
-def _is_resolved(models: Iterator[Model]) -> bool:
-    """Whether the first of some models has a critical speed that does not hang on its size."""
-    return np.isfinite(_compare(next(models)).error)
+def _is_within_theory(model: Model) -> bool:
+    """Whether a model resolves a critical speed, and nothing says that it stretches the beam by over 1 %."""
+    found = _compare(model)
+    if np.isinf(found.error):
+        return False
+    _, strain = static_load(model, np.array([found.speed]))
+    return not strain[0] > LARGE_STRAIN  # nan: the axial stiffness is not known
 
 
 def _can_be_sought(buckling: Buckling) -> bool:
