@@ -5,6 +5,7 @@ They are in the range of inputs that `reference.of_two_planes` solves in seconds
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,7 +85,10 @@ def random_physics_beam(rng: np.random.Generator, stocky: bool) -> bd.Beam:
     vary = (_keep, _taper, _stations)[rng.integers(3)]
     tip = _random_tip(rng, section["mass_per_length"] * length, length) if rng.integers(2) else None
     twist = random_twist(rng) if rng.integers(3) else None
-    return bd.Beam.from_stiffness(length, **vary(rng, section), tip=tip, twist=twist)
+    properties = vary(rng, section)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "twist reaches")  # several turns are meant
+        return bd.Beam.from_stiffness(length, **properties, tip=tip, twist=twist)
 
 
 # Variation along the beam -------------------------------------------------------------------------

@@ -69,6 +69,7 @@ def test_twist_needs_a_finite_number(value):
     refused(lambda: Beam.from_stiffness(**STIFFNESS, twist=value), "twist")
 
 
+@pytest.mark.filterwarnings("ignore:twist reaches")
 def test_twist_in_degrees_is_named():
     """Hundreds of turns within a segment are not resolved; fewer are only doubted."""
     beam = Beam.from_stiffness(**STIFFNESS, twist=Polynomial([0, 3000.0]))
