@@ -82,13 +82,13 @@ def answer(
     """Solve a scene and compare it with what is known."""
     start = perf_counter()
     try:
-        modes = bd.natural_modes(scene, speed, len(known.omega), discretization, tolerance)
+        modes = bd.natural_modes(scene, speed, len(known.eigenvalue), discretization, tolerance)
     except (ValueError, ArithmeticError) as error:
         return Answer(number, tolerance, perf_counter() - start, refusal=str(error))
     time = perf_counter() - start
     with np.errstate(divide="ignore", invalid="ignore"):
-        true = np.abs(modes.eigenvalue / (1j * known.omega) - 1)
-    true = np.where(known.omega == 0, np.where(modes.eigenvalue == 0, 0.0, np.inf), true)
+        true = np.abs(modes.eigenvalue / known.eigenvalue - 1)
+    true = np.where(known.eigenvalue == 0, np.where(modes.eigenvalue == 0, 0.0, np.inf), true)
     return Answer(
         number, tolerance, time, *(tuple(v.tolist()) for v in (modes.error, true, known.uncertainty))
     )

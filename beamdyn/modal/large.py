@@ -7,11 +7,12 @@ one factorization of the stiffness at each speed, in place of all eigenvalues of
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
-from scipy.sparse.linalg import LinearOperator, eigs, eigsh
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.eigen import (
@@ -27,12 +28,14 @@ from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
+_RESTARTS = 50  # of the iteration, which converges after a few, if at all
 
 
 class LargeSolver:
     """Eigensolver with the interface of `Solver`, for the lowest few of many modes.
 
-    Where the stiffness is not safely positive definite, it works as `Solver` does.
+    Where the stiffness is not safely positive definite, or the iteration does not converge, it works as
+    `Solver` does.
 
     Parameters
     ----------
@@ -58,7 +61,9 @@ class LargeSolver:
     @cached_property
     def lowest_at_rest(self) -> float:
         """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
-        return float(1 / self._largest(self._transformed(self._at_rest, self.pencil.M), 1)[0][0])
+        with suppress(ArpackNoConvergence):
+            return float(1 / self._largest(self._transformed(self._at_rest, self.pencil.M), 1)[0][0])
+        return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
@@ -100,13 +105,12 @@ class LargeSolver:
 
     def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
-        found = None if self.pencil.shift else self._lowest(speed, count)
-        if found is None:
-            eigen = self.dense.solve(np.array([speed]), count)
-            return eigen.eigenvalue[0], eigen.vector[0], eigen.rounding[0]
-        if self.pencil.conservative:
-            return found
-        return self._lowest_coupled(speed, count)
+        with suppress(ArpackNoConvergence):
+            found = None if self.pencil.shift else self._lowest(speed, count)
+            if found is not None:
+                return found if self.pencil.conservative else self._lowest_coupled(speed, count)
+        eigen = self.dense.solve(np.array([speed]), count)
+        return eigen.eigenvalue[0], eigen.vector[0], eigen.rounding[0]
 
     # Conservative equations --------------------------------------------------------------------------
 
@@ -156,7 +160,7 @@ class LargeSolver:
     def _largest(self, operator: LinearOperator, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Largest eigenvalues (k,), descending, and their vectors (n, k)."""
         start = np.random.default_rng(0).standard_normal(self.size)
-        mu, x = eigsh(operator, count, which="LA", v0=start, tol=0)
+        mu, x = eigsh(operator, count, which="LA", v0=start, tol=0, maxiter=_RESTARTS)
         order = np.argsort(-mu)
         return mu[order], x[:, order]
 
@@ -178,7 +182,10 @@ class LargeSolver:
             return np.concatenate([-cho_solve(factor, force, check_finite=False), q])
 
         start = np.random.default_rng(0).standard_normal(2 * n)
-        inverse, y = eigs(self._operator(product, 2 * n), 2 * (count + _MORE), which="LM", v0=start, tol=0)
+        sought = 2 * (count + _MORE)
+        inverse, y = eigs(
+            self._operator(product, 2 * n), sought, which="LM", v0=start, tol=0, maxiter=_RESTARTS
+        )
         s, q = select_lowest(inverse * time, y[:n], count)
         mass = np.sqrt(np.einsum("nk,nk->k", q.conj(), M @ q).real)
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + self.size)

@@ -20,12 +20,13 @@ _QUOTIENT = 1.0  # distance from the quotient that the extrapolation of both may
 
 @dataclass(frozen=True)
 class Known:
-    """Angular frequencies [rad/s], the lowest first, and their relative uncertainties.
+    """Eigenvalues [1/s], that of the lowest squared frequency first, and their relative uncertainties.
 
-    A frequency of 0 has the uncertainty 0.
+    They are imaginary for modes that vibrate and positive for those that diverge.  An eigenvalue of 0 has
+    the uncertainty 0.
     """
 
-    omega: np.ndarray
+    eigenvalue: np.ndarray
     uncertainty: np.ndarray
 
 
@@ -48,7 +49,7 @@ def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
             break
     still = np.abs(squares) < _REST * (1 + gamma**2)
     error = np.where(still, 0.0, error / np.where(still, 1.0, np.abs(squares)))
-    return Known(np.sqrt(np.where(still, 0.0, squares)) / unit, error)
+    return Known(np.sqrt(-np.where(still, 0.0, squares) + 0j) / unit, error)
 
 
 def _solve(blade: Blade, gamma: float, count: int, pieces: int) -> tuple[np.ndarray, np.ndarray]:
