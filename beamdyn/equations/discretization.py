@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
@@ -103,6 +104,10 @@ class Discretization(Protocol):
 
     def spaces(self, beam: Beam) -> Spaces:
         """The function spaces on a beam."""
+        ...
+
+    def cells(self, beam: Beam) -> Cells:
+        """Parts of the beam on which the functions are smooth, for integrals of large deflections."""
         ...
 
     def coarser(self) -> Discretization:

@@ -12,6 +12,7 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 
 from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
@@ -19,6 +20,7 @@ from beamdyn.scene.sections import weight_degree
 
 MOST_ELEMENTS = 1000  # largest number accepted
 _MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
+_POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
 # Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.
 _ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
@@ -75,6 +77,10 @@ class Fem:
         """Build the function spaces on a beam."""
         order = 6 + min(8, weight_degree(beam))
         return FemSpaces(self.nodes(beam), order)
+
+    def cells(self, beam: Beam) -> Cells:
+        """The elements."""
+        return Cells(self.nodes(beam), _POINTS)
 
     def coarser(self) -> Fem:
         """A mesh of half as many elements."""
