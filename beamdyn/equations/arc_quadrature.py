@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -40,19 +40,38 @@ class ArcQuadrature:
     @cached_property
     def xi(self) -> np.ndarray:
         """Points on [0, 1], shape (N,)."""
-        ends, (t, _) = self.cells.ends, legendre.leggauss(self.cells.points)
+        ends, (t, _) = self.cells.ends, _gauss(self.cells.points)
         return (ends[:-1, None] + np.diff(ends)[:, None] * (1 + t) / 2).ravel()
 
     @cached_property
     def weights(self) -> np.ndarray:
         """Weights of the integral from 0 to 1, shape (N,)."""
-        _, w = legendre.leggauss(self.cells.points)
+        _, w = _gauss(self.cells.points)
         return (np.diff(self.cells.ends)[:, None] / 2 * w).ravel()
 
     @cached_property
-    def cumulative(self) -> np.ndarray:
-        """Weights (N, N) of the integrals from 0 to each point."""
-        return self.integrate_to(self.xi)
+    def _half_lengths(self) -> np.ndarray:
+        return np.diff(self.cells.ends)[:, None] / 2
+
+    def integrate(self, values: np.ndarray) -> np.ndarray:
+        """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
+        p = self.cells.points
+        _, w = _gauss(p)
+        scaled = values.reshape(*values.shape[:-1], -1, p) * self._half_lengths
+        ends = np.cumsum(scaled @ w, axis=-1)
+        starts = ends - scaled @ w
+        inside = scaled @ _cumulative(p).T + starts[..., None]
+        return np.concatenate([inside.reshape(values.shape), ends[..., -1:]], axis=-1)
+
+    def transposed(self, forces: np.ndarray) -> np.ndarray:
+        """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
+        p = self.cells.points
+        _, w = _gauss(p)
+        inside = forces[..., :-1].reshape(*forces.shape[:-1], -1, p)
+        of_cells = inside.sum(axis=-1)
+        beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
+        scaled = (inside @ _cumulative(p) + beyond[..., None] * w) * self._half_lengths
+        return scaled.reshape(*forces.shape[:-1], -1)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
         """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""
@@ -66,9 +85,20 @@ class ArcQuadrature:
         return matrix
 
 
+@cache
+def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    return legendre.leggauss(points)
+
+
+@cache
+def _cumulative(points: int) -> np.ndarray:
+    """Weights (p, p) of the integrals from -1 to each of p Gauss points of the interpolant through them."""
+    return _integrate_interpolant(_gauss(points)[0], points)
+
+
 def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     """Weights (k, p) of the integrals from -1 to t (k,) of the interpolant through p Gauss points."""
-    nodes, w = legendre.leggauss(points)
+    nodes, w = _gauss(points)
     degrees = np.arange(points)
     to_series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(nodes, points - 1).T * w
     integrals = legendre.legint(np.eye(points), lbnd=-1)

@@ -1,7 +1,7 @@
 """The inextensible elastica: a slender beam that bends by any angle in one plane.
 
-The slope angle is theta(x) = sum q_k w_k'(x), with the functions w_k of bending of the discretization: to first
-order in q, w = sum q_k w_k is the deflection, and the model the linear one.  A point stands at
+The slope angle is theta(x) = sum q_k w_k'(x), with the functions w_k of bending of the discretization: to
+first order in q, w = sum q_k w_k is the deflection, and the model the linear one.  A point stands at
 
     p(x) = int_0^x (cos theta, sin theta) dx
 
@@ -10,9 +10,9 @@ along the beam axis b1 and the direction of bending e.  With the acceleration a 
     K q + int rho A a . dp + int rho I (theta'' - c omega') dtheta + tilting = 0,
     a = p'' + 2 omega c (v', -u') + omega' c (v, -u) - omega^2 (u, c^2 v) + a_O,   p = (u, v),
 
-with c the cosine of the bending angle: 1 or -1 in the plane of rotation, 0 out of it.  All integrals are sums
-over the points of a Gauss rule, so that the equations follow from one discrete Lagrangian, and energy is kept as
-well as in the exact equations.  Derivation: docs/conventions.md.
+with c the cosine of the bending angle: 1 or -1 in the plane of rotation, 0 out of it.  All integrals are
+sums over the points of a Gauss rule, so that the equations follow from one discrete Lagrangian, and energy is
+kept as well as in the exact equations.  Derivation: docs/conventions.md.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ from beamdyn.equations.arc_quadrature import ArcQuadrature
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields.field import Deflection, Load, Term
-from beamdyn.equations.root_motion import Quantity, RootMotion, exact_cos_sin
+from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.beam import TipMass
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 
 _BENDING = "bending"
@@ -37,17 +38,16 @@ _BENDING = "bending"
 
 @dataclass(frozen=True)
 class MassPoints:
-    """Masses along the beam: the points of a Gauss rule, then the centre of gravity of the tip body.
+    """Masses along the beam: the N points of a Gauss rule, then the centre of gravity of the tip body.
 
-    The position of point j is sum_l B_jl (cos theta_l, sin theta_l), of angles theta_l at the N points of the
-    rule and at the tip.
+    The angles that are given are those at the N points and at the tip.
 
     Parameters
     ----------
-    xi : ndarray, shape (N + 1,)
-        Positions x/L of the angles.
-    B : ndarray, shape (N + 1, N + 1)
-        Lengths [m] by which the angles add to the positions.
+    quadrature : ArcQuadrature
+        Integration along the beam.
+    length, offset : float
+        Length of the beam, and distance of the tip body's centre of gravity beyond it [m].
     mass : ndarray, shape (N + 1,)
         Masses [kg].
     inertia : ndarray, shape (N + 1,)
@@ -56,26 +56,44 @@ class MassPoints:
         Moments of inertia by which rotation resists a tilt out of its plane [kg m2].
     """
 
-    xi: np.ndarray
-    B: np.ndarray
+    quadrature: ArcQuadrature
+    length: float
+    offset: float
     mass: np.ndarray
     inertia: np.ndarray
     tilting: np.ndarray
+
+    @property
+    def xi(self) -> np.ndarray:
+        """Positions x/L of the angles, shape (N + 1,)."""
+        return np.append(self.quadrature.xi, 1.0)
+
+    def tip(self, slopes: np.ndarray) -> np.ndarray:
+        """Position (...) of the tip from cosines or sines (..., N + 1) of the angles [m]."""
+        return slopes[..., :-1] @ (self.quadrature.weights * self.length)
+
+    def positions(self, slopes: np.ndarray) -> np.ndarray:
+        """Positions (..., N + 1) of the masses from cosines or sines (..., N + 1) of the angles [m]."""
+        positions = self.length * self.quadrature.integrate(slopes[..., :-1])
+        positions[..., -1] += self.offset * slopes[..., -1]
+        return positions
+
+    def moments(self, forces: np.ndarray) -> np.ndarray:
+        """Apply the transpose of `positions`: moments at the angles [N m] by forces (..., N + 1) [N]."""
+        along_beam = self.length * self.quadrature.transposed(forces)
+        return np.concatenate([along_beam, self.offset * forces[..., -1:]], axis=-1)
 
 
 def lump_mass(scene: Scene, quadrature: ArcQuadrature) -> MassPoints:
     """Lump the mass of beam and tip body of a scene at the points of a quadrature."""
     beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
-    weights = quadrature.weights * beam.length
-    B = np.zeros((len(weights) + 1, len(weights) + 1))
-    B[:-1, :-1] = quadrature.cumulative * beam.length
-    B[-1] = np.append(weights, tip.offset)
-    sections = np.zeros_like(weights)
+    weights, sections = quadrature.weights * beam.length, np.zeros_like(quadrature.weights)
     if beam.rotary_inertia is not None:
         sections = weights * beam.rotary_inertia(quadrature.xi)
     return MassPoints(
-        xi=np.append(quadrature.xi, 1.0),
-        B=B,
+        quadrature,
+        beam.length,
+        tip.offset,
         mass=np.append(weights * beam.mass_per_length(quadrature.xi), tip.mass),
         inertia=np.append(sections, tip.inertia),
         tilting=np.append(-sections, tip.inertia_about_bending_direction - tip.axial_inertia),
@@ -84,7 +102,7 @@ def lump_mass(scene: Scene, quadrature: ArcQuadrature) -> MassPoints:
 
 @dataclass(frozen=True)
 class NodalForces:
-    """Forces along b1 and e [N] and moments [N m] on the mass points, at one or several times (..., N + 1)."""
+    """Forces along b1 and e [N] and moments [N m] on the mass points, each of shape (..., N + 1)."""
 
     axial: np.ndarray
     transverse: np.ndarray
@@ -100,18 +118,17 @@ class Elastica(FieldsOnly):
     linear : Equations
         Equations of the same coordinates, linear about the straight beam: in trial functions, or in modal
         coordinates.
-    quadrature : ArcQuadrature
-        Integration along the beam.
     points : MassPoints
         Masses along the beam.
-    length : float
-        Length of the beam [m].
     """
 
     linear: Equations
-    quadrature: ArcQuadrature
     points: MassPoints
-    length: float
+
+    @property
+    def length(self) -> float:
+        """Length of the beam [m]."""
+        return self.points.length
 
     @property
     def size(self) -> int:
@@ -148,16 +165,15 @@ class Elastica(FieldsOnly):
         return DeflectedState(self, q, np.cos(theta), np.sin(theta))
 
     def tip(self, q: np.ndarray) -> np.ndarray:
-        """Position (..., 2) of the tip from the root, along b1 and e [m], at coordinates q of shape (..., n)."""
+        """Position (..., 2) of the tip from the root, along b1 and e [m], at coordinates q (..., n)."""
         state = self.at(q)
-        weights = np.append(self.points.B[-1, :-1], 0.0)  # without the offset of the tip body
-        return np.stack([state.cos @ weights, state.sin @ weights], axis=-1)
+        return np.stack([self.points.tip(state.cos), self.points.tip(state.sin)], axis=-1)
 
 
 def assemble_elastica(scene: Scene, discretization: Discretization, linear: Equations) -> Elastica:
     """Assemble the equations of a scene for large deflection, over those of the straight beam."""
     quadrature = ArcQuadrature(discretization.cells(scene.modelled_beam))
-    return Elastica(linear, quadrature, lump_mass(scene, quadrature), scene.beam.length)
+    return Elastica(linear, lump_mass(scene, quadrature))
 
 
 @dataclass(frozen=True)
@@ -182,18 +198,20 @@ class DeflectedState:
     @cached_property
     def u(self) -> np.ndarray:
         """Positions along b1 (..., N + 1) [m]."""
-        return self.cos @ self.elastica.points.B.T
+        return self.elastica.points.positions(self.cos)
 
     @cached_property
     def v(self) -> np.ndarray:
         """Positions along e (..., N + 1) [m]."""
-        return self.sin @ self.elastica.points.B.T
+        return self.elastica.points.positions(self.sin)
 
     @cached_property
     def gradients(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of `u` and `v` by the coordinates, each (..., N + 1, n)."""
-        angles, B = self.elastica.angles.T, self.elastica.points.B
-        return B @ (-self.sin[..., None] * angles), B @ (self.cos[..., None] * angles)
+        """Derivatives of `u` and `v` by the coordinates, each (..., n, N + 1)."""
+        angles, points = self.elastica.angles, self.elastica.points
+        return points.positions(-self.sin[..., None, :] * angles), points.positions(
+            self.cos[..., None, :] * angles
+        )
 
     # What each quantity of the root's motion does to the mass points ----------------------------------
 
@@ -212,22 +230,22 @@ class DeflectedState:
 
     def generalized(self, forces: NodalForces) -> np.ndarray:
         """Generalized forces (..., n): the virtual work of nodal forces, per coordinate."""
-        B = self.elastica.points.B
-        moments = -self.sin * (forces.axial @ B) + self.cos * (forces.transverse @ B) + forces.moment
-        return moments @ self.elastica.angles.T
+        points = self.elastica.points
+        by_forces = -self.sin * points.moments(forces.axial) + self.cos * points.moments(forces.transverse)
+        return (by_forces + forces.moment) @ self.elastica.angles.T
 
     def inertia_of(self, quantity: Quantity) -> np.ndarray:
         """Generalized inertial force (..., n) per unit of a quantity."""
         return self.generalized(self.inertial_forces(quantity))
 
     def work(self, q_rate: np.ndarray, q_acceleration: np.ndarray, root: RootMotion) -> np.ndarray:
-        """Residual (..., n) of the equations of motion, for rates and accelerations of the same shape as q."""
+        """Residual (..., n) of the equations of motion, for rates and accelerations of the shape of q."""
         elastica, points, c = self.elastica, self.elastica.points, self.elastica.in_plane
         turning, turned = q_rate @ elastica.angles, q_acceleration @ elastica.angles
-        velocity = (-self.sin * turning) @ points.B.T, (self.cos * turning) @ points.B.T
+        velocity = points.positions(-self.sin * turning), points.positions(self.cos * turning)
         relative = (
-            (-self.sin * turned - self.cos * turning**2) @ points.B.T,
-            (self.cos * turned - self.sin * turning**2) @ points.B.T,
+            points.positions(-self.sin * turned - self.cos * turning**2),
+            points.positions(self.cos * turned - self.sin * turning**2),
         )
         coriolis = 2 * c * root.speed[..., None]
         forces = NodalForces(
@@ -246,27 +264,27 @@ class DeflectedState:
     def mass(self) -> np.ndarray:
         """Mass matrix (n, n)."""
         points, angles = self.elastica.points, self.elastica.angles
-        (U, V), mass = self.gradients, points.mass[:, None]
-        return U.T @ (mass * U) + V.T @ (mass * V) + (angles * points.inertia) @ angles.T
+        U, V = self.gradients
+        return (U * points.mass) @ U.T + (V * points.mass) @ V.T + (angles * points.inertia) @ angles.T
 
     @cached_property
     def gyroscopic(self) -> np.ndarray:
         """Gyroscopic matrix per speed (n, n)."""
         U, V = self.gradients
-        half = U.T @ (self.elastica.points.mass[:, None] * V)
+        half = (U * self.elastica.points.mass) @ V.T
         return 2 * self.elastica.in_plane * (half - half.T)
 
     def stiffness_of(self, quantity: Quantity) -> np.ndarray:
         """Derivative (n, n) of `inertia_of` by the coordinates."""
         elastica, points, c = self.elastica, self.elastica.points, self.elastica.in_plane
-        (U, V), mass, angles = self.gradients, points.mass[:, None], elastica.angles
-        forces = self.inertial_forces(quantity)
-        along = -self.cos * (forces.axial @ points.B) - self.sin * (forces.transverse @ points.B)
+        angles, forces = elastica.angles, self.inertial_forces(quantity)
+        along = -self.cos * points.moments(forces.axial) - self.sin * points.moments(forces.transverse)
         if quantity == "speed_squared":
             along = along + (1 - c**2) * points.tilting * (self.cos**2 - self.sin**2)
         geometric = (angles * along) @ angles.T
         if quantity == "speed_squared":
-            return geometric - U.T @ (mass * U) - c**2 * V.T @ (mass * V)
+            U, V = self.gradients
+            return geometric - (U * points.mass) @ U.T - c**2 * (V * points.mass) @ V.T
         if quantity == "acceleration":
             return geometric + self.gyroscopic / 2
         return geometric
@@ -277,11 +295,11 @@ class DeflectedState:
         Loads are those of the motion of the root, without the constant force of the deflected beam.
         """
         linear, elastica = self.elastica.linear, self.elastica
-        (U, V), points = self.gradients, elastica.points
+        _, V = self.gradients
         space = DeflectedShapes(self)
         deflection = Deflection(
             space,
-            P=V.T @ points.mass,
+            P=V @ elastica.points.mass,
             Q=-self.inertia_of("acceleration") / (elastica.in_plane or 1.0),
             Q_across=np.zeros(self.elastica.size),
         )
@@ -344,4 +362,4 @@ class DeflectedShapes:
         if order:
             raise ValueError("only the deflection and its slope follow a deflected beam")
         rotated = state.cos[:-1] * elastica.angles[:, :-1] * elastica.length
-        return rotated @ elastica.quadrature.integrate_to(xi).T
+        return rotated @ elastica.points.quadrature.integrate_to(xi).T
