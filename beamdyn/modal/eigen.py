@@ -202,11 +202,9 @@ class Solver:
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
         growth = max(1.0, self.size / ROUNDING_SIZE)  # rounding adds up over the functions
         rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
-        return (
-            rounding
-            if self.pencil.planes == 1
-            else rounding + cancelled(self.pencil, speeds, squared, vector)
-        )
+        if self.pencil.planes == 1:
+            return rounding
+        return rounding + cancelled(self.pencil, speeds, squared, vector)
 
     # Gyroscopic and damped equations ----------------------------------------------------------------
 
