@@ -15,11 +15,12 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, count, positive
 from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.error_estimate import solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
-from beamdyn.modal.uncoupled import AnySolver, UncoupledSolver
+from beamdyn.modal.uncoupled import UncoupledSolver
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
@@ -365,7 +366,7 @@ class _Loci:
     ----------
     model : Model
         The discretized scene.
-    solver : AnySolver
+    solver : Eigensolver
         Eigensolver of the modes that are sought, which others do not affect.
     places : ndarray of int
         Coordinates of the solver in the model.
@@ -376,7 +377,7 @@ class _Loci:
     """
 
     def __init__(
-        self, model: Model, solver: AnySolver, places: np.ndarray, numbers: np.ndarray, top: float
+        self, model: Model, solver: Eigensolver, places: np.ndarray, numbers: np.ndarray, top: float
     ) -> None:
         self.model, self.solver, self.places, self.numbers = model, solver, places, numbers
         self.modes = len(numbers)
