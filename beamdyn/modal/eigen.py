@@ -16,9 +16,9 @@ import scipy.linalg
 from scipy.linalg import solve_triangular
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.massless import condense, has_massless
-from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.springs import (
     find_free_turns,
     insert_free_turns,
@@ -31,7 +31,7 @@ from beamdyn.modal.springs import (
 )
 
 _EPS = np.finfo(float).eps
-# Rounding errors beyond those of `beamdyn.modal.rounding`.
+# Rounding errors beyond those of `beamdyn.equations.rounding`.
 _CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted

@@ -15,6 +15,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigen import (
     LEAST_STIFFNESS,
     Solver,
@@ -24,7 +25,6 @@ from beamdyn.modal.eigen import (
     select_lowest,
 )
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
-from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
