@@ -91,8 +91,9 @@ class Crossings(Result, Sequence[Crossing]):
         Natural frequencies [Hz], numbered at rest.
     order : int
         Highest order of the lines that were sought.
-    left_out : int
-        Number of crossings of the next order, which are weaker; those of still higher order are not counted.
+    unlisted : int
+        Number of crossings of the next order, which are weaker and not listed; those of still higher
+        order are not counted.
     warnings : tuple of str
         Limitations of the result, and why there is no crossing.
     provenance : Provenance
@@ -104,7 +105,7 @@ class Crossings(Result, Sequence[Crossing]):
     speeds: np.ndarray
     frequency: np.ndarray
     order: int
-    left_out: int
+    unlisted: int
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
@@ -119,9 +120,9 @@ class Crossings(Result, Sequence[Crossing]):
     def extent(self) -> str:
         """What was sought, and what is left out, as a sentence."""
         sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
-        if not self.left_out:
+        if not self.unlisted:
             return f"{sought}; there are none of order {self.order + 1}."
-        crossings = f"{self.left_out} crossing{'s' * (self.left_out != 1)} of order {self.order + 1}"
+        crossings = f"{self.unlisted} crossing{'s' * (self.unlisted != 1)} of order {self.order + 1}"
         return f"{sought}; {crossings}, and those of higher order, are weaker and left out."
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -195,7 +196,7 @@ def resonance_speeds(
         speeds=parts[0].loci.speeds,
         frequency=_tracked(parts) / (2 * np.pi),
         order=order,
-        left_out=sum(part.count_further(order) for part in parts),
+        unlisted=sum(part.count_further(order) for part in parts),
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
             *_warn_of_replacement(discretization, model),
