@@ -193,7 +193,7 @@ class FemSpace(FieldsOnly):
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
         """Integrate the weight times the `order`-th derivatives of functions i and j."""
-        matrix = _GRAMS[order].assemble(self.basis, weight=self.weights(weight))
+        matrix = _PRODUCTS[order, order].assemble(self.basis, weight=self.weights(weight))
         return matrix.toarray()[np.ix_(self.free, self.free)]
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
@@ -221,38 +221,10 @@ class FemSpace(FieldsOnly):
 # Weak forms.  Their arguments are scikit-fem's, which has no types for them.
 
 
-@BilinearForm
-def _product(u: Any, v: Any, w: Any) -> Any:
-    return w.weight * u * v
-
-
-@BilinearForm
-def _slopes(u: Any, v: Any, w: Any) -> Any:
-    return w.weight * u.grad[0] * v.grad[0]
-
-
-@BilinearForm
-def _curvatures(u: Any, v: Any, w: Any) -> Any:
-    return w.weight * u.hess[0][0] * v.hess[0][0]
-
-
-@LinearForm
-def _load(v: Any, w: Any) -> Any:
-    return w.weight * v
-
-
-@LinearForm
-def _slope_load(v: Any, w: Any) -> Any:
-    return w.weight * v.grad[0]
-
-
-@LinearForm
-def _curvature_load(v: Any, w: Any) -> Any:
-    return w.weight * v.hess[0][0]
-
-
 def _derivative(u: Any, order: int) -> Any:
-    return (u, u.grad[0] if order else None, u.hess[0][0] if order == 2 else None)[order]
+    if order == 0:
+        return u
+    return u.grad[0] if order == 1 else u.hess[0][0]
 
 
 def _product_of(rows: int, columns: int) -> BilinearForm:
@@ -260,6 +232,10 @@ def _product_of(rows: int, columns: int) -> BilinearForm:
     return BilinearForm(lambda u, v, w: w.weight * _derivative(u, columns) * _derivative(v, rows))
 
 
-_PRODUCTS = {(a, b): _product_of(a, b) for a in range(3) for b in range(3)} | {(0, 0): _product}
-_GRAMS = (_product, _slopes, _curvatures)
-_LOADS = (_load, _slope_load, _curvature_load)
+def _load_of(order: int) -> LinearForm:
+    """Form of the derivative of an order."""
+    return LinearForm(lambda v, w: w.weight * _derivative(v, order))
+
+
+_PRODUCTS = {(a, b): _product_of(a, b) for a in range(3) for b in range(3)}
+_LOADS = tuple(_load_of(order) for order in range(3))

@@ -171,7 +171,7 @@ class TransverseField(Field):
 
     direction: ClassVar[int]
     rotates: ClassVar[bool]
-    partners: ClassVar[tuple[TransverseField, ...]]  # the transverse fields before this one in `FIELDS`
+    partners: ClassVar[tuple[TransverseField, ...]]  # the fields before this one, the first of all first
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "mass": Explanation("M22 q2''", "always"),
         "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),
