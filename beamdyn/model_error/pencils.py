@@ -1,0 +1,99 @@
+"""Change of an eigenvalue by an effect that a model leaves out, to first order in the equations.
+
+The equations with the effect, at the eigenvalue s and mode v of those without it, give one step of inverse
+iteration, z = D(s)^-1 D'(s) v with D(s) = s^2 M + s (C + omega G) + K, whence the new eigenvalue is the root of
+y^T D(s) z = 0 next to s, with y from the transposed equations.  The error of the vector enters squared: no new
+eigenproblem is solved, and no modes are matched.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from beamdyn.equations.equations_of_motion import SteadyPencil
+
+_APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
+
+
+def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> complex:
+    """Estimate the eigenvalue of a pencil next to one of simpler equations.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        The equations with the effect.
+    speed : float
+        Speed [rad/s].
+    s : complex
+        Eigenvalue without the effect [1/s], not 0.
+    v : ndarray, shape (n,)
+        Its mode, 0 in the coordinates that the effect adds.
+
+    Returns
+    -------
+    complex
+        The eigenvalue [1/s]; nan if the equations give none.
+    """
+    M, C, K = pencil.M, pencil.C + speed * pencil.G, pencil.K0 + speed**2 * pencil.K2
+    scale = _scale(M, K)  # functions of high order have large entries
+    M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
+    x, at = v / scale, s * (1 + _APART)
+    try:
+        factors = scipy.linalg.lu_factor(at**2 * M + at * C + K, check_finite=False)
+    except (ValueError, np.linalg.LinAlgError):
+        return complex(np.nan)
+    z = scipy.linalg.lu_solve(factors, (2 * at * M + C) @ x)
+    y = scipy.linalg.lu_solve(factors, (2 * at * M + C).T @ x.conj(), trans=1)
+    y, z = y / np.linalg.norm(y), z / np.linalg.norm(z)
+    return _root_near(s, y @ M @ z, y @ C @ z, y @ K @ z)
+
+
+def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Factors (n,) that make the diagonal of the stiffness 1, or of the mass where there is no stiffness."""
+    size = np.where(np.diag(K) > 0, np.abs(np.diag(K)), np.abs(np.diag(M)))
+    return 1 / np.sqrt(np.where(size > 0, size, 1.0))
+
+
+def _root_near(s: complex, a: complex, b: complex, c: complex) -> complex:
+    """The root of a r^2 + b r + c nearest to s; nan if there is none."""
+    if not np.isfinite([a, b, c]).all() or a == 0:
+        return complex(np.nan)
+    root = np.sqrt(b * b - 4 * a * c + 0j)
+    return min((-b + root) / (2 * a), (-b - root) / (2 * a), key=lambda r: abs(r - s))
+
+
+def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -> float:
+    """Estimate the speed at which the stiffness is singular, next to that of simpler equations.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        The equations with the effect.
+    critical : float
+        Critical speed without the effect [rad/s].
+    v : ndarray, shape (n,)
+        Its buckling mode, 0 in the coordinates that the effect adds.
+
+    Returns
+    -------
+    float
+        The critical speed [rad/s]; nan if the equations give none.
+    """
+    scale = _scale(pencil.M, pencil.K0)
+    K0, K2 = (scale[:, None] * A * scale for A in (pencil.K0, pencil.K2))
+    try:
+        z = scipy.linalg.solve(K0 + (critical * (1 + _APART)) ** 2 * K2, K2 @ (v / scale), assume_a="sym")
+    except (ValueError, np.linalg.LinAlgError):
+        return np.nan
+    z = z / np.linalg.norm(z)
+    stiffness, softening = float(z @ K0 @ z), -float(z @ K2 @ z)
+    return float(np.sqrt(stiffness / softening)) if stiffness > 0 and softening > 0 else np.nan
+
+
+def buckling_mode(pencil: SteadyPencil, critical: float) -> np.ndarray:
+    """Mode (n,) on which the stiffness vanishes at the critical speed [rad/s]."""
+    scale = _scale(pencil.M, pencil.K0)
+    K = scale[:, None] * (pencil.K0 + critical**2 * pencil.K2) * scale
+    values, vectors = np.linalg.eigh(K)
+    return scale * vectors[:, np.abs(values).argmin()]
