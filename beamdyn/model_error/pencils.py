@@ -14,6 +14,8 @@ import scipy.linalg
 from beamdyn.equations.equations_of_motion import SteadyPencil
 
 _APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
+_STEPS = 2  # of inverse iteration: the second counts where the effect is large, or modes are close
+_KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
 
 
 def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> complex:
@@ -38,15 +40,27 @@ def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarr
     M, C, K = pencil.M, pencil.C + speed * pencil.G, pencil.K0 + speed**2 * pencil.K2
     scale = _scale(M, K)  # functions of high order have large entries
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
-    x, at = v / scale, s * (1 + _APART)
-    try:
-        factors = scipy.linalg.lu_factor(at**2 * M + at * C + K, check_finite=False)
-    except (ValueError, np.linalg.LinAlgError):
-        return complex(np.nan)
-    z = scipy.linalg.lu_solve(factors, (2 * at * M + C) @ x)
-    y = scipy.linalg.lu_solve(factors, (2 * at * M + C).T @ x.conj(), trans=1)
-    y, z = y / np.linalg.norm(y), z / np.linalg.norm(z)
-    return _root_near(s, y @ M @ z, y @ C @ z, y @ K @ z)
+    x = v / scale
+    y, z, at = x.conj(), x, s
+    for _ in range(_STEPS):
+        try:
+            y, z = _improve(M, C, K, at * (1 + _APART), y, z)
+        except (ValueError, np.linalg.LinAlgError):
+            return complex(np.nan)
+        at = _root_near(s, y @ M @ z, y @ C @ z, y @ K @ z)
+    kept = abs(x.conj() @ M @ z) ** 2 / ((x.conj() @ M @ x) * (z.conj() @ M @ z)).real
+    return at if kept > _KEPT else complex(np.nan)
+
+
+def _improve(
+    M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, y: np.ndarray, z: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """One step of inverse iteration of the left and the right vector at s."""
+    derivative = 2 * s * M + C
+    factors = scipy.linalg.lu_factor(s * s * M + s * C + K, check_finite=False)
+    z = scipy.linalg.lu_solve(factors, derivative @ z)
+    y = scipy.linalg.lu_solve(factors, derivative.T @ y, trans=1)
+    return y / np.linalg.norm(y), z / np.linalg.norm(z)
 
 
 def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results import Provenance
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import (
@@ -26,6 +27,8 @@ from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
@@ -44,8 +47,11 @@ _EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested 
 
 
 @dataclass(frozen=True)
-class Modes(Result):
+class Modes(StatesModelError):
     """Natural modes at one speed, the lowest first.
+
+    `error` is that of the numbers; `model_error` (m,) and `left_out`, computed when asked for, are what the
+    physics left out would change.
 
     Parameters
     ----------
@@ -101,6 +107,11 @@ class Modes(Result):
     scene: Scene = field(repr=False)
     vectors: np.ndarray = field(repr=False)
     model: Model = field(repr=False)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects that the model leaves out would change in each frequency (m,)."""
+        return left_out_of_modes(self.model, self.speed, self.eigenvalue)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
         """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).
@@ -295,8 +306,11 @@ def _provenance(solution: EstimatedModes, start: float) -> Provenance:
 
 
 @dataclass(frozen=True)
-class Locus(Result):
+class Locus(StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
+
+    `error` is that of the numbers; `model_error` (S, m) and `left_out`, computed when asked for, are what the
+    physics left out would change; `left_out_at` computes them for some of the speeds.
 
     Parameters
     ----------
@@ -339,6 +353,17 @@ class Locus(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+    model: Model = field(repr=False)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects that the model leaves out would change in each frequency (S, m)."""
+        return self.left_out_at(range(len(self.speeds)))
+
+    def left_out_at(self, indices: Iterable[int]) -> LeftOutEffects:
+        """What the effects left out would change at the speeds of k indices: changes (k, m)."""
+        each = [left_out_of_modes(self.model, float(self.speeds[s]), self.eigenvalue[s]) for s in indices]
+        return LeftOutEffects.stack(each)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
@@ -408,6 +433,7 @@ def frequency_locus(
         warnings=tuple(_warnings(scene, speeds, deflection, strain, error, status, tolerance)),
         provenance=_provenance(solution, start),
         scene=scene,
+        model=solution.model,
     )
 
 
