@@ -65,7 +65,7 @@ def add_effect(scene: Scene, effect: OmittedEffect) -> Addition:
 
 
 def _assume_shear(beam: Beam) -> Beam | None:
-    """The beam with the shear stiffness of usual material; None if its sections are not seen to be rectangles.
+    """The beam with the shear stiffness of usual materials; None unless its sections are seen as rectangles.
 
     The shear stiffness of a rectangle lies within 28 % of that assumed, for Poisson's ratios from 0 to 0.5.
     """

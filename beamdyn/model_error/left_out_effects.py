@@ -51,16 +51,6 @@ class LeftOutEffects:
         changes = {name: change[index] for name, change in self.changes.items()}
         return LeftOutEffects(changes, self.not_known, self.assumed, self.not_modelled, self.included_by)
 
-    @classmethod
-    def stack(cls, each: list[LeftOutEffects]) -> LeftOutEffects:
-        """Those of several answers of one scene, such as at several speeds, along a new first axis."""
-        first = each[0]
-        changes = {name: np.array([one.changes[name] for one in each]) for name in first.changes}
-        not_known: dict[str, str] = {}
-        for one in each:
-            not_known |= one.not_known
-        return cls(changes, not_known, first.assumed, first.not_modelled, first.included_by)
-
     # In words -----------------------------------------------------------------------------------------
 
     def sentence(self, what: str = "mode", where: str = "") -> str:
@@ -103,9 +93,10 @@ class LeftOutEffects:
         if np.isfinite(total).any() and np.nanmax(total) > limit:
             largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
             change, how = say_change(_largest(self.changes[largest])), self.included_by.get(largest, "")
+            size = say_size(np.nanmax(total))
             yield (
-                f"{where and where + ' '}the model error, {say_size(np.nanmax(total))}, exceeds {say_size(limit)}: "
-                f"{largest}, left out, changes the answer by {change}" + (how and f"; {how}")
+                f"{where and where + ' '}the model error, {size}, exceeds {say_size(limit)}: "
+                f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
             )
 
 

@@ -3,48 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.left_out import list_left_out
+from beamdyn.modal.model import Model
 from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
 from beamdyn.model_error.known_modes import Simple
 from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
-from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
 
+_REAL = 1e-8  # growth rate relative to the frequency, that is rounding
 
-def left_out_of_modes(model: Model, speed: float, eigenvalue: np.ndarray) -> LeftOutEffects:
-    """Estimate what the effects that a model leaves out would change in frequencies at a speed.
+Embedding: TypeAlias = Callable[[np.ndarray], np.ndarray]  # of vectors in the coordinates with an effect
+Change: TypeAlias = Callable[[SteadyPencil, Embedding], np.ndarray]
+
+
+def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
+    """Estimate what the effects that a model leaves out would change in frequencies at some speeds.
 
     Parameters
     ----------
     model : Model
         The model.
-    speed : float
-        Speed [rad/s].
-    eigenvalue : ndarray of complex, shape (m,)
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    eigenvalue : ndarray of complex, shape (S, m)
         Eigenvalues of the modes [1/s].
 
     Returns
     -------
     LeftOutEffects
-        Relative changes (m,), nan for a mode that does not vibrate or is unstable, without the effect or
+        Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
         with it.
     """
-    simple = Simple.of(model, len(eigenvalue))
-    s, v = simple.modes(speed, eigenvalue)
+    simple = Simple.of(model, eigenvalue.shape[1])
+    found = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
 
-    def change(pencil: SteadyPencil, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        pairs = zip(s, embed(v).T, strict=True)
-        return np.array([_change_of_frequency(pencil, speed, *pair) for pair in pairs])
+    def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
+        each = zip(speeds.tolist(), found, strict=True)
+        return np.array([_change_of_frequencies(pencil, speed, s, embed(v)) for speed, (s, v) in each])
 
     def bent() -> tuple[np.ndarray, str]:
-        found, reason = large_deflection_change(model, speed, eigenvalue)
-        return np.where([_vibrates(one) for one in s], found, np.nan), reason
+        changes, reason = large_deflection_change(model, speeds, eigenvalue)
+        return np.where(_vibrate(eigenvalue), changes, np.nan), reason
 
     return _gather(simple, change, bent)
 
@@ -69,7 +75,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     v = buckling_mode(pencil, critical)
     known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
 
-    def change(pencil: SteadyPencil, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
         return np.array(shift_critical_speed(pencil, known, embed(v)) / known - 1)
 
     def bent() -> tuple[np.ndarray, str]:
@@ -79,7 +85,12 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     return _gather(simple, change, bent)
 
 
-Change = Callable[[SteadyPencil, Callable[[np.ndarray], np.ndarray]], np.ndarray]
+def nothing_known(scene: Scene) -> LeftOutEffects:
+    """The effects that a scene leaves out, where there is no value that they could change."""
+    additions, not_known, not_modelled = list_effects(scene)
+    names = [LARGE_DEFLECTION] if leaves_out_large_deflection(scene) else []
+    unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
+    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _ways(scene))
 
 
 def _gather(simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray, str]]) -> LeftOutEffects:
@@ -115,13 +126,14 @@ def _ways(scene: Scene) -> dict[str, str]:
     }
 
 
-def _change_of_frequency(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> float:
-    if not _vibrates(s):
-        return np.nan
-    shifted = shift_eigenvalue(pencil, speed, s, v)
-    return float(shifted.imag / s.imag - 1) if _vibrates(shifted) else np.nan
+def _change_of_frequencies(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) with the pencil of an effect."""
+    pairs = zip(s.tolist(), v.T, _vibrate(s), strict=True)
+    shifted = np.array([shift_eigenvalue(pencil, speed, r, x) if ok else np.nan for r, x, ok in pairs])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(_vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
 
 
-def _vibrates(s: complex) -> bool:
-    """Whether a mode has a frequency, and does not grow but by rounding."""
-    return bool(np.isfinite(s)) and s.imag > 0 and s.real <= 1e-8 * abs(s)
+def _vibrate(s: np.ndarray) -> np.ndarray:
+    """Whether modes have a frequency, and do not grow but by rounding."""
+    return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))

@@ -1,9 +1,9 @@
-"""Change of an eigenvalue by an effect that a model leaves out, to first order in the equations.
+"""Change of an eigenvalue by an effect that a model leaves out, from the mode without it.
 
-The equations with the effect, at the eigenvalue s and mode v of those without it, give one step of inverse
-iteration, z = D(s)^-1 D'(s) v with D(s) = s^2 M + s (C + omega G) + K, whence the new eigenvalue is the root of
-y^T D(s) z = 0 next to s, with y from the transposed equations.  The error of the vector enters squared: no new
-eigenproblem is solved, and no modes are matched.
+The equations with the effect, at the eigenvalue s and mode v of those without it, give a step of inverse
+iteration, z = D(s)^-1 D'(s) v with D(s) = s^2 M + s (C + omega G) + K, whence the new eigenvalue is the root
+of y^T D(s) z = 0 next to s, with y from the transposed equations.  The error of the vectors enters squared:
+no new eigenproblem is solved, and no modes are matched.  A second step serves large effects and close modes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarr
             y, z = _improve(M, C, K, at * (1 + _APART), y, z)
         except (ValueError, np.linalg.LinAlgError):
             return complex(np.nan)
-        at = _root_near(s, y @ M @ z, y @ C @ z, y @ K @ z)
+        at = _root_near(s, *(complex(y @ A @ z) for A in (M, C, K)))
     kept = abs(x.conj() @ M @ z) ** 2 / ((x.conj() @ M @ x) * (z.conj() @ M @ z)).real
     return at if kept > _KEPT else complex(np.nan)
 

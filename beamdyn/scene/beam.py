@@ -357,7 +357,7 @@ OPTIONAL_PROPERTIES = (
 
 
 def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:
-    """Shear stiffness kappa G A [N] of rectangular sections with the axial stiffness E A, by Cowper (1966)."""
+    """Shear stiffness kappa G A [N] of rectangular sections of the axial stiffness E A, by Cowper (1966)."""
     nu = real("poissons_ratio", poissons_ratio)
     bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
     refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")

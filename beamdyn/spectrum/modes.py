@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -40,6 +40,7 @@ from beamdyn.scene.validity import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_MOST_JUDGED = 16  # speeds of a locus at which its model error is computed
 _EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones
 
 
@@ -111,7 +112,7 @@ class Modes(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects that the model leaves out would change in each frequency (m,)."""
-        return left_out_of_modes(self.model, self.speed, self.eigenvalue)
+        return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
         """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).
@@ -309,8 +310,8 @@ def _provenance(solution: EstimatedModes, start: float) -> Provenance:
 class Locus(StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
-    `error` is that of the numbers; `model_error` (S, m) and `left_out`, computed when asked for, are what the
-    physics left out would change; `left_out_at` computes them for some of the speeds.
+    `error` is that of the numbers; `model_error` (k, m) and `left_out`, computed when asked for, are what the
+    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.
 
     Parameters
     ----------
@@ -357,13 +358,22 @@ class Locus(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects that the model leaves out would change in each frequency (S, m)."""
-        return self.left_out_at(range(len(self.speeds)))
+        """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
+        return self.left_out_at(_spread(len(self.speeds), _MOST_JUDGED))
 
-    def left_out_at(self, indices: Iterable[int]) -> LeftOutEffects:
-        """What the effects left out would change at the speeds of k indices: changes (k, m)."""
-        each = [left_out_of_modes(self.model, float(self.speeds[s]), self.eigenvalue[s]) for s in indices]
-        return LeftOutEffects.stack(each)
+    @property
+    def left_out_speeds(self) -> np.ndarray:
+        """Speeds of the locus at which its model error is computed, the ends among them [rad/s], (k,)."""
+        return self.speeds[_spread(len(self.speeds), _MOST_JUDGED)]
+
+    def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
+        """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
+        at = np.asarray(indices, dtype=int)
+        return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
@@ -435,6 +445,11 @@ def frequency_locus(
         scene=scene,
         model=solution.model,
     )
+
+
+def _spread(count: int, most: int) -> np.ndarray:
+    """Indices of at most so many of a number of speeds, evenly spread, the ends among them."""
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
 
 
 def _track_shares(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
