@@ -31,15 +31,15 @@ class LeftOutEffects:
         Effects whose change rests on an assumption, and on which.
     not_modelled : tuple of str
         Effects that no model here has.
-    included_by : dict of str to str
-        How a model includes an effect.
+    reasons : dict of str to str
+        What the model assumes in place of each effect, and how to include it.
     """
 
     changes: dict[str, np.ndarray]
     not_known: dict[str, str]
     assumed: dict[str, str]
     not_modelled: tuple[str, ...]
-    included_by: dict[str, str]
+    reasons: dict[str, str]
 
     @property
     def total(self) -> np.ndarray:
@@ -49,7 +49,7 @@ class LeftOutEffects:
     def at(self, index: Any) -> LeftOutEffects:
         """The same for some of the values."""
         changes = {name: change[index] for name, change in self.changes.items()}
-        return LeftOutEffects(changes, self.not_known, self.assumed, self.not_modelled, self.included_by)
+        return LeftOutEffects(changes, self.not_known, self.assumed, self.not_modelled, self.reasons)
 
     # In words -----------------------------------------------------------------------------------------
 
@@ -92,7 +92,7 @@ class LeftOutEffects:
         total = self.total
         if np.isfinite(total).any() and np.nanmax(total) > limit:
             largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
-            change, how = say_change(_largest(self.changes[largest])), self.included_by.get(largest, "")
+            change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
             size = say_size(np.nanmax(total))
             yield (
                 f"{where and where + ' '}the model error, {size}, exceeds {say_size(limit)}: "

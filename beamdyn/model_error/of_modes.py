@@ -90,7 +90,7 @@ def nothing_known(scene: Scene) -> LeftOutEffects:
     additions, not_known, not_modelled = list_effects(scene)
     names = [LARGE_DEFLECTION] if leaves_out_large_deflection(scene) else []
     unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
-    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _ways(scene))
+    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
 
 
 def _gather(simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray, str]]) -> LeftOutEffects:
@@ -103,7 +103,7 @@ def _gather(simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray,
     for addition in additions:
         changes[addition.name] = _change_by(simple, addition, change)
     assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}
-    return LeftOutEffects(changes, not_known, assumed, not_modelled, _ways(simple.scene))
+    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene))
 
 
 def leaves_out_large_deflection(scene: Scene) -> bool:
@@ -116,14 +116,9 @@ def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray
     return change(equations.steady(), lambda v: simple.embed(equations, v))
 
 
-def _ways(scene: Scene) -> dict[str, str]:
-    """How a model includes each effect."""
-    values = {effect.name: (effect.physics, effect.physics == "planes") for effect in list_left_out(scene)}
-    return {
-        name: f"Physics({field}={2 if planes else True}) models it"
-        for name, (field, planes) in values.items()
-        if field
-    }
+def _reasons(scene: Scene) -> dict[str, str]:
+    """What the model assumes in place of each effect, and how to include it."""
+    return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 
 def _change_of_frequencies(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
