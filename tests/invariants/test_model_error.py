@@ -33,7 +33,7 @@ SPEED = 300.0
 @pytest.mark.parametrize("ratio", [0.0, 0.02])
 @pytest.mark.parametrize("effect", CASES)
 def test_estimate_is_what_solving_gives(effect: str, ratio: float) -> None:
-    """Two steps of inverse iteration converge to second and higher order: 1e-3 of a change of some percent."""
+    """Two steps of inverse iteration leave terms of higher order: 1e-3 of a change of some percent."""
     physics, mount, beam = CASES[effect]
     scene = bd.Scene(beam, mount, damping_ratio=ratio)
     without = bd.natural_modes(scene, SPEED, 3)
