@@ -26,13 +26,14 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn.modal.model import Model
-from beamdyn.model_error.effects import Addition, list_effects
+from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
 from benchmarks.cases.random_physics import random_mount, random_physics_beam, random_speed
 from benchmarks.rows import Row, show, time_text
 
 SEED = 15
 _MODES = 3
 _FUNCTIONS = 18  # for the reference, over all segments
+_ELEMENTS = 40  # of the reference for large deflection
 _MORE_MODES = 12  # solved with the effect, among which a mode may be
 _LEAST, _MOST = 1e-3, 0.1  # sizes of changes that are judged
 _FACTOR, _SHARE = 2.0, 0.95  # of the truth, within which this share is aimed at
@@ -70,7 +71,20 @@ def measure(number: int, seed: int) -> list[Answer]:
             return [Answer(number, "all", perf_counter() - start, refusal=str(error))]
         time = perf_counter() - start
         additions, _, _ = list_effects(scene)
-        return [_answer(number, modes, added, left_out[added.name], time) for added in additions]
+        found = [_answer(number, modes, added, left_out[added.name], time) for added in additions]
+        return [*found, *_bent_answer(number, modes, time)]
+
+
+def _bent_answer(number: int, modes: bd.Modes, time: float) -> Iterator[Answer]:
+    """The change by large deflection, where it can be combined with the rest, by finite elements."""
+    scene, estimated = modes.scene, modes.left_out[LARGE_DEFLECTION]
+    try:
+        physics = replace(scene.physics, large_deflection=True)
+        bent = bd.natural_modes(replace(scene, physics=physics), modes.speed, _MODES, bd.Fem(_ELEMENTS))
+    except (ValueError, ArithmeticError):  # oblique, or more physics; or there is no such equilibrium
+        return
+    true = bent.frequency / modes.frequency - 1
+    yield Answer(number, LARGE_DEFLECTION, time, tuple(estimated.tolist()), tuple(true.tolist()))
 
 
 def random_left_out_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:

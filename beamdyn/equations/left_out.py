@@ -29,7 +29,6 @@ class OmittedEffect:
 
 
 _NEVER = (
-    OmittedEffect("large deflection", "the equations are linear about the straight beam"),
     OmittedEffect("torsion", "the beam is rigid against torsion"),
     OmittedEffect(
         "offsets of sections", "their centres of gravity, tension and shear are on one straight line"
@@ -53,6 +52,10 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     if not physics.stretch:
         given = _how("stretch=True", beam.axial_stiffness is not None, "axial_stiffness")
         yield OmittedEffect("stretch", f"the beam is inextensible; {given}", "stretch")
+    if not physics.large_deflection:
+        given = _how("large_deflection=True", True, "")
+        reason = f"the equations are linear about the straight beam; {given}"
+        yield OmittedEffect("large deflection", reason, "large_deflection")
     yield from _NEVER
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -17,6 +18,7 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
 from beamdyn.scene.scene import Scene
 
+_STRAIGHT = "as of the straight beam"
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
 
 Embedding: TypeAlias = Callable[[np.ndarray], np.ndarray]  # of vectors in the coordinates with an effect
@@ -41,7 +43,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
         with it.
     """
-    simple = Simple.of(model, eigenvalue.shape[1])
+    simple = Simple.of(without_large_deflection(model), eigenvalue.shape[1])
     found = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
 
     def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
@@ -52,7 +54,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
         return np.where(_vibrate(eigenvalue), changes, np.nan), reason
 
-    return _gather(simple, change, bent)
+    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
 
 
 def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
@@ -70,7 +72,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     LeftOutEffects
         Relative changes, of shape ().
     """
-    simple = Simple.of(model, 1)
+    simple = Simple.of(without_large_deflection(model), 1)
     pencil = simple.pencil()
     v = buckling_mode(pencil, critical)
     known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
@@ -79,36 +81,43 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         return np.array(shift_critical_speed(pencil, known, embed(v)) / known - 1)
 
     def bent() -> tuple[np.ndarray, str]:
-        does = bends(model, critical)  # if not, the straight beam is an equilibrium until it buckles
+        does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
         return np.array(np.nan if does else 0.0), NO_CRITICAL_SPEED if does else ""
 
-    return _gather(simple, change, bent)
+    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
 
 
 def nothing_known(scene: Scene) -> LeftOutEffects:
     """The effects that a scene leaves out, where there is no value that they could change."""
     additions, not_known, not_modelled = list_effects(scene)
-    names = [LARGE_DEFLECTION] if leaves_out_large_deflection(scene) else []
+    names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION]
     unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
     return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
 
 
-def _gather(simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray, str]]) -> LeftOutEffects:
+def _gather(
+    simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray, str]] | None
+) -> LeftOutEffects:
     """All effects: of each that can be added, the change by its equations; and that by large deflection."""
     additions, not_known, not_modelled = list_effects(simple.scene)
     changes = {}
-    if leaves_out_large_deflection(simple.scene):
+    if bent is not None:
         changes[LARGE_DEFLECTION], reason = bent()
         not_known |= {LARGE_DEFLECTION: reason} if reason else {}
     for addition in additions:
         changes[addition.name] = _change_by(simple, addition, change)
     assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}
+    if bent is None:
+        assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}
     return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene))
 
 
-def leaves_out_large_deflection(scene: Scene) -> bool:
-    """Whether a scene leaves large deflection out."""
-    return any(effect.name == LARGE_DEFLECTION for effect in list_left_out(scene))
+def without_large_deflection(model: Model) -> Model:
+    """The model of the straight beam, for which the other effects are estimated."""
+    if not model.scene.physics.large_deflection:
+        return model
+    physics = replace(model.scene.physics, large_deflection=False, branch="straight")
+    return Model(replace(model.scene, physics=physics), model.discretization)
 
 
 def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray:
