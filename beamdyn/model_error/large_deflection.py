@@ -77,6 +77,8 @@ def _comparable(scene: Scene) -> tuple[Scene, Scene]:
 
 def _change_at(straight: Model, bent: Model, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, str]:
     """Relative changes (m,) at one speed, and why they are not known."""
+    if not speed:
+        return np.zeros(len(eigenvalue)), ""
     count, speeds = min(len(eigenvalue) + _EXTRA_MODES, straight.solver.size), np.array([speed])
     without = straight.solver.solve(speeds, count).eigenvalue[0]
     _, order = linear_sum_assignment(np.abs(eigenvalue[:, None] - without[None, :]))
