@@ -15,12 +15,11 @@ from benchmarks.cases.reference import twisted_beam
 from benchmarks.cases.reference.elastica import (
     Body,
     Elastica,
-    branch_at,
     constant,
     converged,
     critical_speed,
     exponents,
-    fold,
+    fold_beside,
     frequencies,
     from_rest,
 )
@@ -163,7 +162,7 @@ def test_exponents_about_a_stable_equilibrium_are_imaginary():
 def test_frequency_vanishes_at_the_fold():
     """To the root of a square that is rounding."""
     beam = Elastica(centre=(4.3 * math.cos(0.1), 4.3 * math.sin(0.1)))
-    lowest = fold(branch_at(beam, 1.0))
+    lowest = fold_beside(beam, side=1)
     assert np.abs(exponents(lowest, 1))[0] < 1e-5
     with pytest.raises(NotFound, match="straight"):
         critical_speed(beam)

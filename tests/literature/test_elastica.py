@@ -15,11 +15,10 @@ from benchmarks.cases.elastica import harvester_at, published, scene_of
 from benchmarks.cases.reference.elastica import (
     Elastica,
     State,
-    branch_at,
     converged,
     critical_speed,
     equilibria_bent_to,
-    fold,
+    fold_beside,
     growth,
     slowest,
 )
@@ -81,7 +80,7 @@ def test_second_method_finds_the_pitchfork() -> None:
 
 
 def test_second_method_finds_the_fold() -> None:
-    found = fold(branch_at(at_5_deg(), 1.0))
+    found = fold_beside(at_5_deg(), side=1)
     assert_digits(found.gamma / UNIT, KNOWN["fold"]["speed"])
 
 

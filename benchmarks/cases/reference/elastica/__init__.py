@@ -53,6 +53,7 @@ from benchmarks.cases.reference.elastica.branches import (
     critical_speed,
     equilibria_bent_to,
     fold,
+    fold_beside,
     slowest,
 )
 from benchmarks.cases.reference.elastica.converge import Answer, converged
@@ -72,6 +73,7 @@ __all__ = [
     "equilibria_bent_to",
     "exponents",
     "fold",
+    "fold_beside",
     "frequencies",
     "from_rest",
     "growth",

@@ -19,7 +19,7 @@ _TOLERANCE = 1e-14
 _SETTLED = 1e-11
 _FIRST_ANGLE = 0.05  # of the tip, on leaving the pitchfork [rad]
 _BESIDE = 1e-3  # angle of the tip of a beam that is just bent [rad]
-_PAST_FOLD = 1.0  # angle of the tip at which a branch with a fold is entered [rad]
+_ENTRIES = (1.0, 1.5, 2.0, 0.5, 2.5)  # angles of the tip at which a branch with a fold may be entered [rad]
 _STEP = 0.1  # of the tip's angle along a branch [rad]
 _NEAR = 1e-2  # half the interval of speeds, relative, of the polynomial through the least frequency
 _LARGEST_ANGLE = 3.0  # of the tip, to which branches are followed [rad]
@@ -129,6 +129,16 @@ def fold(start: State) -> State:
     return branch.at(_root(branch.slope, angle, end))
 
 
+def fold_beside(beam: Elastica, side: int) -> State:
+    """The fold of the branch on one side."""
+    for angle in _ENTRIES:
+        try:
+            return fold(branch_at(beam, side * angle))
+        except NotFound:
+            continue
+    raise NotFound("no fold found")
+
+
 def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
     """Those beside the branch from rest, at one speed, from the least angle of the tip to the largest.
 
@@ -138,7 +148,7 @@ def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
     if beam.is_symmetric:
         lowest = branch_at(beam, side * _BESIDE)
     else:
-        lowest = fold(branch_at(beam, side * _PAST_FOLD))
+        lowest = fold_beside(beam, side)
     if lowest.gamma >= gamma:
         return []
     ends = (_limit(lowest),) if beam.is_symmetric else (0.0, _limit(lowest))

@@ -62,6 +62,11 @@ class Collocation:
     def size(self) -> int:
         return self.turn.shape[1] - self.free.start
 
+    @property
+    def row_weights(self) -> np.ndarray:
+        """Of the equations in virtual work: 1 at the root, and of the nodes those of their integrals."""
+        return np.append(1.0, self.weights)[self.free]
+
     @cached_property
     def tip_angle(self) -> np.ndarray:
         """Row of theta(1) over q."""

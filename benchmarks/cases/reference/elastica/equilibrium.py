@@ -13,6 +13,7 @@ _TOLERANCE = 3e-15  # of curvatures, over the largest of them and 1
 _SETTLED = 1e-11  # a change that rounding need not bring further down
 _STEPS = 30
 _LARGEST_TURN = 0.15  # of any slope in one step of continuation [rad]
+_LARGEST_CORRECTION = 0.03  # of any slope from where the tangent leads [rad]
 _LEAST_STEP = 1e-9
 
 
@@ -56,9 +57,13 @@ class State:
         return self.equations.stiffness(self.q, self.square)
 
     @property
-    def index(self) -> int:
-        """The sign of the determinant of the stiffness: it changes at folds and pitchforks."""
-        return int(np.linalg.slogdet(self.stiffness)[0])
+    def downhill(self) -> int:
+        """In how many directions the energy falls: it changes at folds and pitchforks.
+
+        The stiffness is the second derivative of the energy, but for the weights of the nodes.
+        """
+        weighted = self.equations.row_weights[:, None] * self.stiffness
+        return int((np.linalg.eigvalsh((weighted + weighted.T) / 2) < 0).sum())
 
 
 def polished(start: State, steps: int = _STEPS) -> State:
@@ -96,8 +101,8 @@ def _interpolated(state: State, x: np.ndarray) -> np.ndarray:
 def from_rest(beam: Elastica, gamma: float, pieces: int = 3, nodes: int = NODES) -> State:
     """The equilibrium continued from the straight beam at rest in gamma^2.
 
-    A step is halved until Newton's method ends close to where the tangent led and the determinant of the
-    stiffness keeps its sign; only the straight beam of a symmetric scene may pass its pitchfork.
+    A step is halved until Newton's method ends close to where the tangent led, and the energy falls in as many
+    directions as before; only the straight beam of a symmetric scene may pass its pitchfork.
     """
     equations = Collocation(beam, pieces, nodes)
     state = State(equations, np.zeros(equations.size), 0.0)
@@ -125,7 +130,7 @@ def _advanced(state: State, step: float) -> State:
         raise NotFound("a step too long")
     guess = replace(state, q=state.q + step * tangent, square=state.square + step)
     found = polished(guess, steps=8)
-    strayed = np.abs(turn @ (found.q - guess.q)).max() > _LARGEST_TURN / 2
-    if strayed or found.index != state.index:
+    strayed = np.abs(turn @ (found.q - guess.q)).max() > _LARGEST_CORRECTION
+    if strayed or found.downhill != state.downhill:
         raise NotFound("another branch")
     return found
