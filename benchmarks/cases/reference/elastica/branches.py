@@ -145,10 +145,7 @@ def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
     A symmetric scene has one on either side past its pitchfork; any other has two past its fold, between the
     straight beam, which the inner one approaches at high speeds, and the beam coiled up.
     """
-    if beam.is_symmetric:
-        lowest = branch_at(beam, side * _BESIDE)
-    else:
-        lowest = fold_beside(beam, side)
+    lowest = branch_at(beam, side * _BESIDE) if beam.is_symmetric else fold_beside(beam, side)
     if lowest.gamma >= gamma:
         return []
     ends = (_limit(lowest),) if beam.is_symmetric else (0.0, _limit(lowest))

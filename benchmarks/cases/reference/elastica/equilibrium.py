@@ -101,8 +101,8 @@ def _interpolated(state: State, x: np.ndarray) -> np.ndarray:
 def from_rest(beam: Elastica, gamma: float, pieces: int = 3, nodes: int = NODES) -> State:
     """The equilibrium continued from the straight beam at rest in gamma^2.
 
-    A step is halved until Newton's method ends close to where the tangent led, and the energy falls in as many
-    directions as before; only the straight beam of a symmetric scene may pass its pitchfork.
+    A step is halved until Newton's method ends close to where the tangent led, and the energy falls in as
+    many directions as before; only the straight beam of a symmetric scene may pass its pitchfork.
     """
     equations = Collocation(beam, pieces, nodes)
     state = State(equations, np.zeros(equations.size), 0.0)
