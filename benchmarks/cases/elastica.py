@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any
+from typing import Any, Literal
 
 import beamdyn as bd
 from beamdyn.published import load
 from benchmarks.cases.reference.of_elastica import SceneAnswer, answer, bent_answer
 from benchmarks.cases.reference.twisted_beam.cases import piecewise
 from benchmarks.cases.scenes import HARVESTER
+
+Branch = Literal["straight", "bent"]
 
 # Published ------------------------------------------------------------------------------------------
 
@@ -24,19 +26,18 @@ def published() -> dict[str, Any]:
 def scene_of(row: dict[str, Any]) -> bd.Scene:
     """The scene of a published nondimensional row; its speed is in rad/s."""
     angles = (math.radians(row[name]) for name in ("setting_angle_deg", "bending_angle_deg"))
-    return bd.Scene(
-        bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(row["radius"], *angles), physics=_physics()
-    )
+    beam, physics = bd.Beam.from_stiffness(1.0, 1.0, 1.0), _physics(branch=row["branch"])
+    return bd.Scene(beam, bd.Mount(row["radius"], *angles), physics=physics)
 
 
-def harvester_at(setting_angle_deg: float) -> bd.Scene:
+def harvester_at(setting_angle_deg: float, branch: Branch = "straight") -> bd.Scene:
     """The harvester of Lee and Yoo (2019) at a setting angle."""
     mount = replace(HARVESTER.mount, setting_angle=math.radians(setting_angle_deg))
-    return replace(HARVESTER, mount=mount, physics=_physics())
+    return replace(HARVESTER, mount=mount, physics=_physics(branch=branch))
 
 
-def _physics(rotary_inertia: bool = False) -> bd.Physics:
-    return bd.Physics(rotary_inertia=rotary_inertia, large_deflection=True)
+def _physics(rotary_inertia: bool = False, branch: Branch = "straight") -> bd.Physics:
+    return bd.Physics(rotary_inertia=rotary_inertia, large_deflection=True, branch=branch)
 
 
 # Our own --------------------------------------------------------------------------------------------
@@ -79,10 +80,10 @@ class Case:
                 given[name] = piecewise(given[name], stops)
         beam = bd.Beam.from_stiffness(**given, tip=bd.TipMass(**self.tip) if self.tip else None)
         mount = bd.Mount(self.radius, math.radians(self.setting), math.radians(self.bending), self.spring)
-        return bd.Scene(beam, mount, physics=_physics("rotary_inertia" in given))
+        return bd.Scene(beam, mount, physics=_physics("rotary_inertia" in given, self.branch))
 
     @property
-    def branch(self) -> str:
+    def branch(self) -> Branch:
         return "bent" if self.bent_to else "straight"
 
 
