@@ -22,7 +22,7 @@ _BESIDE = 1e-3  # angle of the tip of a beam that is just bent [rad]
 _ENTRIES = (1.0, 1.5, 2.0, 0.5, 2.5)  # angles of the tip at which a branch with a fold may be entered [rad]
 _STEP = 0.1  # of the tip's angle along a branch [rad]
 _NEAR = 1e-2  # half the interval of speeds, relative, of the polynomial through the least frequency
-_LARGEST_ANGLE = 3.0  # of the tip, to which branches are followed [rad]
+_LARGEST_ANGLE = 6.0  # of the tip, to which branches are followed [rad]
 
 
 def critical_speed(beam: Elastica, pieces: int = 2, nodes: int = NODES) -> float:
