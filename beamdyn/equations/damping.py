@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
-_BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
+from beamdyn.equations.rounding import BACKWARD
 
 
 def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarray:
@@ -27,5 +27,5 @@ def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarra
 def _quotients(K: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Quotients v^T K v (k,), 0 within rounding: 1 - shift mu, without its loss of digits on soft springs."""
     quotient = np.einsum("nk,nk->k", v, K @ v)
-    lost = _BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))
+    lost = BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))
     return np.where(quotient > lost, quotient, 0.0)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.equations.root_motion import exact_cos_sin
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import Mount, exact_cos_sin
 from beamdyn.scene.scene import Scene
 
 # Directions in words, and in a word.

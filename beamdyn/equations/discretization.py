@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
@@ -30,20 +31,12 @@ HINGED = RootConditions(1, 2)  # a deflection that may turn about the root, by i
 FIXED = RootConditions(1, 1)  # a displacement, such as the stretch
 
 
-class Space(Protocol):
-    """Trial functions phi_i of xi = x/L on [0, 1] that satisfy the boundary conditions at the root."""
+class Functions(Protocol):
+    """Functions phi_i of xi = x/L on [0, 1]."""
 
     @property
     def size(self) -> int:
         """Number n of functions."""
-        ...
-
-    def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
-        ...
-
-    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate over xi the weight times the `order`-th derivative of phi_i: shape (n,)."""
         ...
 
     def end(self, order: int) -> np.ndarray:
@@ -52,6 +45,18 @@ class Space(Protocol):
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Evaluate the `order`-th derivatives of phi_i at xi of shape (k,): shape (n, k)."""
+        ...
+
+
+class Space(Functions, Protocol):
+    """Trial functions phi_i that satisfy the boundary conditions at the root."""
+
+    def gram(self, weight: Profile, order: int) -> np.ndarray:
+        """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
+        ...
+
+    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
+        """Integrate over xi the weight times the `order`-th derivative of phi_i: shape (n,)."""
         ...
 
 
@@ -103,6 +108,10 @@ class Discretization(Protocol):
 
     def spaces(self, beam: Beam) -> Spaces:
         """The function spaces on a beam."""
+        ...
+
+    def cells(self, beam: Beam) -> Cells:
+        """Parts of the beam on which the functions are smooth, for integrals of large deflections."""
         ...
 
     def coarser(self) -> Discretization:

@@ -357,13 +357,13 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
         deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
     )
     if turning := [name for name, field in fields.items() if field.turns_at_root]:
-        equations = replace(equations, shift=_find_shift(equations, turning))
+        equations = replace(equations, shift=_find_lowest_clamped(equations, turning))
     if not scene.damping_ratio:
         return equations
     return replace(equations, terms=(*equations.terms, *_damping(equations, scene.damping_ratio)))
 
 
-def _find_shift(equations: Equations, turning: list[str]) -> float:
+def _find_lowest_clamped(equations: Equations, turning: list[str]) -> float:
     """Find the lowest squared angular frequency of the beam with a clamped root [1/s2]."""
     pencil = equations.steady()
     clamped = np.delete(np.arange(equations.size), [equations.blocks[name].start for name in turning])

@@ -10,8 +10,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.equations.root_motion import RootMotion, exact_cos_sin, root_motion
+from beamdyn.equations.root_motion import RootMotion, root_motion
 from beamdyn.scene.motion import Motion, MotionSample, SteadyRotation
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 

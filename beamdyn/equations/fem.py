@@ -12,6 +12,7 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 
 from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
@@ -19,6 +20,7 @@ from beamdyn.scene.sections import weight_degree
 
 MOST_ELEMENTS = 1000  # largest number accepted
 _MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
+_POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
 # Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.
 _ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
@@ -75,6 +77,10 @@ class Fem:
         """Build the function spaces on a beam."""
         order = 6 + min(8, weight_degree(beam))
         return FemSpaces(self.nodes(beam), order)
+
+    def cells(self, beam: Beam) -> Cells:
+        """The elements."""
+        return Cells(self.nodes(beam), _POINTS)
 
     def coarser(self) -> Fem:
         """A mesh of half as many elements."""
@@ -187,7 +193,7 @@ class FemSpace(FieldsOnly):
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
         """Integrate the weight times the `order`-th derivatives of functions i and j."""
-        matrix = _GRAMS[order].assemble(self.basis, weight=self.weights(weight))
+        matrix = _PRODUCTS[order, order].assemble(self.basis, weight=self.weights(weight))
         return matrix.toarray()[np.ix_(self.free, self.free)]
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
@@ -215,38 +221,10 @@ class FemSpace(FieldsOnly):
 # Weak forms.  Their arguments are scikit-fem's, which has no types for them.
 
 
-@BilinearForm
-def _product(u: Any, v: Any, w: Any) -> Any:
-    return w.weight * u * v
-
-
-@BilinearForm
-def _slopes(u: Any, v: Any, w: Any) -> Any:
-    return w.weight * u.grad[0] * v.grad[0]
-
-
-@BilinearForm
-def _curvatures(u: Any, v: Any, w: Any) -> Any:
-    return w.weight * u.hess[0][0] * v.hess[0][0]
-
-
-@LinearForm
-def _load(v: Any, w: Any) -> Any:
-    return w.weight * v
-
-
-@LinearForm
-def _slope_load(v: Any, w: Any) -> Any:
-    return w.weight * v.grad[0]
-
-
-@LinearForm
-def _curvature_load(v: Any, w: Any) -> Any:
-    return w.weight * v.hess[0][0]
-
-
 def _derivative(u: Any, order: int) -> Any:
-    return (u, u.grad[0] if order else None, u.hess[0][0] if order == 2 else None)[order]
+    if order == 0:
+        return u
+    return u.grad[0] if order == 1 else u.hess[0][0]
 
 
 def _product_of(rows: int, columns: int) -> BilinearForm:
@@ -254,6 +232,10 @@ def _product_of(rows: int, columns: int) -> BilinearForm:
     return BilinearForm(lambda u, v, w: w.weight * _derivative(u, columns) * _derivative(v, rows))
 
 
-_PRODUCTS = {(a, b): _product_of(a, b) for a in range(3) for b in range(3)} | {(0, 0): _product}
-_GRAMS = (_product, _slopes, _curvatures)
-_LOADS = (_load, _slope_load, _curvature_load)
+def _load_of(order: int) -> LinearForm:
+    """Form of the derivative of an order."""
+    return LinearForm(lambda v, w: w.weight * _derivative(v, order))
+
+
+_PRODUCTS = {(a, b): _product_of(a, b) for a in range(3) for b in range(3)}
+_LOADS = tuple(_load_of(order) for order in range(3))

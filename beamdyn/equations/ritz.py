@@ -13,12 +13,14 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
+_POINTS_OF_TURNS = 12  # Gauss points on each segment beyond those that integrate small deflections exactly
 
 Evaluation = Callable[[np.ndarray, int], np.ndarray]  # (xi of shape (k,), order) -> shape (n, k)
 
@@ -63,6 +65,10 @@ class Ritz:
         """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
         return degree + 2 + weight_degree(beam) // 2 + 1
+
+    def cells(self, beam: Beam) -> Cells:
+        """The segments, with points enough for cosine and sine of a slope of several turns."""
+        return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""

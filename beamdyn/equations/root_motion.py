@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin
 from typing import Literal
 
 import numpy as np
 
 from beamdyn.scene.motion import MotionSample
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import Mount, exact_cos_sin
 
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
@@ -78,9 +77,3 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
         root_transverse=cpsi * a2 + spsi * v3,
         root_across=cpsi * v3 - spsi * a2,
     )
-
-
-def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn."""
-    c, s = cos(angle), sin(angle)
-    return (0.0 if abs(c) < 2e-16 else c), (0.0 if abs(s) < 2e-16 else s)

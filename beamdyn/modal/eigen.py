@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -17,8 +16,9 @@ import scipy.linalg
 from scipy.linalg import solve_triangular
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.massless import condense, has_massless
-from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.springs import (
     find_free_turns,
     insert_free_turns,
@@ -31,7 +31,7 @@ from beamdyn.modal.springs import (
 )
 
 _EPS = np.finfo(float).eps
-# Rounding errors beyond those of `beamdyn.modal.rounding`.
+# Rounding errors beyond those of `beamdyn.equations.rounding`.
 _CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
@@ -40,28 +40,8 @@ _LARGEST_BATCHED = 64  # size of matrices up to which one batched call computes 
 _REAL = 1e-8  # relative growth rate of a mode below which it counts as stable: rounding of a double root
 
 
-@dataclass(frozen=True)
-class Eigen:
-    """The k lowest modes at each of S speeds.
-
-    Parameters
-    ----------
-    eigenvalue : ndarray, shape (S, k)
-        Eigenvalues s of q = v exp(s t) [1/s]: of each conjugate pair the one with Im s > 0, of each real
-        pair the larger.
-    vector : ndarray, shape (S, n, k)
-        Mass-normalised eigenvectors v; real if the equations are conservative.
-    rounding : ndarray, shape (S, k)
-        Estimated relative rounding error of |s|.
-    """
-
-    eigenvalue: np.ndarray
-    vector: np.ndarray
-    rounding: np.ndarray
-
-
-class Solver:
-    """Eigensolver of the equations at any steady speed.
+class Solver(Eigensolver):
+    """Eigensolver by full matrices, for all modes.
 
     Parameters
     ----------
@@ -77,8 +57,6 @@ class Solver:
         Coordinates of the pencil per coordinate of the solver.
     mass : ndarray, shape (n, n)
         Mass matrix in the coordinates of the solver.
-    lowest_at_rest : float
-        Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`.
     """
 
     def __init__(self, pencil: SteadyPencil) -> None:
@@ -89,29 +67,23 @@ class Solver:
         self.growth = growth
         self.basis = solve_triangular(L, Q, trans="T", lower=True)
         self.mass = _symmetrize(Q.T @ _transform_by_inverse(L, pencil.M) @ Q)
-        self.lowest_at_rest = 1 / np.linalg.eigvalsh(self.mass)[-1]
 
-    @property
-    def size(self) -> int:
-        """Number n of coordinates and modes."""
-        return len(self.growth)
+    @cached_property
+    def lowest_at_rest(self) -> float:
+        """By the largest eigenvalue of the mass in the coordinates of the solver."""
+        return 1 / np.linalg.eigvalsh(self.mass)[-1]
 
     @property
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        """By the lowest growth of the stiffness; on springs, without that of the shift."""
         if self.pencil.shift:
             return self._softening_on_springs[0]
         lowest = -float(self.growth[0])
         return lowest if lowest > 2 * BACKWARD * np.abs(self.growth).max() else 0.0
 
     @property
-    def critical_speed(self) -> float:
-        """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
-        return self.softening**-0.5 if self.softening else np.inf
-
-    @property
     def critical_rounding(self) -> float:
-        """Estimated relative rounding error of the critical speed."""
+        """That of the softening, which is relative to the largest growth."""
         if self.pencil.shift:
             return self._softening_on_springs[1]
         softening = self.softening
@@ -128,13 +100,7 @@ class Solver:
         return has_massless(self.mass)
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes at each speed [rad/s].
-
-        Raises
-        ------
-        LinAlgError
-            A ValueError: if stiffness and mass span more digits than double precision has.
-        """
+        """Conservative equations for all speeds at once, others speed by speed."""
         with explained():
             if self.pencil.conservative:
                 return self._solve_conservative(speeds, count)
@@ -142,7 +108,7 @@ class Solver:
         return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
+        """Without vectors where the equations are conservative, and stiff at each speed."""
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         if not self.pencil.conservative or stiffness.min() < LEAST_STIFFNESS or self.pencil.shift:
             return self.solve(speeds, count).eigenvalue
@@ -151,20 +117,7 @@ class Solver:
         return 1j / np.sqrt(_above_rounding(mu[:, : -count - 1 : -1]))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium under the rotation.
-
-        Parameters
-        ----------
-        speeds : ndarray, shape (S,)
-            Speeds [rad/s].
-        outputs : ndarray, shape (d, n)
-            The functions per coordinate, such as the tip deflections.
-
-        Returns
-        -------
-        ndarray, shape (S, d)
-            nan from the critical speed on.
-        """
+        """In the coordinates of the solver, in which each is by itself."""
         if self.pencil.shift:
             return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
@@ -202,11 +155,9 @@ class Solver:
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
         growth = max(1.0, self.size / ROUNDING_SIZE)  # rounding adds up over the functions
         rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
-        return (
-            rounding
-            if self.pencil.planes == 1
-            else rounding + cancelled(self.pencil, speeds, squared, vector)
-        )
+        if self.pencil.planes == 1:
+            return rounding
+        return rounding + cancelled(self.pencil, speeds, squared, vector)
 
     # Gyroscopic and damped equations ----------------------------------------------------------------
 

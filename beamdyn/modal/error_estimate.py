@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.modal.eigen import Eigen
+from beamdyn.modal.eigensolver import Eigen
 from beamdyn.modal.model import Model
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing

@@ -15,24 +15,24 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigen import (
     LEAST_STIFFNESS,
-    Eigen,
     Solver,
     cancelled,
     explained,
     forward_error,
     select_lowest,
 )
-from beamdyn.modal.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.modal.eigensolver import Eigen, Eigensolver
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
 _RESTARTS = 50  # of the iteration, which converges after a few, if at all
 
 
-class LargeSolver:
-    """Eigensolver with the interface of `Solver`, for the lowest few of many modes.
+class LargeSolver(Eigensolver):
+    """Eigensolver for the lowest few of many modes.
 
     Where the stiffness is not safely positive definite, or the iteration does not converge, it works as
     `Solver` does.
@@ -53,44 +53,30 @@ class LargeSolver:
         """Solver by full matrices."""
         return Solver(self.pencil)
 
-    @property
-    def size(self) -> int:
-        """Number n of coordinates and modes."""
-        return len(self.pencil.M)
-
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        """By the iteration."""
         with suppress(ArpackNoConvergence):
             return float(1 / self._largest(self._transformed(self._at_rest, self.pencil.M), 1)[0][0])
         return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        """That of `dense`."""
         return self.dense.softening
 
     @property
-    def critical_speed(self) -> float:
-        """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
-        return self.dense.critical_speed
-
-    @property
     def critical_rounding(self) -> float:
-        """Estimated relative rounding error of the critical speed."""
+        """That of `dense`."""
         return self.dense.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes at each speed [rad/s]: as `Solver.solve`."""
+        """Speed by speed."""
         each = [self._solve_at(speed, count) for speed in speeds]
         return Eigen(*(np.array(values) for values in zip(*each, strict=True)))
 
-    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
-        return self.solve(speeds, count).eigenvalue
-
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium: as `Solver.solve_static`."""
+        """Speed by speed, by a factorization of the stiffness."""
         return np.array([self._static(speed, outputs) for speed in speeds])
 
     def _static(self, speed: float, outputs: np.ndarray) -> np.ndarray:

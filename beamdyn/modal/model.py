@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.elastica import Elastica, assemble_elastica
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
+from beamdyn.modal.deflected import DeflectedSolver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modal.uncoupled import AnySolver, solver_of
 from beamdyn.scene.scene import Scene
@@ -30,13 +34,34 @@ class Model(FieldsOnly):
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations of motion."""
+        """Equations of motion, linear about the straight beam."""
         return assemble_equations(self.scene, self.discretization)
 
     @cached_property
-    def solver(self) -> AnySolver:
+    def solver(self) -> AnySolver | DeflectedSolver:
         """Solver of the eigenproblem at steady speeds."""
-        return solver_of(self.equations)
+        if self.elastica is None:
+            return solver_of(self.equations)
+        return DeflectedSolver(self.elastica, self.scene.physics.branch)
+
+    @cached_property
+    def elastica(self) -> Elastica | None:
+        """Equations of motion for deflections of any size; None where they are linear."""
+        if not self.scene.physics.large_deflection:
+            return None
+        return assemble_elastica(self.scene, self.discretization, self.equations)
+
+    def equations_at(self, speed: float) -> Equations:
+        """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
+        if isinstance(self.solver, DeflectedSolver):
+            return self.solver.equations(np.array([speed]))[0]
+        return self.equations
+
+    def static_tips(self, speeds: np.ndarray) -> np.ndarray:
+        """Static deflections of the tip at steady speeds [rad/s] in each direction [m], shape (S, planes)."""
+        if isinstance(self.solver, DeflectedSolver):
+            return self.solver.tips(speeds)
+        return self.solver.solve_static(speeds, self.equations.tips)
 
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
         """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""

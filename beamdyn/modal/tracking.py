@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+_NORMALIZED = 1e-6  # distance of a norm from 1 that is rounding
+
 
 def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Follow modes from each speed to the next by the modal assurance criterion (MAC).
@@ -12,7 +14,8 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     Parameters
     ----------
     vectors : ndarray, shape (S, n, k)
-        Mass-normalised mode vectors at each speed, by ascending frequency.
+        Mode vectors at each speed, by ascending frequency; mass-normalised, or nearly so where the mass
+        varies with the speed.
     mass : ndarray, shape (n, n)
         Mass matrix.
 
@@ -24,6 +27,7 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
         MAC with the same mode at the speed before, minus the largest MAC of that mode with any other: 1
         is certain, 0 or less a guess.
     """
+    vectors = _normalized(vectors, mass)
     mac = np.abs(np.swapaxes(vectors[:-1].conj(), 1, 2) @ (mass @ vectors[1:])) ** 2
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
@@ -36,6 +40,12 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     margin = matched - others.max(axis=2, initial=0.0)
     confidence[1:] = np.take_along_axis(margin, order[:-1], axis=1)
     return order, confidence
+
+
+def _normalized(vectors: np.ndarray, mass: np.ndarray) -> np.ndarray:
+    """Normalise vectors that are not mass-normalised to rounding."""
+    norm = np.sqrt(np.einsum("snk,snk->sk", vectors.conj(), mass @ vectors).real)
+    return vectors / np.where(np.abs(norm - 1) < _NORMALIZED, 1.0, norm)[:, None, :]
 
 
 def _assign(mac: np.ndarray) -> np.ndarray:

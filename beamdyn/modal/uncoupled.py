@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modal.eigen import Eigen, Solver
+from beamdyn.modal.eigen import Solver
+from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.large import LargeSolver
 
 LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 
 
-def solver_of(equations: Equations) -> AnySolver:
+def solver_of(equations: Equations) -> Eigensolver:
     """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart."""
     pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
     return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
 
 
-def _solver_of_part(pencil: SteadyPencil) -> Solver | LargeSolver:
+def _solver_of_part(pencil: SteadyPencil) -> Eigensolver:
     return LargeSolver(pencil) if len(pencil.M) > LARGE else Solver(pencil)
 
 
-class UncoupledSolver:
-    """Eigensolver that solves the parts of a pencil apart, with the interface of `Solver`.
+class UncoupledSolver(Eigensolver):
+    """Eigensolver that solves the parts of a pencil apart.
 
     Parameters
     ----------
@@ -40,37 +42,27 @@ class UncoupledSolver:
         self.parts = tuple(parts)
         self.solvers = tuple(_solver_of_part(pencil.part(part)) for part in parts)
 
-    @property
-    def size(self) -> int:
-        """Number n of coordinates and modes."""
-        return len(self.pencil.M)
-
-    @property
+    @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        """The lowest of all parts."""
         return min(solver.lowest_at_rest for solver in self.solvers)
 
     @property
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        """That of the softest part."""
         return self._softest.softening
 
     @property
-    def critical_speed(self) -> float:
-        """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
-        return self._softest.critical_speed
-
-    @property
     def critical_rounding(self) -> float:
-        """Estimated relative rounding error of the critical speed."""
+        """That of the softest part."""
         return self._softest.critical_rounding
 
     @property
-    def _softest(self) -> Solver | LargeSolver:
+    def _softest(self) -> Eigensolver:
         return max(self.solvers, key=lambda solver: solver.softening)
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes at each speed [rad/s]."""
+        """The lowest of the modes of all parts."""
         found = [solver.solve(speeds, min(count, solver.size)) for solver in self.solvers]
         vectors = [self._embed(part, eigen.vector) for part, eigen in zip(self.parts, found, strict=True)]
         eigenvalue, rounding, vector = (
@@ -85,13 +77,13 @@ class UncoupledSolver:
         )
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
+        """The lowest of those of all parts."""
         each = [solver.eigenvalues(speeds, min(count, solver.size)) for solver in self.solvers]
         together = np.concatenate(each, axis=1)
         return np.take_along_axis(together, _order(together)[:, :count], axis=1)
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium: as `Solver.solve_static`."""
+        """The sums of what the parts contribute."""
         each = zip(self.parts, self.solvers, strict=True)
         return np.sum([solver.solve_static(speeds, outputs[:, part]) for part, solver in each], axis=0)
 
@@ -108,4 +100,4 @@ def _order(eigenvalue: np.ndarray) -> np.ndarray:
     return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")
 
 
-AnySolver: TypeAlias = Solver | LargeSolver | UncoupledSolver
+AnySolver: TypeAlias = Eigensolver  # as `model` names it

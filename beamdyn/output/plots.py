@@ -62,16 +62,10 @@ def plot_growth(
 
     Parameters
     ----------
-    speeds : ndarray, shape (S,)
-        Angular speeds [rad/s].
+    speeds, ax, labels, critical_speed
+        As for `plot_locus`.
     growth_rate : ndarray, shape (S, m)
         Growth rates [1/s]: positive where a mode is unstable, negative where it is damped.
-    ax : Axes, optional
-        Where to draw; new axes if not given.
-    labels : sequence of str, length m, optional
-        For the legend; "mode 1" and so on if not given.
-    critical_speed : float, optional
-        Speed [rad/s] to mark, as `mark_critical` does.
 
     Returns
     -------
@@ -127,8 +121,7 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
     """
     largest = np.abs(shapes).max(axis=1, keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
-    ax.axhline(0, color="0.4", linewidth=0.8)
+    ax = set_up_shapes(ax)
     _draw_lines(ax, x, scaled, labels)
     return add_legend(ax)
 
@@ -402,9 +395,21 @@ def _plot_over_speed(
 ) -> Axes:
     values = np.asarray(values)
     ax = set_up_axes(ax, SPEED_LABEL, quantity)
-    _draw_lines(ax, speeds, values.T, labels or [f"mode {i}" for i in range(1, values.shape[1] + 1)])
+    _draw_lines(ax, speeds, values.T, labels or number_modes(values.shape[1]))
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
     return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
+
+
+def number_modes(count: int) -> list[str]:
+    """Names of modes for the legend."""
+    return [f"mode {i}" for i in range(1, count + 1)]
+
+
+def set_up_shapes(ax: Axes | None) -> Axes:
+    """Label the axes for mode shapes, each over its largest deflection, and draw the beam at rest."""
+    ax = set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
+    ax.axhline(0, color="0.4", linewidth=0.8)
+    return ax
 
 
 def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:

@@ -9,7 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from beamdyn.common.pictures import COLOURS
-from beamdyn.output.plots import SPEED_LABEL, add_legend, is_isolated, set_up_axes
+from beamdyn.output.plots import (
+    SPEED_LABEL,
+    add_legend,
+    is_isolated,
+    number_modes,
+    set_up_axes,
+    set_up_shapes,
+)
 
 
 def plot_locus_by_plane(
@@ -24,26 +31,20 @@ def plot_locus_by_plane(
 
     Parameters
     ----------
-    speeds : ndarray, shape (S,)
-        Angular speeds [rad/s].
-    frequency : ndarray, shape (S, m)
-        Frequencies [Hz]; nan leaves a gap.
+    speeds, frequency, ax, labels
+        As for `beamdyn.output.plots.plot_locus`.
     share : ndarray, shape (S, m)
         Share of each mode's energy in the first direction, which is drawn solid.
     directions : tuple of str
         The two directions in words, for the legend.
-    ax : Axes, optional
-        Where to draw; new axes if not given.
-    labels : sequence of str, length m, optional
-        For the legend; "mode 1" and so on if not given.
 
     Returns
     -------
     Axes
     """
     ax = set_up_axes(ax, SPEED_LABEL, "natural frequency [Hz]")
-    labels = labels or [f"mode {i}" for i in range(1, np.shape(frequency)[1] + 1)]
-    columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, labels, strict=True)
+    names = labels or number_modes(np.shape(frequency)[1])
+    columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, names, strict=True)
     for i, (y, solid, label) in enumerate(columns):
         _draw_by_plane(ax, np.asarray(speeds), y, solid, _style_by_plane(i))
         _name_colour(ax, label, i)
@@ -79,8 +80,7 @@ def plot_shapes_by_plane(
     """
     largest = np.abs(shapes).max(axis=(1, 2), keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
-    ax.axhline(0, color="0.4", linewidth=0.8)
+    ax = set_up_shapes(ax)
     for i, (both, label) in enumerate(zip(scaled, labels, strict=True)):
         ax.plot(x, both[0], "-", **_style_by_plane(i))
         ax.plot(x, both[1], "--", **_style_by_plane(i))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from math import cos, sin
 from typing import Annotated, Any
 
 from beamdyn.common.checks import InvalidValue, angle, not_negative, set_fields
@@ -101,3 +102,9 @@ def _spring(name: str, value: object) -> float:
         return not_negative(name, value, "N m/rad", _SPRING["remedy"])
     except InvalidValue as refusal:
         raise replace(refusal, bound="give a number of 0 or more, or inf") from None
+
+
+def exact_cos_sin(angle: float) -> tuple[float, float]:
+    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn."""
+    c, s = cos(angle), sin(angle)
+    return (0.0 if abs(c) < 2e-16 else c), (0.0 if abs(s) < 2e-16 else s)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from beamdyn.common.checks import count, flag, set_fields
+from beamdyn.common.checks import InvalidValue, count, flag, one_of, set_fields
 from beamdyn.common.described import Described
 
 
@@ -24,11 +24,19 @@ class Physics:
         Rotary inertia of the sections (Rayleigh).
     stretch : bool
         Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
+    large_deflection : bool
+        Slopes of any size (the inextensible elastica): the beam vibrates about the equilibrium to which
+        rotation bends it.  It bends in the plane of rotation or out of it, and with rotary inertia alone of
+        the other effects.
+    branch : {"straight", "bent"}
+        With large deflection, the equilibria that are meant: those that follow from rest as the speed rises,
+        or those that stand beside them at high speed, bent to the other side.
 
     Raises
     ------
     ValueError
-        If `planes` is neither 1 nor 2, or another value is no truth value.
+        If `planes` is neither 1 nor 2, another value is no truth value, or large deflection cannot be
+        combined with another effect.
     """
 
     planes: Annotated[
@@ -38,7 +46,23 @@ class Physics:
     rotary_inertia: Annotated[bool, Described(meaning="rotary inertia of the sections")] = False
     stretch: Annotated[bool, Described(meaning="stretch of the beam and its Coriolis coupling")] = False
 
+    large_deflection: Annotated[bool, Described(meaning="slopes of any size: the elastica")] = False
+    branch: Annotated[
+        Literal["straight", "bent"],
+        Described(meaning="equilibria of large deflection: those reached from rest, or those beside them"),
+    ] = "straight"
+
     def __post_init__(self) -> None:
         set_fields(self, planes=count("physics.planes", self.planes, most=2))
-        for name in ("shear", "rotary_inertia", "stretch"):
+        for name in ("shear", "rotary_inertia", "stretch", "large_deflection"):
             set_fields(self, **{name: flag(f"physics.{name}", getattr(self, name))})
+        one_of("physics.branch", self.branch, ("straight", "bent"))
+        if self.large_deflection:
+            self._check_combination()
+
+    def _check_combination(self) -> None:
+        """Refuse what the elastica is not combined with."""
+        for name, plain in (("planes", 1), ("shear", False), ("stretch", False)):
+            if (given := getattr(self, name)) != plain:
+                bound = "it cannot be combined with large_deflection"
+                raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")

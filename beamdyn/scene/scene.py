@@ -9,7 +9,7 @@ from functools import lru_cache
 from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse, set_fields
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import Mount, exact_cos_sin
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import mean
 
@@ -59,6 +59,7 @@ class Scene:
         remedy = "physics = Physics(planes=2, shear=True) models both planes and shear deformation"
         kind("physics", self.physics, Physics, remedy)
         _check_properties(self.beam, self.physics)
+        _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
 
     @property
@@ -77,6 +78,18 @@ def check_scene(scene: object) -> None:
     """Refuse what is no scene, such as a beam, as an argument of an analysis."""
     remedy = "Scene(beam, mount) makes one of a beam, load_scene(path) reads one from a file"
     kind("scene", scene, Scene, remedy)
+
+
+# Large deflection ---------------------------------------------------------------------------------
+
+
+def _check_large_deflection(scene: Scene) -> None:
+    """Refuse large deflection where it would leave the plane of bending."""
+    oblique = min(map(abs, exact_cos_sin(scene.mount.bending_angle))) != 0
+    if scene.physics.large_deflection and oblique:
+        bound = "with physics.large_deflection it must be a multiple of 90 deg"
+        remedy = "bend in the plane of rotation (0) or out of it (90 deg), or leave large_deflection out"
+        raise InvalidValue("mount.bending_angle", scene.mount.bending_angle, bound, remedy, "rad")
 
 
 # Springs at the root ------------------------------------------------------------------------------

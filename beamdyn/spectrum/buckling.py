@@ -52,8 +52,8 @@ from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.ritz import Ritz
-from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.profile import FRACTION, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor

@@ -110,7 +110,8 @@ class Modes(Result):
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
-        return self.vectors.T @ self.model.equations.deflection(np.minimum(xi, 1.0), direction=direction)
+        equations = self.model.equations_at(self.speed)
+        return self.vectors.T @ equations.deflection(np.minimum(xi, 1.0), direction=direction)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
@@ -186,7 +187,7 @@ def natural_modes(
     check_speeds(speeds, "speed")
     tolerance = _check_tolerance(tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
-    equations, s = solution.model.equations, solution.eigen.eigenvalue[0]
+    equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
     vectors, status = _with_positive_tip(equations.tips, solution.eigen.vector[0]), _status(s)
     deflection, strain = static_load(solution.model, speeds)
     warnings = _warnings(scene, speeds, deflection, strain, solution.error, status[None], tolerance)
@@ -254,7 +255,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
         Largest static axial strain; nan if the axial stiffness is not given.
     """
     beam, mount = model.scene.beam, model.scene.mount
-    tips = model.solver.solve_static(speeds, model.equations.tips)
+    tips = model.static_tips(speeds)
     deflection = tips[:, 0] if tips.shape[1] == 1 else np.linalg.norm(tips, axis=1)
     if beam.axial_stiffness is None:
         return deflection, np.full(len(speeds), np.nan)
@@ -279,7 +280,8 @@ def _warnings(
         s = int(unstable.any(axis=1).argmax())
         yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
     yield from warn_of_strain(strain.max(initial=0))
-    yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
+    if not scene.physics.large_deflection:
+        yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
     if tolerance is not None:
         yield from warn_of_missed_tolerance(error.max(), tolerance)
     elif error.max() > 1e-6:

@@ -6,8 +6,8 @@ import math
 from dataclasses import replace
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 

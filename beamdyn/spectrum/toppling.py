@@ -35,8 +35,8 @@ import numpy as np
 
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.fields.transverse import plane_components
-from beamdyn.equations.root_motion import exact_cos_sin
 from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 

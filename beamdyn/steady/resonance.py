@@ -15,11 +15,12 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, count, positive
 from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.error_estimate import solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
-from beamdyn.modal.uncoupled import AnySolver, UncoupledSolver
+from beamdyn.modal.uncoupled import UncoupledSolver
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
@@ -90,8 +91,9 @@ class Crossings(Result, Sequence[Crossing]):
         Natural frequencies [Hz], numbered at rest.
     order : int
         Highest order of the lines that were sought.
-    left_out : int
-        Number of crossings of the next order, which are weaker; those of still higher order are not counted.
+    unlisted : int
+        Number of crossings of the next order, which are weaker and not listed; those of still higher
+        order are not counted.
     warnings : tuple of str
         Limitations of the result, and why there is no crossing.
     provenance : Provenance
@@ -103,7 +105,7 @@ class Crossings(Result, Sequence[Crossing]):
     speeds: np.ndarray
     frequency: np.ndarray
     order: int
-    left_out: int
+    unlisted: int
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
@@ -118,9 +120,9 @@ class Crossings(Result, Sequence[Crossing]):
     def extent(self) -> str:
         """What was sought, and what is left out, as a sentence."""
         sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
-        if not self.left_out:
+        if not self.unlisted:
             return f"{sought}; there are none of order {self.order + 1}."
-        crossings = f"{self.left_out} crossing{'s' * (self.left_out != 1)} of order {self.order + 1}"
+        crossings = f"{self.unlisted} crossing{'s' * (self.unlisted != 1)} of order {self.order + 1}"
         return f"{sought}; {crossings}, and those of higher order, are weaker and left out."
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -194,7 +196,7 @@ def resonance_speeds(
         speeds=parts[0].loci.speeds,
         frequency=_tracked(parts) / (2 * np.pi),
         order=order,
-        left_out=sum(part.count_further(order) for part in parts),
+        unlisted=sum(part.count_further(order) for part in parts),
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
             *_warn_of_replacement(discretization, model),
@@ -365,7 +367,7 @@ class _Loci:
     ----------
     model : Model
         The discretized scene.
-    solver : AnySolver
+    solver : Eigensolver
         Eigensolver of the modes that are sought, which others do not affect.
     places : ndarray of int
         Coordinates of the solver in the model.
@@ -376,7 +378,7 @@ class _Loci:
     """
 
     def __init__(
-        self, model: Model, solver: AnySolver, places: np.ndarray, numbers: np.ndarray, top: float
+        self, model: Model, solver: Eigensolver, places: np.ndarray, numbers: np.ndarray, top: float
     ) -> None:
         self.model, self.solver, self.places, self.numbers = model, solver, places, numbers
         self.modes = len(numbers)

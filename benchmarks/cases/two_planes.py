@@ -11,19 +11,11 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn.published import load
+from beamdyn.scene.beam import OPTIONAL_PROPERTIES
 from benchmarks.cases.reference.twisted_beam.cases import piecewise
 
 _DATA = Path(__file__).parent / "data"
-_PROPERTIES = (
-    "mass_per_length",
-    "bending_stiffness",
-    "second_bending_stiffness",
-    "twist",
-    "shear_stiffness",
-    "second_shear_stiffness",
-    "rotary_inertia",
-    "second_rotary_inertia",
-)
+_PROPERTIES = ("mass_per_length", "bending_stiffness", *OPTIONAL_PROPERTIES)
 
 
 def models() -> dict[str, Any]:

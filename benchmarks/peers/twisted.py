@@ -7,6 +7,7 @@ inertia, so that any large stiffness of either will do: it keeps their modes abo
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from benchmarks.cases.blades import blade_scene, stations
 from benchmarks.peers import pybmodes
 
 NAMES = {"iea_15": "IEA 15 MW", "nrel_5": "NREL 5 MW", "bmodes_test01": "BModes Test01"}
-ELEMENTS = (200, 400, 800)  # about; whole numbers between neighbouring stations
+ELEMENTS = (200, 400, 800, 1600)  # about; whole numbers between neighbouring stations
+CONVERGED = 2e-5  # relative change of all frequencies at which no finer mesh is solved
 MODES = 5
 TOLERANCE = 1e-7  # of ours: far below what is compared
 STIFFNESS = 1e3  # G J over E I, and E A L^2 over E I: the frequencies do not change from 0.1 to 1e14
@@ -37,6 +39,18 @@ def their_frequencies(name: str, rpm: float, elements: int) -> np.ndarray:
     """First five frequencies [Hz]."""
     with pybmodes.model(main_file(name, rpm, elements), sections(name)) as blade:
         return np.array(blade.run(n_modes=MODES, check_model=False).frequencies)
+
+
+def refined(name: str, rpm: float) -> Iterator[tuple[int, np.ndarray, float]]:
+    """Yield number of elements, frequencies and their largest relative change, until that is small."""
+    coarser = np.full(MODES, np.nan)
+    for elements in ELEMENTS:
+        found = their_frequencies(name, rpm, elements)
+        change = float(np.abs(found / coarser - 1).max())
+        yield len(boundaries(name, elements)) - 1, found, change
+        if change < CONVERGED:
+            return
+        coarser = found
 
 
 def boundaries(name: str, elements: int) -> np.ndarray:

@@ -51,6 +51,8 @@ def test_saved_file_is_a_scene_without_what_is_asked(tmp_path):
         ("mount.setting_angle", "0.5 m", "unit of length"),
         ("beam.thickness", "", "missing"),
         ("beam.thickness", "{ polynomial = 1 }", "list"),
+        ("physics.shear", "true", "it needs shear_stiffness; give beam.poissons_ratio"),
+        ("mount.root_stiffness", "-1 N m/rad", "0 is a hinge"),
     ],
 )
 def test_mistake_is_at_its_field(path, text, sentence):
@@ -117,22 +119,6 @@ def test_physics_is_chosen_and_an_empty_spring_is_clamped():
     assert scene.mount.root_stiffness == np.inf
     work.put("mount.root_stiffness", "0 N m/rad")
     assert SCENE.check(work.text(), "saved").mount.root_stiffness == 0
-
-
-@pytest.mark.parametrize(
-    ("path", "text", "sentence"),
-    [
-        ("physics.shear", "true", "it needs shear_stiffness; give beam.poissons_ratio"),
-        ("mount.root_stiffness", "-1 N m/rad", "0 is a hinge"),
-    ],
-)
-def test_mistake_in_physics_is_at_its_field(path, text, sentence):
-    work = OpenDocument(SCENE)
-    work.put(path, text)
-    assert not work.solve(FREQUENCIES)
-    ((where, said),) = work.mistakes[FREQUENCIES.name].items()
-    assert where == path
-    assert sentence in said[0]
 
 
 def test_page_shows_the_table_of_physics(simulate, fields):

@@ -320,6 +320,19 @@ def test_twisted_blade(name):
     assert twisted.extrapolated(coarse, fine) == pytest.approx(own, rel=1e-5)
 
 
+def test_mesh_is_refined_until_it_hardly_changes(monkeypatch):
+    """An error that falls to a quarter from mesh to mesh, 1e-4 on the first."""
+
+    def theirs(name, rpm, elements):
+        return np.array([1.0, 2.0 * (1 - 1e-4 * (200 / elements) ** 2)])
+
+    monkeypatch.setattr(twisted, "MODES", 2)
+    monkeypatch.setattr(twisted, "their_frequencies", theirs)
+    counts, _, changes = zip(*twisted.refined("bmodes_test01", 60.0), strict=True)
+    assert counts == (200, 400, 800)
+    assert changes[1:] == pytest.approx([7.5e-5, 1.875e-5], rel=1e-3)
+
+
 def test_limit_of_an_error_of_second_order():
     f, error = np.array([1.0, 2.0]), np.array([4e-3, -8e-3])
     assert twisted.extrapolated(f + error, f + error / 4) == pytest.approx(f, rel=1e-14)
@@ -467,7 +480,7 @@ def test_either_part_of_the_page_is_written_alone(tmp_path):
 
 
 def test_section_has_both_tables():
-    text = physics.section([("IEA 15 MW", *"12345678")], [("0, clamped", *"12345678")])
+    text = physics.section([("IEA 15 MW", *"123456789")], [("0, clamped", *"12345678")])
     assert text.startswith(page.HEADING)
     assert "| IEA 15 MW | 1 |" in text and "| 0, clamped | 1 |" in text
     assert "{" not in text and "0.1 to 0.06 m wide" in text and "3.8 in the flap" in text

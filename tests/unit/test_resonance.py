@@ -207,17 +207,17 @@ def test_roots_between_two_nodes_are_bracketed() -> None:
 
 @pytest.mark.parametrize("changes", [{}, {"gravity": 9.81}])
 @pytest.mark.parametrize("order", [1, 2])
-def test_crossings_left_out_are_counted(changes: dict, order: int) -> None:
+def test_crossings_that_are_not_listed_are_counted(changes: dict, order: int) -> None:
     scene = replace(ROLLING, **changes)
     found, more = (bd.resonance_speeds(scene, 150.0, order=n) for n in (order, order + 1))
-    assert (found.order, found.left_out) == (order, len(more) - len(found))
-    assert f"{found.left_out} crossings of order {order + 1}" in found.extent and not found.warnings
+    assert (found.order, found.unlisted) == (order, len(more) - len(found))
+    assert f"{found.unlisted} crossings of order {order + 1}" in found.extent and not found.warnings
     assert {(c.kind, c.speed) for c in found} < {(c.kind, c.speed) for c in more}
 
 
 def test_no_crossing_says_what_was_sought() -> None:
     slow = bd.resonance_speeds(ROLLING, 20.0)
-    assert len(slow) == slow.left_out == 0
+    assert len(slow) == slow.unlisted == 0
     assert slow.warnings == ("no mode meets a line of order 1 up to 20 rad/s; lines: road -, road +",)
 
 
@@ -225,7 +225,7 @@ def test_no_crossing_says_what_was_sought() -> None:
 def test_nothing_excites_the_beam(motion: Motion | None) -> None:
     found = bd.resonance_speeds(replace(HARVESTER, motion=motion), 150.0, order=3)
     name = "no motion" if motion is None else "a SteadyRotation"
-    assert len(found) == found.left_out == 0 and len(found.warnings) == 1
+    assert len(found) == found.unlisted == 0 and len(found.warnings) == 1
     assert f"the scene has {name} and gravity = 0" in found.warnings[0]
 
 

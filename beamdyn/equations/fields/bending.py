@@ -63,7 +63,7 @@ class SecondBending(Bending):
 
     name = "second bending"
     direction = 1
-    partners = (Bending(),)
+    partners = (*Bending.partners, Bending())
 
     def is_modelled(self, scene: Scene) -> bool:
         """Whether both planes of bending are modelled."""

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamdyn.equations.discretization import Space, Spaces
+from beamdyn.equations.discretization import Functions, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.scene import Scene
@@ -69,8 +69,8 @@ class Deflection:
 
     Parameters
     ----------
-    space : Space
-        Trial functions phi_i of x/L.
+    space : Functions
+        Functions phi_i of x/L.
     P : ndarray, shape (n,)
         Load under a unit root acceleration in the direction of the deflection [kg].
     Q, Q_across : ndarray, shape (n,)
@@ -79,7 +79,7 @@ class Deflection:
         0 for deflection in the direction of the bending angle, 1 for the direction across.
     """
 
-    space: Space
+    space: Functions
     P: np.ndarray
     Q: np.ndarray
     Q_across: np.ndarray

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from beamdyn.equations.discretization import FIXED, RootConditions
 from beamdyn.equations.explanations import Explanation
-from beamdyn.equations.fields.bending import Bending, SecondBending
+from beamdyn.equations.fields.bending import SecondBending
 from beamdyn.equations.fields.field import Term
 from beamdyn.equations.fields.transverse import Pair, TransverseField, term_of
 from beamdyn.scene.mount import Mount
@@ -25,7 +25,7 @@ class Shear(TransverseField):
     name = "shear"
     direction = 0
     rotates = False
-    partners = (Bending(), SecondBending())
+    partners = (*SecondBending.partners, SecondBending())
     explanations: ClassVar[Mapping[str, Explanation]] = {
         **TransverseField.explanations,
         "shear stiffness": Explanation("KQ q2", "shear is modelled"),
@@ -55,7 +55,7 @@ class SecondShear(Shear):
 
     name = "second shear"
     direction = 1
-    partners = (Bending(), SecondBending(), Shear())
+    partners = (*Shear.partners, Shear())
 
     def is_modelled(self, scene: Scene) -> bool:
         """Whether shear and both planes are modelled."""

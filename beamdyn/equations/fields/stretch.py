@@ -11,21 +11,19 @@ import numpy as np
 from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import FIXED, Spaces
 from beamdyn.equations.explanations import Explanation
-from beamdyn.equations.fields.bending import Bending, SecondBending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
-from beamdyn.equations.fields.shear import SecondShear, Shear
+from beamdyn.equations.fields.shear import SecondShear
 from beamdyn.equations.fields.transverse import TransverseField, Trial, plane_components
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
-
-PARTNERS: tuple[TransverseField, ...] = (Bending(), SecondBending(), Shear(), SecondShear())
 
 
 class Stretch(Field):
     """Axial stretch of the beam."""
 
     name = "stretch"
+    partners: ClassVar[tuple[TransverseField, ...]] = (*SecondShear.partners, SecondShear())
     damping_name = "axial damping"
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "stretch mass": Explanation("M11 q1''", "stretch is modelled"),
@@ -62,7 +60,7 @@ class Stretch(Field):
         """Assemble eqs. (13) of Lee and Yoo (2019), and the coupling in (14)."""
         coupling = (
             term
-            for partner in PARTNERS
+            for partner in self.partners
             if partner.is_modelled(scene)
             for term in _coupling(Trial(partner, scene, spaces))
         )

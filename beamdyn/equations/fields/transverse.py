@@ -29,9 +29,9 @@ from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Load, Term
-from beamdyn.equations.root_motion import Quantity, exact_cos_sin
+from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import Mount, exact_cos_sin
 from beamdyn.scene.profile import FRACTION, ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
@@ -171,7 +171,7 @@ class TransverseField(Field):
 
     direction: ClassVar[int]
     rotates: ClassVar[bool]
-    partners: ClassVar[tuple[TransverseField, ...]]  # the transverse fields before this one in `FIELDS`
+    partners: ClassVar[tuple[TransverseField, ...]]  # the fields before this one, the first of all first
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "mass": Explanation("M22 q2''", "always"),
         "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),

@@ -1,0 +1,105 @@
+"""Integration along the beam of functions that no discretization integrates in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Parts of the beam on which the trial functions of a discretization are smooth.
+
+    Parameters
+    ----------
+    ends : ndarray, shape (c + 1,)
+        Ends of the c cells, as x/L from 0 to 1.
+    points : int
+        Number p of Gauss points on each that resolve nonlinear functions of the trial functions.
+    """
+
+    ends: np.ndarray
+    points: int
+
+
+@dataclass(frozen=True)
+class ArcQuadrature:
+    """Gauss rule on cells, and integrals from the root to each of its points.
+
+    Parameters
+    ----------
+    cells : Cells
+        Cells and number of points.
+    """
+
+    cells: Cells
+
+    @cached_property
+    def xi(self) -> np.ndarray:
+        """Points on [0, 1], shape (N,)."""
+        ends, (t, _) = self.cells.ends, _gauss(self.cells.points)
+        return (ends[:-1, None] + np.diff(ends)[:, None] * (1 + t) / 2).ravel()
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Weights of the integral from 0 to 1, shape (N,)."""
+        _, w = _gauss(self.cells.points)
+        return (np.diff(self.cells.ends)[:, None] / 2 * w).ravel()
+
+    @cached_property
+    def _half_lengths(self) -> np.ndarray:
+        return np.diff(self.cells.ends)[:, None] / 2
+
+    def integrate(self, values: np.ndarray) -> np.ndarray:
+        """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
+        p = self.cells.points
+        _, w = _gauss(p)
+        scaled = values.reshape(*values.shape[:-1], -1, p) * self._half_lengths
+        ends = np.cumsum(scaled @ w, axis=-1)
+        starts = ends - scaled @ w
+        inside = scaled @ _cumulative(p).T + starts[..., None]
+        return np.concatenate([inside.reshape(values.shape), ends[..., -1:]], axis=-1)
+
+    def transposed(self, forces: np.ndarray) -> np.ndarray:
+        """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
+        p = self.cells.points
+        _, w = _gauss(p)
+        inside = forces[..., :-1].reshape(*forces.shape[:-1], -1, p)
+        of_cells = inside.sum(axis=-1)
+        beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
+        scaled = (inside @ _cumulative(p) + beyond[..., None] * w) * self._half_lengths
+        return scaled.reshape(*forces.shape[:-1], -1)
+
+    def integrate_to(self, xi: np.ndarray) -> np.ndarray:
+        """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""
+        ends, p = self.cells.ends, self.cells.points
+        cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
+        length = np.diff(ends)[cell]
+        t = np.clip(2 * (xi - ends[cell]) / length - 1, -1, 1)
+        matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
+        own = cell[:, None] * p + np.arange(p)
+        np.put_along_axis(matrix, own, length[:, None] / 2 * _integrate_interpolant(t, p), axis=1)
+        return matrix
+
+
+@cache
+def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    return legendre.leggauss(points)
+
+
+@cache
+def _cumulative(points: int) -> np.ndarray:
+    """Weights (p, p) of the integrals from -1 to each of p Gauss points of the interpolant through them."""
+    return _integrate_interpolant(_gauss(points)[0], points)
+
+
+def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
+    """Weights (k, p) of the integrals from -1 to t (k,) of the interpolant through p Gauss points."""
+    nodes, w = _gauss(points)
+    degrees = np.arange(points)
+    to_series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(nodes, points - 1).T * w
+    integrals = legendre.legint(np.eye(points), lbnd=-1)
+    return legendre.legvander(t, points) @ integrals @ to_series

@@ -1,0 +1,107 @@
+"""Eigensolver of a beam that vibrates about the equilibrium to which rotation bends it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.equations.elastica import Elastica
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.modal.eigen import Eigen, Solver
+from beamdyn.modal.equilibrium import Branch, SteadyLoad, find_bent, follow_to
+
+
+class DeflectedSolver:
+    """Eigensolver with the interface of `Solver`, about the equilibrium at each speed.
+
+    Parameters
+    ----------
+    elastica : Elastica
+        Equations of motion.
+    branch : {"straight", "bent"}
+        Equilibria that are meant: those that follow from rest, or those beside them.
+    """
+
+    def __init__(self, elastica: Elastica, branch: Branch) -> None:
+        self.elastica = elastica
+        self.branch: Branch = branch
+        self._straight = Solver(elastica.linear.steady())
+        self._found: dict[float, np.ndarray] = {}
+
+    @property
+    def pencil(self) -> SteadyPencil:
+        """Equations about the straight beam."""
+        return self._straight.pencil
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates and modes."""
+        return self._straight.size
+
+    @property
+    def lowest_at_rest(self) -> float:
+        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        return self._straight.lowest_at_rest
+
+    @cached_property
+    def load(self) -> SteadyLoad:
+        """Problem of the equilibria."""
+        return SteadyLoad(self.elastica, self.lowest_at_rest)
+
+    @property
+    def softening(self) -> float:
+        """Largest loss of stiffness of the straight beam per squared speed, as of `Solver`."""
+        return self._straight.softening
+
+    @property
+    def critical_speed(self) -> float:
+        """Lowest speed at which the straight beam buckles [rad/s]; inf where rotation bends it instead."""
+        return np.inf if self.load.transverse else self._straight.critical_speed
+
+    @property
+    def critical_rounding(self) -> float:
+        """Estimated relative rounding error of the critical speed."""
+        return self._straight.critical_rounding
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Compute the `count` lowest modes at each speed [rad/s]: as `Solver.solve`.
+
+        Raises
+        ------
+        NoEquilibrium
+            An ArithmeticError: if the branch of equilibria does not reach a speed.
+        """
+        pencils = [equations.steady() for equations in self.equations(speeds)]
+        each = [Solver(p).solve(np.array([v]), count) for p, v in zip(pencils, speeds, strict=True)]
+        return Eigen(
+            *(
+                np.concatenate([getattr(e, name) for e in each])
+                for name in ("eigenvalue", "vector", "rounding")
+            )
+        )
+
+    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
+        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
+        return self.solve(speeds, count).eigenvalue
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Compute linear functions of the coordinates in equilibrium: as `Solver.solve_static`."""
+        return self.equilibria(speeds) @ outputs.T
+
+    def equations(self, speeds: np.ndarray) -> list[Equations]:
+        """Equations linear about the equilibrium at each speed."""
+        return [self.elastica.at(q).linearized() for q in self.equilibria(speeds)]
+
+    def tips(self, speeds: np.ndarray) -> np.ndarray:
+        """Deflection of the tip along e in equilibrium [m], shape (S, 1)."""
+        return self.elastica.tip(self.equilibria(speeds))[:, 1:]
+
+    def equilibria(self, speeds: np.ndarray) -> np.ndarray:
+        """Coordinates (S, n) in equilibrium at each speed, each computed once."""
+        missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
+        if self.branch == "bent":
+            self._found.update((v, find_bent(self.load, v)) for v in missing)
+        elif len(missing):
+            self._found.update(zip(missing.tolist(), follow_to(self.load, missing), strict=True))
+        return np.array([self._found[abs(v)] for v in speeds])
