@@ -75,7 +75,7 @@ class Case:
     speed: float
 
     def __str__(self) -> str:
-        return f"{self.setting_angle:g} deg, {self.speed:g} rad/s"
+        return f"{self.setting_angle:.7g} deg, {self.speed:g} rad/s"
 
 
 CASES = (Case(45.0, 100.0), Case(88.35985, 400.0))
@@ -158,9 +158,10 @@ def read(text: str, time: float) -> Solution:
         raise ValueError("the .dat file has no displacements: the static step did not converge")
     moved = np.array([line.split() for line in face[1].splitlines()], dtype=float)[:, 1:3]
     tip = np.array([1.0, 0.0]) + moved.mean(axis=0) / given()["length"]
-    static, full = text.split(_FREQUENCIES)[1:3]
-    in_plane = _lies_in_plane(static)
-    return Solution(tip, *(_frequencies(part)[in_plane][:COMPARED] for part in (static, full)), time)
+    steps = text.split(_FREQUENCIES)[1:3]
+    in_plane = _lies_in_plane(steps[0])
+    static, full = (_frequencies(step)[in_plane][:COMPARED] for step in steps)
+    return Solution(tip, static, full, time)
 
 
 def _lies_in_plane(text: str) -> np.ndarray:
