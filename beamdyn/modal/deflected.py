@@ -7,13 +7,14 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.equations.elastica import Elastica
-from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modal.eigen import Eigen, Solver
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modal.eigen import Solver
+from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.equilibrium import Branch, SteadyLoad, find_bent, follow_to
 
 
-class DeflectedSolver:
-    """Eigensolver with the interface of `Solver`, about the equilibrium at each speed.
+class DeflectedSolver(Eigensolver):
+    """Eigensolver about the equilibrium at each speed.
 
     Parameters
     ----------
@@ -26,20 +27,11 @@ class DeflectedSolver:
     def __init__(self, elastica: Elastica, branch: Branch) -> None:
         self.elastica = elastica
         self.branch: Branch = branch
-        self._straight = Solver(elastica.linear.steady())
+        self.pencil = elastica.linear.steady()  # about the straight beam
+        self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}
 
-    @property
-    def pencil(self) -> SteadyPencil:
-        """Equations about the straight beam."""
-        return self._straight.pencil
-
-    @property
-    def size(self) -> int:
-        """Number n of coordinates and modes."""
-        return self._straight.size
-
-    @property
+    @cached_property
     def lowest_at_rest(self) -> float:
         """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
         return self._straight.lowest_at_rest
@@ -80,10 +72,6 @@ class DeflectedSolver:
                 for name in ("eigenvalue", "vector", "rounding")
             )
         )
-
-    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
-        return self.solve(speeds, count).eigenvalue
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
         """Compute linear functions of the coordinates in equilibrium: as `Solver.solve_static`."""

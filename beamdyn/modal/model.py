@@ -12,8 +12,9 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.elastica import Elastica, assemble_elastica
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
 from beamdyn.modal.deflected import DeflectedSolver
+from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modal.uncoupled import AnySolver, solver_of
+from beamdyn.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 
@@ -38,7 +39,7 @@ class Model(FieldsOnly):
         return assemble_equations(self.scene, self.discretization)
 
     @cached_property
-    def solver(self) -> AnySolver | DeflectedSolver:
+    def solver(self) -> Eigensolver:
         """Solver of the eigenproblem at steady speeds."""
         if self.elastica is None:
             return solver_of(self.equations)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 
@@ -98,6 +97,3 @@ def _order(eigenvalue: np.ndarray) -> np.ndarray:
     """Order (S, k) of eigenvalues by squared frequency, that of a growing mode being negative."""
     sign = np.where((np.imag(eigenvalue) == 0) & (np.real(eigenvalue) > 0), -1.0, 1.0)
     return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")
-
-
-AnySolver: TypeAlias = Eigensolver  # as `model` names it
