@@ -102,9 +102,14 @@ def solver(exudyn: Any, setting: Setting) -> Any:
 
 
 def angle(m: Any, t: Any) -> Any:
-    x = t / DURATION
-    spin_up = SPEED * DURATION * (x * x / 2 + (m.cos(2 * math.pi * x) - 1) / (4 * math.pi**2))
-    return m.IfThenElse(t < DURATION, spin_up, SPEED * DURATION / 2 + SPEED * (t - DURATION))
+    return spin_up_angle(m, t, SPEED, DURATION)
+
+
+def spin_up_angle(m: Any, t: Any, speed: float, duration: float) -> Any:
+    """Angle after a smooth spin-up of a duration [s] to a speed [rad/s]."""
+    x = t / duration
+    spin_up = speed * duration * (x * x / 2 + (m.cos(2 * math.pi * x) - 1) / (4 * math.pi**2))
+    return m.IfThenElse(t < duration, spin_up, speed * duration / 2 + speed * (t - duration))
 
 
 def speed(m: Any, t: Any) -> Any:
@@ -151,7 +156,6 @@ def model(setting: Setting) -> tuple[Any, int, list[Any]]:
     """The system, the sensor of the tip's position, and what must stay alive while the system is used."""
     import exudyn
     from exudyn.beams import GenerateBeamElementsAlongLine
-    from exudyn.itemInterface import SensorNode
 
     container = exudyn.SystemContainer()
     system = container.AddSystem()
@@ -160,12 +164,19 @@ def model(setting: Setting) -> tuple[Any, int, list[Any]]:
     parts = GenerateBeamElementsAlongLine(
         system, [start, 0, 0], [end, 0, 0], setting.cables, cable(setting.softening)
     )
-    alive = [container, *clamp(system, parts["nodes"][0]), *loads(system, parts["elements"])]
+    alive = [container, *clamp(system, parts["nodes"][0], root), *loads(system, parts["elements"])]
+    return system, sense_position(system, parts["nodes"][-1]), alive
+
+
+def sense_position(system: Any, node: int) -> int:
+    """Number of a sensor of the position of a node."""
+    import exudyn
+    from exudyn.itemInterface import SensorNode
+
     position = exudyn.OutputVariableType.Position
-    tip = SensorNode(
-        nodeNumber=parts["nodes"][-1], storeInternal=True, writeToFile=False, outputVariableType=position
+    return system.AddSensor(
+        SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=position)
     )
-    return system, system.AddSensor(tip), alive
 
 
 def cable(softening: float) -> Any:
@@ -180,8 +191,8 @@ def cable(softening: float) -> Any:
     )
 
 
-def clamp(system: Any, node: int) -> Iterator[Any]:
-    """Prescribe the four coordinates of the root."""
+def clamp(system: Any, node: int, root: Callable[..., list[Any]]) -> Iterator[Any]:
+    """Prescribe the four coordinates of the root, as `root` here gives them."""
     from exudyn.itemInterface import CoordinateConstraint, MarkerNodeCoordinate, NodePointGround
 
     ground = system.AddNode(NodePointGround())
@@ -190,12 +201,12 @@ def clamp(system: Any, node: int) -> Iterator[Any]:
         moved = system.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
         constraint = system.AddObject(CoordinateConstraint(markerNumbers=[fixed, moved]))
         name = name_user_function("offset")
-        function = symbolic(system, offset(k), name, itemIndex=constraint)
+        function = symbolic(system, offset(k, root), name, itemIndex=constraint)
         system.SetObjectParameter(constraint, name, function)
         yield function
 
 
-def offset(k: int) -> Callable[..., Any]:
+def offset(k: int, root: Callable[..., list[Any]]) -> Callable[..., Any]:
     """Exudyn's form of the motion of a coordinate of the root."""
     import exudyn
 

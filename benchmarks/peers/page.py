@@ -1,4 +1,4 @@
-"""docs/peers.md has two parts, each written by a command that leaves the other part as it is."""
+"""docs/peers.md has parts, each written by a command that leaves the others as they are."""
 
 from __future__ import annotations
 
@@ -7,15 +7,33 @@ from pathlib import Path
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "peers.md"
 HEADING = "## Two directions of bending, twist, shear and rotary inertia\n"
+LARGE_DEFLECTION = "## Large deflection\n"
+HEADINGS = (HEADING, LARGE_DEFLECTION)  # of sections, in their order on the page
 
 
 def write_measurements(text: str, path: Path = PAGE) -> None:
-    """Replace all that stands before the section on physics."""
-    _, heading, section = path.read_text(encoding="utf-8").partition(HEADING)
-    path.write_text(f"{text.rstrip()}\n\n{heading}{section}".rstrip() + "\n", encoding="utf-8")
+    """Replace all that stands before the first section."""
+    _, sections = _split(path.read_text(encoding="utf-8"))
+    _write(path, text, sections)
 
 
 def write_section(section: str, path: Path = PAGE) -> None:
-    """Replace the section on physics, which begins with the heading."""
-    measurements, _, _ = path.read_text(encoding="utf-8").partition(HEADING)
-    path.write_text(f"{measurements.rstrip()}\n\n{section}", encoding="utf-8")
+    """Replace a section, which begins with one of the headings, or put it in its place."""
+    measurements, sections = _split(path.read_text(encoding="utf-8"))
+    (heading,) = (heading for heading in HEADINGS if section.startswith(heading))
+    _write(path, measurements, sections | {heading: section})
+
+
+def _split(text: str) -> tuple[str, dict[str, str]]:
+    """What stands before the sections, and the sections by their heading."""
+    sections: dict[str, str] = {}
+    for heading in reversed(HEADINGS):
+        text, found, body = text.partition(heading)
+        if found:
+            sections[heading] = heading + body
+    return text, sections
+
+
+def _write(path: Path, measurements: str, sections: dict[str, str]) -> None:
+    parts = (measurements, *(sections[heading] for heading in HEADINGS if heading in sections))
+    path.write_text("\n\n".join(part.rstrip() for part in parts) + "\n", encoding="utf-8")

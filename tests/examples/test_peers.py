@@ -6,16 +6,20 @@ import re
 import numpy as np
 import pytest
 
+import beamdyn as bd
 from benchmarks.cases import blades
 from benchmarks.cases.scenes import ROLLING
 from benchmarks.peers import (
+    bent,
     calculix,
     exudyn,
     hexahedra,
+    large_deflection,
     measure,
     page,
     physics,
     pybmodes,
+    spin_up,
     stock,
     tables,
     tapered,
@@ -199,6 +203,86 @@ def test_clamped_face_hinders_contraction():
     assert free == pytest.approx(own, rel=1.1e-3)
 
 
+# CalculiX, a beam bent far by rotation ------------------------------------------------------------
+
+BENT = """
+ displacements (vx,vy,vz) for set TIP and time  0.1000000E+01
+
+       761 -3.500000E-03 -1.700000E-02  1.496924E-17
+       762 -3.600000E-03 -1.800000E-02  1.426275E-17
+
+     E I G E N V A L U E   O U T P U T
+
+ MODE NO    EIGENVALUE                       FREQUENCY
+                                     REAL PART            IMAGINARY PART
+                           (RAD/TIME)      (CYCLES/TIME     (RAD/TIME)
+
+      1   0.1452916E+06   0.3811714E+03   0.6066531E+02   0.0000000E+00
+      2   0.8808992E+07   0.2967995E+04   0.4723711E+03   0.0000000E+00
+      3   0.6225333E+07   0.2495062E+04   0.3970014E+03   0.0000000E+00
+
+     P A R T I C I P A T I O N   F A C T O R S
+
+MODE NO.   X-COMPONENT     Y-COMPONENT     Z-COMPONENT     X-ROTATION      Y-ROTATION      Z-ROTATION
+
+      1   0.7696551E-02   0.2052691E-01  -0.5558303E-10   0.2204859E-12   0.2074390E-11   0.7413975E-03
+      2  -0.3355654E-10  -0.5942384E-10  -0.1710604E-01   0.4101891E-04   0.6391515E-03  -0.2699026E-11
+      3   0.1334688E-01  -0.1319361E-03  -0.2860893E-10   0.1057555E-12   0.1073922E-11  -0.1866502E-03
+
+     E F F E C T I V E   M O D A L   M A S S
+
+      1   0.5923690E-04   0.4213542E-03   0.3089473E-20   0.4861402E-25   0.4303093E-23   0.5496703E-06
+
+ displacements (vx,vy,vz) for set TIP and time  0.0000000E+00
+
+       761  1.000000E+00  1.000000E+00  1.000000E+00
+
+     E I G E N V A L U E   O U T P U T
+
+ MODE NO                     FREQUENCY
+                      REAL PART         IMAGINARY PART
+             (RAD/TIME)   (CYCLES/TIME)   (RAD/TIME)
+
+      1   0.3811112E+03   0.6065573E+02  -0.5565566E-04
+      2   0.2967956E+04   0.4723648E+03   0.1840618E-06
+      3   0.2495370E+04   0.3971505E+03  -0.2161974E-05
+
+P A R T I C I P A T I O N   F A C T O R S   F O R   M O D E       1
+
+      1   0.6066557E+02   0.1000000E+01   0.0000000E+00
+"""
+
+
+def test_bent_state_is_read():
+    solution = bent.read(BENT, 1.0)
+    assert solution.tip == pytest.approx([1 - 3.55e-3 / 0.05, -1.75e-2 / 0.05], rel=1e-14)
+    assert solution.static.tolist() == [60.66531, 397.0014]  # the second vibrates out of the plane
+    assert solution.full.tolist() == [60.65573, 397.1505]
+    with pytest.raises(ValueError, match="did not converge"):
+        bent.read(BENT.partition("E I G")[0].replace("displacements", ""), 1.0)
+
+
+def test_bent_beam_turns_about_the_axis_at_its_setting_angle():
+    text = bent.deck(bent.Case(60.0, 100.0), 5)
+    load = re.search(r"BEAM, CENTRIF, 10000, (\S+), (\S+), 0, 0, 0, 1\n", text)
+    assert load is not None
+    axis = [0.215 * math.cos(math.radians(60)), 0.215 * math.sin(math.radians(60))]
+    assert [float(value) for value in load.groups()] == pytest.approx(axis, rel=1e-11)
+    tip = re.search(r"NSET=TIP\n(.*?)\*BOUNDARY", text, re.S)
+    assert tip is not None and len(tip[1].split()) == 13  # corners and middles of two faces
+    assert "2e+11, 0\n" in text and "\n7850\n" in text
+
+
+@needs_calculix
+@pytest.mark.parametrize("case", bent.CASES, ids=str)
+def test_solid_elements_bend_as_the_elastica(case):
+    """20 elements are right to 5e-4 of the tip and of the first frequency; Coriolis is worth up to 6e-3."""
+    solid, own = bent.solid(case, 20), bent.beam(case)
+    assert solid.tip == pytest.approx(own.tip, abs=1e-3)
+    assert solid.static[0] == pytest.approx(own.static[0], rel=1e-3)
+    assert solid.full[0] == pytest.approx(own.full[0], rel=1e-3)
+
+
 # pyBModes -----------------------------------------------------------------------------------------
 
 
@@ -278,6 +362,31 @@ def test_a_rigid_beam_does_not_deflect():
 def test_softening_is_named():
     assert str(exudyn.Setting(2, 5e-4, 1e-3)) == "2 cables, step 0.5 ms, axial stiffness x 0.001"
     assert exudyn.TARGET[0] == "8 cables, step 0.5 ms"
+
+
+# Exudyn, a spin-up --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("duration", spin_up.DURATIONS)
+def test_spin_up_is_that_of_the_scene(duration):
+    t = spin_up.times()
+    motion = bd.SpinUp(6.0, duration).at(t)
+    assert spin_up.angle(exudyn.Numpy, t, duration) == pytest.approx(motion.angle, abs=1e-10)
+    rigid = spin_up.deflection(t, np.cos(motion.angle), -np.sin(motion.angle), duration)
+    assert np.abs(rigid).max() < 1e-10
+
+
+def test_differences_are_over_the_largest_deflection():
+    one, other = (spin_up.Run(np.array(tip), 0.0) for tip in ([0.0, 1.0, -1.9], [0.1, 1.0, -2.0]))
+    assert one.differs_from(other) == pytest.approx(0.05) and other.largest == 2.0
+
+
+@pytest.mark.skipif(exudyn.version() is None, reason="there is no Exudyn: pip install exudyn")
+def test_cables_spin_up_as_the_elastica():
+    """The cables are right to 3e-4; linear theory is not."""
+    cables, own = spin_up.cables(5.0, spin_up.Setting(12, 2e-3, 4.0)), spin_up.elastica(5.0)
+    assert cables.differs_from(own) < 1e-3
+    assert spin_up.linear(5.0).differs_from(own) > 1e-2
 
 
 # Tables -------------------------------------------------------------------------------------------
@@ -363,6 +472,11 @@ def test_either_part_of_the_page_is_written_alone(tmp_path):
     assert path.read_text() == f"# Beside\n\nnew\n\n{page.HEADING}\nsecond\n"
     page.write_measurements("# Beside\n\nnewer\n", path)
     assert path.read_text() == f"# Beside\n\nnewer\n\n{page.HEADING}\nsecond\n"
+    page.write_section(f"{page.LARGE_DEFLECTION}\nlarge\n", path)
+    page.write_section(f"{page.HEADING}\nthird\n", path)
+    page.write_measurements("# Beside\n\nlast\n", path)
+    sections = f"{page.HEADING}\nthird\n\n{page.LARGE_DEFLECTION}\nlarge\n"
+    assert path.read_text() == f"# Beside\n\nlast\n\n{sections}"
 
 
 def test_section_has_both_tables():
@@ -384,3 +498,25 @@ def test_peers_without_programs_are_named(monkeypatch):
     monkeypatch.setattr(calculix, "version", lambda: None)
     ((_, _, text, *_),) = physics.tapered_rows()
     assert text == "CalculiX not installed"
+
+
+def test_section_on_large_deflection_has_both_tables():
+    text = large_deflection.section([("45 deg", *"123456")], [("15 s", *"123456")])
+    assert text.startswith(page.LARGE_DEFLECTION)
+    assert "| 45 deg | 1 |" in text and "| 15 s | 1 |" in text and "{" not in text
+
+
+def test_every_row_of_large_deflection_fills_its_table(monkeypatch):
+    solution = bent.Solution(np.array([0.9, -0.3]), np.ones(3), np.ones(3), 0.1)
+    run = spin_up.Run(np.array([0.0, 1.0]), 0.1)
+    for module, names, result in (
+        (bent, ("beam", "solid"), solution),
+        (spin_up, ("elastica", "linear", "cables"), run),
+    ):
+        for name in names:
+            monkeypatch.setattr(module, name, lambda *_, result=result: result)
+    for version in (None, "1"):
+        for module in (calculix, exudyn):
+            monkeypatch.setattr(module, "version", lambda version=version: version)
+        assert {len(row) for row in large_deflection.bent_rows()} == {len(large_deflection.BENT_HEAD)}
+        assert {len(row) for row in large_deflection.spin_up_rows()} == {len(large_deflection.SPIN_UP_HEAD)}
