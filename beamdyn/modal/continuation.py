@@ -93,8 +93,17 @@ def start_curve(problem: Problem, q: np.ndarray, p: float, towards: float) -> Po
     return _normalized(problem, q, p, q_rate, 1.0, towards)
 
 
-def follow(problem: Problem, start: Point) -> Iterator[Point]:
+def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterator[Point]:
     """Yield the points of a curve, beginning after `start`, in steps that follow its curvature.
+
+    Parameters
+    ----------
+    problem : Problem
+        The equations.
+    start : Point
+        A point of the curve.
+    longest : float
+        Longest step, by arc length.
 
     Raises
     ------
@@ -113,7 +122,7 @@ def follow(problem: Problem, start: Point) -> Iterator[Point]:
             continue
         point = following
         yield point
-        step = min(_LONGEST, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
+        step = min(longest, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
 
 
 def _check_same_curve(problem: Problem, before: Point, after: Point, step: float) -> None:

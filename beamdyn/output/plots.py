@@ -490,10 +490,17 @@ def plot_branches(
     """
     ax = _new_axes() if ax is None else ax
     for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
-        for where, style, word in ((stable, "-", "stable"), (~stable, "--", "unstable")):
+        for where, style, word in ((stable, "-", "stable"), (_with_neighbours(~stable), "--", "unstable")):
             if where.any():
-                shown = np.where(where | np.roll(where, 1) & (style == "--"), tip, np.nan)
-                ax.plot(speeds, shown, style, color=colour, label=f"{name}, {word}")
+                ax.plot(speeds, np.where(where, tip, np.nan), style, color=colour, label=f"{name}, {word}")
     ax.set(xlabel=SPEED_LABEL, ylabel="tip deflection over the length")
     ax.legend()
     return ax
+
+
+def _with_neighbours(where: np.ndarray) -> np.ndarray:
+    """Extend a selection of points by those next to it, so that lines meet."""
+    extended = where.copy()
+    extended[1:] |= where[:-1]
+    extended[:-1] |= where[1:]
+    return extended

@@ -17,6 +17,7 @@ from beamdyn.modal.continuation import (
     NotConverged,
     Point,
     count_negative,
+    find_at,
     find_turning_point,
     follow,
     start_curve,
@@ -30,6 +31,7 @@ from beamdyn.scene.validity import check_speeds
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_FINE = 0.05  # arc length of a step, for smooth curves in a picture
 _MOST_POINTS = 2000  # of a branch
 _STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
 _ROUNDING = 1e-13  # error of a position over the length
@@ -308,9 +310,11 @@ def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene
         if point.p_rate * points[-1].p_rate < 0:
             turning.append(find_turning_point(load, points[-1], point))
             points.append(turning[-1])
+        if point.p >= top**2:
+            points.append(replace(point, q=find_at(load, points[-1], point, top**2), p=top**2))
+            break
         points.append(point)
-        steepest = np.abs(point.q @ load.angles).max()
-        if point.p >= top**2 or steepest > _STEEPEST or len(points) > _MOST_POINTS:
+        if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
             break
     tips = load.elastica.tip(np.array([point.q for point in points]))
     return EquilibriumBranch(
@@ -324,7 +328,7 @@ def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene
 
 def _steps(load: SteadyLoad, start: Point) -> Iterator[Point]:
     """The points of a curve, as far as it can be followed."""
-    curve = follow(load, start)
+    curve = follow(load, start, _FINE)
     while True:
         try:
             yield next(curve)
