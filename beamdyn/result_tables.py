@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
 from beamdyn.common.digits import supported
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.equations.directions import (
     first_drawn,
     modelled_directions,
     words_of_directions,
 )
+from beamdyn.scene.validity import list_range
 
 if TYPE_CHECKING:
+    from beamdyn.model_error.left_out_effects import LeftOutEffects
     from beamdyn.scene.scene import Scene
-    from beamdyn.spectrum.critical import SettingAngleLimits
+    from beamdyn.spectrum.critical import CriticalPoint, SettingAngleLimits
     from beamdyn.spectrum.modes import Locus, Modes
     from beamdyn.steady.resonance import Crossing, Crossings
     from beamdyn.steady.response import SteadyResponse
@@ -28,30 +30,44 @@ if TYPE_CHECKING:
     from beamdyn.transient.sweep import Sweep
 
 _MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
+Cell: TypeAlias = "str | Text"  # of a table
+_ROUNDING = 1e-9  # relative: a model error below it is not told from rounding
 _WIDTH = 118  # of a table's columns, so that none is cut at 120
+_CRITICAL_DIGITS = 12  # most digits of a critical speed
 _FEW = 4  # modes of a locus whose frequencies have all digits
 _DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
 
 
 def modes_table(result: Modes) -> Group:
-    """Table of natural modes."""
+    """Table of natural modes, and what the model leaves out; digits beyond the model error are dimmed."""
     rows = []
     size = np.abs(result.eigenvalue) * result.error  # absolute error of the eigenvalues
+    model_error = result.model_error
     for i, status in enumerate(result.status):
         frequency = supported(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
+        frequency = set_apart(frequency, model_error[i] * abs(result.frequency[i]))
         growth = "0" if result.growth_rate[i] == 0 else supported(result.growth_rate[i], size[i])
         shares = _share_cells(result.scene, result.plane_share[i])
-        rows.append((str(i + 1), frequency, f"{result.error[i]:.0e}", growth, *shares, str(status)))
+        errors = f"{result.error[i]:.0e}", _model_error_cell(result.left_out_effects, i)
+        rows.append((str(i + 1), frequency, *errors, growth, *shares, str(status)))
     title = f"Natural modes at {result.speed:.10g} rad/s, by {result.provenance.method}"
     heads = (
         "mode",
         "frequency [Hz]",
         "relative error",
+        "model error",
         "growth rate [1/s]",
         *_share_heads(result.scene),
         "status",
     )
-    return table(title, heads, rows, (len(heads) - 1,))
+    shown = table(title, heads, rows, (len(heads) - 1,))
+    return Group(shown, Text(result.left_out_effects.sentence()))
+
+
+def _model_error_cell(effects: LeftOutEffects, mode: int) -> str:
+    """Relative model error of a mode with one digit; with a question mark where the beam lacks data."""
+    size, more = effects.total[mode], " + ?" if effects.not_known else ""
+    return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
 
 def _share_heads(scene: Scene) -> list[str]:
@@ -66,10 +82,16 @@ def _share_cells(scene: Scene, share: np.ndarray) -> list[str]:
 
 
 def locus_table(result: Locus) -> Group:
-    """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes."""
+    """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
+
+    Below it stands what the model leaves out; digits beyond the model error are dimmed.
+    """
     size, shown = np.abs(result.eigenvalue) * result.error, _select_speeds(result)
+    beyond = _model_error_at(result, shown) * np.abs(result.frequency[shown])
     modes = {
-        f"mode {mode + 1} [Hz]": [_locus_cell(result, size, s, mode) for s in shown]
+        f"mode {mode + 1} [Hz]": [
+            _locus_cell(result, size, s, mode, error) for s, error in zip(shown, beyond[:, mode], strict=True)
+        ]
         for mode in range(result.frequency.shape[1])
     }
     speeds = {"speed [rad/s]": [f"{result.speeds[s]:.8g}" for s in shown]}
@@ -84,10 +106,27 @@ def locus_table(result: Locus) -> Group:
     blocks = [speeds | block for block in _blocks(modes | quality, _WIDTH - _column_width(*speeds.items()))]
     tables = (zip(*block.values(), strict=True) for block in blocks)
     titles = (title, *["The same speeds, further columns"] * (len(blocks) - 1))
-    return Group(*(table(t, [*b], rows, ()) for t, b, rows in zip(titles, blocks, tables, strict=True)))
+    made = (table(t, [*b], rows, ()) for t, b, rows in zip(titles, blocks, tables, strict=True))
+    return Group(*made, Text(result.left_out_effects.sentence(where=where_worst(result))))
 
 
-def _blocks(columns: dict[str, list[str]], width: int) -> list[dict[str, list[str]]]:
+def where_worst(result: Locus) -> str:
+    """Where the model error of a locus is largest, "at 100 rad/s"; at which speeds where it is not known."""
+    total = result.model_error
+    if not np.isfinite(total).any():
+        return f"at {list_range(result.left_out_speeds)}"
+    worst = np.nanargmax(total) // total.shape[1]
+    return f"at {result.left_out_speeds[worst]:.6g} rad/s"
+
+
+def _model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
+    """Model error (k, m) at speeds of some indices, linear between those where it is computed."""
+    known = result.left_out_speeds
+    each = (np.interp(result.speeds[indices], known, error) for error in result.model_error.T)
+    return np.stack([*each], axis=1)
+
+
+def _blocks(columns: Mapping[str, Sequence[Cell]], width: int) -> list[dict[str, Sequence[Cell]]]:
     """Pack columns, in their order, into as few tables of at most a width as will do."""
     blocks, left = [], -1
     for column in columns.items():
@@ -99,7 +138,7 @@ def _blocks(columns: dict[str, list[str]], width: int) -> list[dict[str, list[st
     return blocks
 
 
-def _column_width(column: tuple[str, list[str]]) -> int:
+def _column_width(column: tuple[str, Sequence[Cell]]) -> int:
     """Width of a column with the space after it."""
     return max(map(len, (column[0], *column[1]))) + 2
 
@@ -112,13 +151,21 @@ def _select_speeds(result: Locus) -> np.ndarray:
     return np.unique(np.concatenate([spread, change, change + 1]))
 
 
-def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int) -> str:
-    """Frequency of a mode at speed s, or its status and growth rate; `size` is the absolute error [rad/s]."""
+def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
+    """Frequency of a mode at speed s, or its status and growth rate.
+
+    The absolute errors are `size` [rad/s] and that of the model [Hz].
+    """
     if result.status[s, mode] not in ("stable", "neutral"):
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
     digits = _DIGITS if result.frequency.shape[1] <= _FEW else _DIGITS_OF_MANY
     frequency = supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi), digits)
-    return " ".join([frequency, *_direction_cells(result.scene, result.plane_share[s, mode])])
+    cells = set_apart(frequency, model_error), *_direction_cells(result.scene, result.plane_share[s, mode])
+    return Text(" ").join(map(_as_text, cells))
+
+
+def _as_text(cell: Cell) -> Text:
+    return cell if isinstance(cell, Text) else Text(cell)
 
 
 def _direction_cells(scene: Scene, share: np.ndarray) -> list[str]:
@@ -143,6 +190,26 @@ def limits_table(result: SettingAngleLimits) -> Group:
     title = f"Setting-angle limits up to {result.top_speed:.10g} rad/s, by {result.provenance.method}"
     rows = zip(("first", "second"), degrees, meaning, strict=True)
     return table(title, ("limit", "angle [deg]", ""), rows, (0, 2))
+
+
+def critical_answer(result: CriticalPoint) -> Group:
+    """The sentence on the critical speed, or how far it was looked where none was found, and on the model."""
+    return Group(_describe_critical(result), Text(result.left_out_effects.sentence("")))
+
+
+def _describe_critical(result: CriticalPoint) -> Text:
+    if not math.isinf(result.speed):
+        if not result.speed:
+            return Text(f"critical speed: 0 rad/s; the beam is unstable at every speed: {result.reason}")
+        value = supported(result.speed, result.error * result.speed, _CRITICAL_DIGITS)
+        shown = set_apart(value, float(result.model_error) * result.speed)
+        return Text.assemble("critical speed: ", shown, f" rad/s; above it the beam buckles: {result.reason}")
+    if math.isinf(result.none_below):
+        return Text(f"no critical speed: {result.reason}")
+    bound = f"{result.none_below:.4g} rad/s"
+    if not result.error:
+        return Text(f"no critical speed below {bound}: {result.reason}")
+    return Text(f"no critical speed found; there is certainly none below {bound}")
 
 
 # Motion in time and resonance -------------------------------------------------------------------------

@@ -23,7 +23,6 @@ from beamdyn.common.edge.program import NoAnswer
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from beamdyn.spectrum.critical import CriticalPoint
     from beamdyn.spectrum.modes import Locus, Modes
 
 
@@ -72,6 +71,7 @@ def modes(
     if shapes is not None:
         _write_shapes(result, shapes, outputs.force)
     warnings, refusal = [w for w in result.warnings if not w.startswith("unstable")], _unstable(result)
+    warnings += result.left_out_effects.warnings(tolerance)
     tables, rows, draw = [modes_table(result)], modes_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
 
@@ -106,7 +106,7 @@ def locus(
     """
     from beamdyn import frequency_locus, load_scene
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import locus_csv, locus_table
+    from beamdyn.result_tables import locus_csv, locus_table, where_worst
 
     outputs.check(scene)
     given = parse_speeds(speeds)
@@ -115,7 +115,8 @@ def locus(
     )
     result = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
     tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
-    deliver(result, outputs, question, tables, rows, draw, result.warnings)
+    warnings = *result.warnings, *result.left_out_effects.warnings(tolerance, where_worst(result))
+    deliver(result, outputs, question, tables, rows, draw, warnings)
 
 
 @app.command
@@ -142,15 +143,16 @@ def critical(
     """
     from beamdyn import critical_point, load_scene
     from beamdyn.common.edge.tables import console
+    from beamdyn.result_tables import critical_answer
 
     outputs = Outputs(json=json, force=force)
     outputs.check(scene)
     result = critical_point(load_scene(scene), discretization)
     write(result, outputs)
-    console().print(_describe_critical(result))
+    console().print(critical_answer(result))
     if isinf(result.error):  # there is one, perhaps, but it was not found or not resolved
         raise NoAnswer("; ".join(result.warnings))
-    warn(result.warnings)
+    warn([*result.warnings, *result.left_out_effects.warnings()])
 
 
 @app.command
@@ -221,22 +223,6 @@ def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False)
     console().print(result.excited())
     for effect in result.left_out:
         console().print(f"Left out: {effect.name}: {effect.reason}.")
-
-
-def _describe_critical(result: CriticalPoint) -> str:
-    """The sentence on the critical speed, and on how far it was looked where none was found."""
-    from beamdyn.common.digits import supported
-
-    if not isinf(result.speed):
-        if not result.speed:
-            return f"critical speed: 0 rad/s; the beam is unstable at every speed: {result.reason}"
-        value = supported(result.speed, result.error * result.speed, 12)
-        return f"critical speed: {value} rad/s; above it the beam buckles: {result.reason}"
-    if isinf(result.none_below):
-        return f"no critical speed: {result.reason}"
-    if not result.error:
-        return f"no critical speed below {result.none_below:.4g} rad/s: {result.reason}"
-    return f"no critical speed found; there is certainly none below {result.none_below:.4g} rad/s"
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:

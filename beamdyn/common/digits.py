@@ -39,3 +39,36 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
     if decimals + lead < 0:
         return f"0 ± {abs(value) + error:.1g}"
     return f"{value:.{decimals}f}" if lead > -4 and decimals >= 0 else f"{value:.{decimals + lead}e}"
+
+
+def count_sure(text: str, error: float) -> int:
+    """Number of characters of a number's text up to the last digit whose half unit is not below an error.
+
+    Parameters
+    ----------
+    text : str
+        A number as `supported` writes it.
+    error : float
+        Absolute error; nan or inf leaves no digit sure.
+
+    Returns
+    -------
+    int
+        The whole length if all digits are sure; the sign and the decimal point count as what stands before.
+    """
+    mantissa, _, exponent = text.partition("e")
+    digits = mantissa.lstrip("-").replace(".", "", 1)
+    if not digits.isdigit() or error == 0:
+        return len(text)
+    point = mantissa.find(".") if "." in mantissa else len(mantissa)
+    scale = int(exponent or 0)
+    sure = 0
+    for i, character in enumerate(mantissa):
+        place = scale + (point - i - 1 if i < point else point - i)  # power of ten of the digit
+        if character.isdigit() and not 2 * error <= 10.0**place:
+            break
+        if character.isdigit():
+            sure = i + 1
+    else:
+        return len(text)
+    return sure

@@ -19,14 +19,16 @@ class OmittedEffect:
         Name of the effect.
     reason : str
         What the model assumes in its place, and how to include the effect if that can be done.
+    physics : str
+        Name of the field of `Physics` that includes it; empty if no model has it.
     """
 
     name: str
     reason: str
+    physics: str = ""
 
 
 _NEVER = (
-    OmittedEffect("large deflection", "the equations are linear about the straight beam"),
     OmittedEffect("torsion", "the beam is rigid against torsion"),
     OmittedEffect(
         "offsets of sections", "their centres of gravity, tension and shear are on one straight line"
@@ -42,13 +44,18 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     physics, beam = scene.physics, scene.beam
     if not physics.shear:
         given = _how("shear=True", beam.shear_stiffness is not None, "shear_stiffness or poissons_ratio")
-        yield OmittedEffect("shear deformation", f"sections stay normal to the axis; {given}")
+        yield OmittedEffect("shear deformation", f"sections stay normal to the axis; {given}", "shear")
     if not physics.rotary_inertia:
         given = _how("rotary_inertia=True", beam.rotary_inertia is not None, "rotary_inertia")
-        yield OmittedEffect("rotary inertia of sections", f"sections turn without inertia; {given}")
+        reason = f"sections turn without inertia; {given}"
+        yield OmittedEffect("rotary inertia of sections", reason, "rotary_inertia")
     if not physics.stretch:
         given = _how("stretch=True", beam.axial_stiffness is not None, "axial_stiffness")
-        yield OmittedEffect("stretch", f"the beam is inextensible; {given}")
+        yield OmittedEffect("stretch", f"the beam is inextensible; {given}", "stretch")
+    if not physics.large_deflection:
+        given = _how("large_deflection=True", True, "")
+        reason = f"the equations are linear about the straight beam; {given}"
+        yield OmittedEffect("large deflection", reason, "large_deflection")
     yield from _NEVER
 
 
@@ -59,9 +66,9 @@ def _second_plane(scene: Scene) -> Iterator[OmittedEffect]:
     beam = scene.beam
     given = _how("planes=2", beam.second_bending_stiffness is not None, "second_bending_stiffness")
     across = name_directions(scene.mount)[1][0]
-    yield OmittedEffect("second plane of bending", f"the beam is rigid {across}; {given}")
+    yield OmittedEffect("second plane of bending", f"the beam is rigid {across}; {given}", "planes")
     if beam.twist is not None:
-        yield OmittedEffect("twist", f"sections stand as at the root; {given}")
+        yield OmittedEffect("twist", f"sections stand as at the root; {given}", "planes")
 
 
 def _how(switch: str, given: bool, needed: str) -> str:

@@ -217,12 +217,13 @@ class Beam:
         warn_of_twist(turned)
         area = b * h
         flat, edge = area * h * h, area * b * b
-        shear = None if poissons_ratio is None else area.scaled(e * _shear_modulus_ratio(poissons_ratio))
+        axial = area.scaled(e)
+        shear = None if poissons_ratio is None else shear_stiffness_of_rectangle(axial, poissons_ratio)
         return cls(
             length=length,
             mass_per_length=area.scaled(rho),
             bending_stiffness=flat.scaled(e / 12),
-            axial_stiffness=area.scaled(e),
+            axial_stiffness=axial,
             outer_fibre=h.scaled(0.5),
             tip=tip,
             second_bending_stiffness=edge.scaled(e / 12),
@@ -355,12 +356,12 @@ OPTIONAL_PROPERTIES = (
 )
 
 
-def _shear_modulus_ratio(poissons_ratio: float) -> float:
-    """Kappa G / E of a rectangular section, by Cowper (1966)."""
+def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:
+    """Shear stiffness kappa G A [N] of rectangular sections of the axial stiffness E A, by Cowper (1966)."""
     nu = real("poissons_ratio", poissons_ratio)
     bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
     refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")
-    return 10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu))
+    return axial_stiffness.scaled(10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu)))
 
 
 def _check_section(length: float, width: Profile, thickness: Profile) -> None:

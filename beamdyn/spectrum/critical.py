@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from time import perf_counter
 
 import numpy as np
@@ -29,6 +29,8 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
 from beamdyn.modal.model import Model
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
@@ -44,8 +46,11 @@ _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotie
 
 
 @dataclass(frozen=True)
-class CriticalPoint(Result):
+class CriticalPoint(StatesModelError):
     """Critical speed, at which the stiffness of the rotating beam is singular, with its error.
+
+    `error` is that of the number; `model_error` and `left_out`, computed when asked for, are what the physics
+    left out would change in a speed that was found.
 
     Parameters
     ----------
@@ -72,6 +77,15 @@ class CriticalPoint(Result):
     reason: str
     warnings: tuple[str, ...]
     provenance: Provenance
+    scene: Scene = field(repr=False)
+    model: Model | None = field(repr=False)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects that the model leaves out would change in the critical speed, of shape ()."""
+        if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
+            return nothing_known(self.scene)
+        return left_out_of_critical_speed(self.model, self.speed)
 
 
 def critical_speed(
@@ -79,7 +93,8 @@ def critical_speed(
 ) -> float:
     """Compute the critical speed [rad/s], at which the first frequency vanishes; inf if there is none.
 
-    A warning is issued if there may be one where none was found, or if its error is large.
+    A warning is issued if there may be one where none was found, or if its error is large.  `critical_point`
+    gives the same with its error and its model error.
 
     Parameters
     ----------
@@ -132,7 +147,7 @@ def critical_point(
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
         buckling = replace(buckling, speed=None)  # sections so heavy that a long bend topples
     if buckling.speed == 0 or (not _can_be_sought(buckling) and not scene.physics.stretch):
-        return _argued(buckling, start)
+        return _argued(scene, buckling, start)
     found, reason = _search(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = _search(models(scene, "ritz"), target)
@@ -148,6 +163,8 @@ def critical_point(
         reason=reason,
         warnings=tuple(_critical_warnings(found, buckling, none_below, discretization, tolerance)),
         provenance=Provenance(__version__, *names, perf_counter() - start),
+        scene=scene,
+        model=found.model,
     )
 
 
@@ -165,12 +182,12 @@ def _can_be_sought(buckling: Buckling) -> bool:
     return buckling.exists is not False and buckling.speed is None
 
 
-def _argued(buckling: Buckling, start: float) -> CriticalPoint:
+def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
     """The answer that follows from an argument alone."""
     provenance = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
     speed = np.inf if buckling.speed is None else buckling.speed
     none_below = speed if not buckling.none_below else buckling.none_below
-    return CriticalPoint(speed, 0.0, none_below, buckling.why, (), provenance)
+    return CriticalPoint(speed, 0.0, none_below, buckling.why, (), provenance, scene, None)
 
 
 def _compare_with_bending(

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results import Provenance
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import (
@@ -26,6 +27,8 @@ from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
@@ -37,6 +40,7 @@ from beamdyn.scene.validity import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_MOST_JUDGED = 16  # speeds of a locus at which its model error is computed
 _EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones
 
 
@@ -44,8 +48,11 @@ _EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested 
 
 
 @dataclass(frozen=True)
-class Modes(Result):
+class Modes(StatesModelError):
     """Natural modes at one speed, the lowest first.
+
+    `error` is that of the numbers; `model_error` (m,) and `left_out`, computed when asked for, are what the
+    physics left out would change.
 
     Parameters
     ----------
@@ -101,6 +108,11 @@ class Modes(Result):
     scene: Scene = field(repr=False)
     vectors: np.ndarray = field(repr=False)
     model: Model = field(repr=False)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects that the model leaves out would change in each frequency (m,)."""
+        return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
         """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).
@@ -297,8 +309,11 @@ def _provenance(solution: EstimatedModes, start: float) -> Provenance:
 
 
 @dataclass(frozen=True)
-class Locus(Result):
+class Locus(StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
+
+    `error` is that of the numbers; `model_error` (k, m) and `left_out`, computed when asked for, are what the
+    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.
 
     Parameters
     ----------
@@ -341,6 +356,26 @@ class Locus(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+    model: Model = field(repr=False)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
+        return self.left_out_at(_spread(len(self.speeds), _MOST_JUDGED))
+
+    @property
+    def left_out_speeds(self) -> np.ndarray:
+        """Speeds of the locus at which its model error is computed, the ends among them [rad/s], (k,)."""
+        return self.speeds[_spread(len(self.speeds), _MOST_JUDGED)]
+
+    def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
+        """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
+        at = np.asarray(indices, dtype=int)
+        return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
@@ -410,7 +445,13 @@ def frequency_locus(
         warnings=tuple(_warnings(scene, speeds, deflection, strain, error, status, tolerance)),
         provenance=_provenance(solution, start),
         scene=scene,
+        model=solution.model,
     )
+
+
+def _spread(count: int, most: int) -> np.ndarray:
+    """Indices of at most so many of a number of speeds, evenly spread, the ends among them."""
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
 
 
 def _track_shares(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:

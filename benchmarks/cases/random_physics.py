@@ -64,7 +64,7 @@ def random_physics_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     inertia, springs 1e-6 to 1e6 EI/L, hinges, gamma <= 50.
     """
     scene = random_still_scene(rng)
-    return scene, _random_speed(rng, scene)
+    return scene, random_speed(rng, scene)
 
 
 def random_still_scene(rng: np.random.Generator) -> bd.Scene:
@@ -72,7 +72,7 @@ def random_still_scene(rng: np.random.Generator) -> bd.Scene:
     planes, shear, rotary = int(rng.integers(1, 3)), bool(rng.integers(2)), bool(rng.integers(2))
     planes = 2 if rng.random() < 0.5 else planes
     beam = random_physics_beam(rng, stocky=shear or rotary)
-    mount = _random_mount(rng, beam)
+    mount = random_mount(rng, beam)
     return bd.Scene(beam, mount, physics=bd.Physics(planes, shear=shear, rotary_inertia=rotary))
 
 
@@ -156,7 +156,7 @@ def _random_tip(rng: np.random.Generator, beam_mass: float, length: float) -> bd
 # Mount and speed ----------------------------------------------------------------------------------
 
 
-def _random_mount(rng: np.random.Generator, beam: bd.Beam) -> bd.Mount:
+def random_mount(rng: np.random.Generator, beam: bd.Beam) -> bd.Mount:
     """All directions; each plane clamped, on a spring or, rarely, hinged."""
     unit = float(beam.bending_stiffness(np.zeros(1))[0]) / beam.length
     return bd.Mount(
@@ -172,7 +172,7 @@ def _random_spring(rng: np.random.Generator) -> float:
     return float(rng.choice([np.inf, 0.0, 10 ** rng.uniform(-6, 6)], p=[0.55, 0.1, 0.35]))
 
 
-def _random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
+def random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
     """At most 0.999 critical, gamma = 50 and a tension of `MOST_TENSION`; every tenth at rest."""
     share = rng.choice([0.0, rng.uniform(0, 0.999), 1 - 10 ** rng.uniform(-3, 0)], p=[0.1, 0.45, 0.45])
     gamma = rng.uniform(0, 50)

@@ -92,14 +92,24 @@ def _table(made: Table) -> str:
     words = [column.justify == "left" for column in made.columns]
     heads = [str(column.header) for column in made.columns]
     rows = zip(*(column.cells for column in made.columns), strict=True)
-    body = "".join(_row([str(cell) for cell in row], words, "td") for row in rows)
-    head = _row(heads, words, "th")
+    body = "".join(_row([_cell(cell) for cell in row], words, "td") for row in rows)
+    head = _row([escape(head) for head in heads], words, "th")
     return f'<div class="scrolls"><table><thead>{head}</thead><tbody>{body}</tbody></table></div>'
+
+
+def _cell(cell: object) -> str:
+    """A cell in HTML; dimmed digits of a number stand at its end."""
+    from rich.text import Text
+
+    if not isinstance(cell, Text) or not cell.spans:
+        return escape(str(cell))
+    start = cell.spans[0].start
+    return f'{escape(cell.plain[:start])}<span class="beyond">{escape(cell.plain[start:])}</span>'
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
     made = (
-        f'<{tag} class="{"words" if w else "number"}">{escape(cell)}</{tag}>'
+        f'<{tag} class="{"words" if w else "number"}">{cell}</{tag}>'
         for cell, w in zip(cells, words, strict=True)
     )
     return f"<tr>{''.join(made)}</tr>"
@@ -120,6 +130,7 @@ STYLE = """
 .shown th { border-bottom: 1px solid #555; font-weight: 600; }
 .shown td, .shown th { padding: 0.1rem 0.8rem 0.1rem 0; vertical-align: top; }
 .shown .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.shown .beyond { color: #767676; }
 .shown .words { text-align: left; }
 .shown tbody tr:nth-child(even) { background: #f4f4f4; }
 """

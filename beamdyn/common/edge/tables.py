@@ -17,6 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beamdyn.common.comparison import Comparison
+from beamdyn.common.digits import count_sure
 
 _PIPE_WIDTH = 120  # of tables that go to a file or another program
 
@@ -108,8 +109,17 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
+BEYOND = "dim"  # style of the digits of a number that its error does not support
+
+
+def set_apart(text: str, error: float) -> Text:
+    """A number's text, with the digits beyond an absolute error dimmed."""
+    sure = count_sure(text, error)
+    return Text.assemble(text[:sure], (text[sure:], BEYOND))
+
+
 def table(
-    title: str, columns: Sequence[str], rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)
+    title: str, columns: Sequence[str], rows: Iterable[Sequence[str | Text]], left: Sequence[int] = (0,)
 ) -> Group:
     """A table of text.
 
@@ -119,7 +129,7 @@ def table(
         Above it.
     columns : sequence of str
         Headings.
-    rows : iterable of sequences of str
+    rows : iterable of sequences of str or Text
         Cells; an empty row draws a line.
     left : sequence of int
         Columns that are flush left, such as words; numbers are flush right.

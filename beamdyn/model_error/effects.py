@@ -1,0 +1,111 @@
+"""Scenes with an effect that a scene leaves out, as far as the beam has the data for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.left_out import OmittedEffect, list_left_out
+from beamdyn.scene.beam import Beam, shear_stiffness_of_rectangle
+from beamdyn.scene.scene import Scene
+
+ASSUMED_POISSONS_RATIO = 0.3
+_RECTANGLE = 1e-9  # relative; of a radius of gyration that is that of a rectangle
+
+
+@dataclass(frozen=True)
+class Addition:
+    """A scene with one effect more.
+
+    Parameters
+    ----------
+    name : str
+        Name of the effect.
+    scene : Scene
+        The scene that includes it.
+    assumed : str
+        What was assumed about the beam to include it; empty if nothing.
+    """
+
+    name: str
+    scene: Scene
+    assumed: str = ""
+
+
+def add_effect(scene: Scene, effect: OmittedEffect) -> Addition:
+    """Add an effect that a scene leaves out to it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    effect : OmittedEffect
+        The effect, which a model can have.
+
+    Returns
+    -------
+    Addition
+
+    Raises
+    ------
+    InvalidValue
+        If the beam lacks a property that the effect needs, or the effect cannot be combined with the others.
+    """
+    physics = replace(scene.physics, **{effect.physics: 2 if effect.physics == "planes" else True})
+    try:
+        return Addition(effect.name, replace(scene, physics=physics))
+    except InvalidValue:
+        beam = _assume_shear(scene.beam) if physics.shear else None
+        if beam is None:
+            raise
+    assumed = f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
+    return Addition(effect.name, replace(scene, beam=beam, physics=physics), assumed)
+
+
+def _assume_shear(beam: Beam) -> Beam | None:
+    """The beam with the shear stiffness of usual materials; None unless its sections are seen as rectangles.
+
+    The shear stiffness of a rectangle lies within 28 % of that assumed, for Poisson's ratios from 0 to 0.5.
+    """
+    if beam.shear_stiffness is not None or beam.axial_stiffness is None or not _is_rectangular(beam):
+        return None
+    stiffness = shear_stiffness_of_rectangle(beam.axial_stiffness, ASSUMED_POISSONS_RATIO)
+    return replace(beam, shear_stiffness=stiffness, second_shear_stiffness=stiffness)
+
+
+def _is_rectangular(beam: Beam) -> bool:
+    """Whether stiffnesses and outer fibre h/2 are those of rectangles: EI = EA h^2 / 12."""
+    if beam.axial_stiffness is None or beam.outer_fibre is None:
+        return False
+    xi = np.linspace(0, 1, 33)
+    gyration = np.sqrt(beam.bending_stiffness(xi) / beam.axial_stiffness(xi))
+    return bool(np.allclose(np.sqrt(3) * gyration, beam.outer_fibre(xi), rtol=_RECTANGLE, atol=0.0))
+
+
+def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
+    """List the effects that a scene leaves out, but for large deflection, by what can be said of them.
+
+    Returns
+    -------
+    additions : list of Addition
+        Those that can be added.
+    not_known : dict of str to str
+        Those that cannot, and what to give.
+    not_modelled : tuple of str
+        Those that no model has.
+    """
+    left_out = {effect.name: effect for effect in list_left_out(scene) if effect.name != LARGE_DEFLECTION}
+    if "twist" in left_out:  # it needs the second plane: the two are one effect
+        left_out.pop("second plane of bending", None)
+    additions, not_known = [], {}
+    for effect in (effect for effect in left_out.values() if effect.physics):
+        try:
+            additions.append(add_effect(scene, effect))
+        except InvalidValue as error:
+            not_known[effect.name] = f"give {error.other}" if error.other else str(error)
+    return additions, not_known, tuple(e.name for e in left_out.values() if not e.physics)
+
+
+LARGE_DEFLECTION = "large deflection"

@@ -1,0 +1,74 @@
+"""Modes over the function spaces in which every effect can be added to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from beamdyn.equations.discretization import Spaces
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
+from beamdyn.modal.eigen import Eigen
+from beamdyn.modal.model import Model
+from beamdyn.modal.uncoupled import solver_of
+from beamdyn.scene.scene import Scene
+
+_MOST = 160  # coordinates of a model: an estimate of a change needs no more
+_EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
+
+
+@dataclass(frozen=True)
+class Simple:
+    """The equations of a scene, without the effects, over spaces that suit those with each effect.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    spaces : Spaces
+        Function spaces with a breakpoint wherever the beam has one.
+    equations : Equations
+        The equations of motion.
+    """
+
+    scene: Scene
+    spaces: Spaces
+    equations: Equations
+
+    @classmethod
+    def of(cls, model: Model, modes: int) -> Simple:
+        """Equations over the spaces of a model, or of a coarser one that suffices for so many modes."""
+        discretization, segments = model.discretization, len(model.scene.beam.breakpoints) - 1
+        while model.equations.modes > _MOST and discretization.coarser() != discretization:
+            if not discretization.coarser().fits(max(2, -(-modes // segments))):
+                break
+            discretization = discretization.coarser()
+            model = Model(model.scene, discretization)
+        spaces = discretization.spaces(model.scene.beam)
+        if model.scene.beam.breakpoints == model.scene.modelled_beam.breakpoints:
+            return cls(model.scene, spaces, model.equations)
+        return cls(model.scene, spaces, assemble_over(model.scene, spaces))
+
+    def pencil(self) -> SteadyPencil:
+        """The equations at steady speed."""
+        return self.equations.steady()
+
+    def extend(self, scene: Scene) -> Equations:
+        """The equations of the scene with an effect, over the same spaces."""
+        return assemble_over(scene, self.spaces)
+
+    def embed(self, equations: Equations, vectors: np.ndarray) -> np.ndarray:
+        """Coordinates (N, ...) of extended equations for vectors (n, ...) of these: 0 in further fields."""
+        embedded = np.zeros((equations.size, *vectors.shape[1:]), dtype=vectors.dtype)
+        for name, place in self.equations.blocks.items():
+            embedded[equations.blocks[name]] = vectors[place]
+        return embedded
+
+    def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Eigenvalues (m,) and modes (n, m) of these equations, each the nearest to one that is given."""
+        solver = solver_of(self.equations)
+        found: Eigen = solver.solve(np.array([speed]), min(len(eigenvalue) + _EXTRA_MODES, solver.size))
+        s, v = found.eigenvalue[0], found.vector[0]
+        _, order = linear_sum_assignment(np.abs(eigenvalue[:, None] - s[None, :]))
+        return s[order], v[:, order]

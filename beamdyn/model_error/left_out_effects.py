@@ -1,0 +1,156 @@
+"""The effects that a model leaves out, each with the change that it would make in an answer, and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.results import Result, plain
+
+LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
+_NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
+_MANY_TIMES = 10.0  # relative change above which percent say little
+
+
+@dataclass(frozen=True)
+class LeftOutEffects:
+    """What the effects that a model leaves out would change.
+
+    Parameters
+    ----------
+    changes : dict of str to ndarray
+        Relative change of each value of the answer by adding the effect of that name; nan where that is not
+        known.
+    not_known : dict of str to str
+        Effects whose change is not known, for some value at least, and why, or what to give.
+    assumed : dict of str to str
+        Effects whose change rests on an assumption, and on which.
+    not_modelled : tuple of str
+        Effects that no model here has.
+    reasons : dict of str to str
+        What the model assumes in place of each effect, and how to include it.
+    """
+
+    changes: dict[str, np.ndarray]
+    not_known: dict[str, str]
+    assumed: dict[str, str]
+    not_modelled: tuple[str, ...]
+    reasons: dict[str, str]
+
+    @property
+    def total(self) -> np.ndarray:
+        """Size of the sum of all changes; nan where one of them is not known."""
+        return np.abs(sum(self.changes.values(), np.zeros(())))
+
+    def at(self, index: Any) -> LeftOutEffects:
+        """The same for some of the values."""
+        changes = {name: change[index] for name, change in self.changes.items()}
+        return LeftOutEffects(changes, self.not_known, self.assumed, self.not_modelled, self.reasons)
+
+    # In words -----------------------------------------------------------------------------------------
+
+    def sentence(self, what: str = "mode", where: str = "") -> str:
+        """One line: the largest change by each effect, what is not known, and what is not modelled.
+
+        Parameters
+        ----------
+        what : str
+            What the last axis of the values counts; "" where there is one value.
+        where : str
+            Where the values hold, said first: "at 100 rad/s".
+        """
+        parts = [", ".join(self._say_changes(what)) or "nothing that can be computed"]
+        if self.not_known:
+            parts.append(f"not known: {', '.join(f'{n} ({why})' for n, why in self.not_known.items())}")
+        if self.not_modelled:
+            parts.append(f"not modelled: {', '.join(self.not_modelled)}")
+        return f"left out{where and ' ' + where}: {'; '.join(parts)}"
+
+    def _say_changes(self, what: str) -> Iterator[str]:
+        known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
+        for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
+            notes = [self._say_mode(name, what), self.assumed.get(name, "")]
+            note = ", ".join(filter(None, notes))
+            yield f"{name} {say_change(_largest(known[name]))}{note and f' ({note})'}"
+
+    def _say_mode(self, name: str, what: str) -> str:
+        change = self.changes[name]
+        if not what or change.ndim == 0 or change.shape[-1] == 1 or abs(_largest(change)) < _NEGLIGIBLE:
+            return ""
+        return f"{what} {np.nanargmax(np.abs(change)) % change.shape[-1] + 1}"
+
+    def warnings(self, tolerance: float | None = None, where: str = "") -> Iterator[str]:
+        """Yield a warning if the changes exceed a tolerance, or 1 %, and if they may, being unknown.
+
+        The parameter `where` is as for `sentence`.
+        """
+        limit = LARGE_MODEL_ERROR if tolerance is None else tolerance
+        total = self.total
+        if np.isfinite(total).any() and np.nanmax(total) > limit:
+            largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
+            change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
+            size = say_size(np.nanmax(total))
+            yield (
+                f"{where and where + ' '}the model error, {size}, exceeds {say_size(limit)}: "
+                f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
+            )
+
+
+def _largest(change: np.ndarray) -> float:
+    """The value of the largest size."""
+    known = change[np.isfinite(change)]
+    return float(known[np.abs(known).argmax()])
+
+
+def say_change(change: float) -> str:
+    """A relative change in percent, to two digits, with its sign."""
+    if abs(change) < _NEGLIGIBLE:
+        return "0 %" if change == 0 else "below 1e-7 %"
+    return f"{change:+.1e} times" if abs(change) >= _MANY_TIMES else f"{_percent(change, '+')} %"
+
+
+def say_size(size: float) -> str:
+    """A relative size in percent, to two digits; in words where it is not known."""
+    return "not known" if np.isnan(size) else say_change(size).removeprefix("+")
+
+
+def _percent(value: float, sign: str = "") -> str:
+    """A number in percent with two digits, without an exponent where that is short."""
+    digits = f"{100 * value:{sign}.2g}"
+    return f"{100 * value:{sign}.0f}" if "e+" in digits else digits
+
+
+# Results that carry it ----------------------------------------------------------------------------
+
+
+class StatesModelError(Result):
+    """Base of results that say what the effects left out of their model would change; see `Result`.
+
+    A subclass has the cached property `left_out_effects`, which is computed when asked for.
+    """
+
+    left_out_effects: Any
+
+    @property
+    def left_out(self) -> Mapping[str, np.ndarray]:
+        """Relative change by adding each effect that the model leaves out, by the effect's name.
+
+        Effects that lack data, or that no model here has, are named by `left_out_effects`.
+        """
+        return MappingProxyType(self.left_out_effects.changes)
+
+    @property
+    def model_error(self) -> np.ndarray:
+        """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
+        return self.left_out_effects.total
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        effects = self.left_out_effects
+        judged = {"model_error": self.model_error, "left_out": effects.changes}
+        named = {"not_known": effects.not_known, "assumed": effects.assumed}
+        return super().to_dict() | plain(judged | named | {"not_modelled": effects.not_modelled})

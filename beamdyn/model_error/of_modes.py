@@ -1,0 +1,143 @@
+"""What the effects that a model leaves out would change in its frequencies and its critical speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.left_out import list_left_out
+from beamdyn.modal.model import Model
+from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
+from beamdyn.model_error.known_modes import Simple
+from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
+from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
+from beamdyn.scene.scene import Scene
+
+_STRAIGHT = "as of the straight beam"
+_REAL = 1e-8  # growth rate relative to the frequency, that is rounding
+
+Embedding: TypeAlias = Callable[[np.ndarray], np.ndarray]  # of vectors in the coordinates with an effect
+Change: TypeAlias = Callable[[SteadyPencil, Embedding], np.ndarray]
+
+
+def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
+    """Estimate what the effects that a model leaves out would change in frequencies at some speeds.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    eigenvalue : ndarray of complex, shape (S, m)
+        Eigenvalues of the modes [1/s].
+
+    Returns
+    -------
+    LeftOutEffects
+        Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
+        with it.
+    """
+    simple = Simple.of(without_large_deflection(model), eigenvalue.shape[1])
+    found = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+
+    def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
+        each = zip(speeds.tolist(), found, strict=True)
+        return np.array([_change_of_frequencies(pencil, speed, s, embed(v)) for speed, (s, v) in each])
+
+    def bent() -> tuple[np.ndarray, str]:
+        changes, reason = large_deflection_change(model, speeds, eigenvalue)
+        return np.where(_vibrate(eigenvalue), changes, np.nan), reason
+
+    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+
+
+def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
+    """Estimate what the effects that a model leaves out would change in its critical speed.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    critical : float
+        Critical speed [rad/s], finite and not 0.
+
+    Returns
+    -------
+    LeftOutEffects
+        Relative changes, of shape ().
+    """
+    simple = Simple.of(without_large_deflection(model), 1)
+    pencil = simple.pencil()
+    v = buckling_mode(pencil, critical)
+    known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
+
+    def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
+        return np.array(shift_critical_speed(pencil, known, embed(v)) / known - 1)
+
+    def bent() -> tuple[np.ndarray, str]:
+        does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
+        return np.array(np.nan if does else 0.0), NO_CRITICAL_SPEED if does else ""
+
+    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+
+
+def nothing_known(scene: Scene) -> LeftOutEffects:
+    """The effects that a scene leaves out, where there is no value that they could change."""
+    additions, not_known, not_modelled = list_effects(scene)
+    names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION]
+    unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
+    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
+
+
+def _gather(
+    simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray, str]] | None
+) -> LeftOutEffects:
+    """All effects: of each that can be added, the change by its equations; and that by large deflection."""
+    additions, not_known, not_modelled = list_effects(simple.scene)
+    changes = {}
+    if bent is not None:
+        changes[LARGE_DEFLECTION], reason = bent()
+        not_known |= {LARGE_DEFLECTION: reason} if reason else {}
+    for addition in additions:
+        changes[addition.name] = _change_by(simple, addition, change)
+    assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}
+    if bent is None:
+        assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}
+    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene))
+
+
+def without_large_deflection(model: Model) -> Model:
+    """The model of the straight beam, for which the other effects are estimated."""
+    if not model.scene.physics.large_deflection:
+        return model
+    physics = replace(model.scene.physics, large_deflection=False, branch="straight")
+    return Model(replace(model.scene, physics=physics), model.discretization)
+
+
+def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray:
+    equations = simple.extend(addition.scene)
+    return change(equations.steady(), lambda v: simple.embed(equations, v))
+
+
+def _reasons(scene: Scene) -> dict[str, str]:
+    """What the model assumes in place of each effect, and how to include it."""
+    return {effect.name: effect.reason for effect in list_left_out(scene)}
+
+
+def _change_of_frequencies(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) with the pencil of an effect."""
+    pairs = zip(s.tolist(), v.T, _vibrate(s), strict=True)
+    shifted = np.array([shift_eigenvalue(pencil, speed, r, x) if ok else np.nan for r, x, ok in pairs])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(_vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
+
+
+def _vibrate(s: np.ndarray) -> np.ndarray:
+    """Whether modes have a frequency, and do not grow but by rounding."""
+    return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))

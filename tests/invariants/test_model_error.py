@@ -1,0 +1,96 @@
+"""The change by an effect that is left out, estimated without solving, is that by solving with it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+import beamdyn as bd
+
+STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
+TWISTED = replace(
+    STRIP, twist=bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, twist=Polynomial([0, 0.5])).twist
+)
+OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)
+INWARD = bd.Mount(1.0, 0.0, 0.0)
+
+# Effect, what includes it, mount, beam, and the modes to compare: with the second plane, those that mostly
+# bend in the first.
+CASES = {
+    "shear deformation": (bd.Physics(shear=True), OUTWARD, STRIP),
+    "rotary inertia of sections": (bd.Physics(rotary_inertia=True), OUTWARD, STRIP),
+    "stretch": (bd.Physics(stretch=True), replace(OUTWARD, bending_angle=0.0), STRIP),
+    "second plane of bending": (bd.Physics(planes=2), replace(OUTWARD, bending_angle=0.5), STRIP),
+    "twist": (bd.Physics(planes=2), OUTWARD, TWISTED),
+}
+SPEED = 300.0
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.02])
+@pytest.mark.parametrize("effect", CASES)
+def test_estimate_is_what_solving_gives(effect: str, ratio: float) -> None:
+    """Two steps of inverse iteration leave terms of higher order: 1e-3 of a change of some percent."""
+    physics, mount, beam = CASES[effect]
+    scene = bd.Scene(beam, mount, damping_ratio=ratio)
+    without = bd.natural_modes(scene, SPEED, 3)
+    within = bd.natural_modes(replace(scene, physics=physics), SPEED, 6)
+    order = np.argsort(within.plane_share[:, 1] > 0.5, kind="stable")[:3]
+    true = within.frequency[order] / without.frequency - 1
+    assert np.abs(true).max() > 1e-5
+    np.testing.assert_allclose(without.left_out[effect], true, rtol=1e-3, atol=1e-10)
+
+
+def test_what_is_modelled_already_takes_part() -> None:
+    """Shear is estimated beside the rotary inertia that the model has."""
+    scene = bd.Scene(STRIP, OUTWARD, physics=bd.Physics(rotary_inertia=True))
+    without = bd.natural_modes(scene, SPEED, 3)
+    both = bd.natural_modes(replace(scene, physics=bd.Physics(shear=True, rotary_inertia=True)), SPEED, 3)
+    assert "rotary inertia of sections" not in without.left_out
+    change = both.frequency / without.frequency - 1
+    np.testing.assert_allclose(without.left_out["shear deformation"], change, rtol=1e-3)  # as above
+
+
+def test_stations_of_the_twist_alone() -> None:
+    """Twist by stations has segments that the model without it lacks."""
+    twist = bd.Table([0.0, 0.3, 1.0], [0.0, 0.2, 0.4])
+    beam = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, twist=twist)
+    without = bd.natural_modes(bd.Scene(beam, OUTWARD), SPEED, 2)
+    within = bd.natural_modes(bd.Scene(beam, OUTWARD, physics=bd.Physics(planes=2)), SPEED, 4)
+    true = within.frequency[within.plane_share[:, 0] > 0.5][:2] / without.frequency - 1
+    np.testing.assert_allclose(without.left_out["twist"], true, rtol=1e-3)  # as above
+
+
+@pytest.mark.parametrize("discretization", ["ritz", "fem"])
+def test_both_discretizations_state_the_same(discretization: str) -> None:
+    """Finite elements are accurate to 1e-7 of a frequency, of which the changes are a thousandth or more."""
+    scene = bd.Scene(STRIP, OUTWARD)
+    expected = bd.natural_modes(scene, SPEED, 2).left_out
+    found = bd.natural_modes(scene, SPEED, 2, discretization).left_out
+    for name in ("shear deformation", "rotary inertia of sections"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-3)
+
+
+def test_slender_limit() -> None:
+    """Shear and rotary inertia fall as the square of the thickness: fourfold for twice as thick."""
+    thin, thick = (
+        bd.natural_modes(bd.Scene(bd.Beam.rectangular(1.0, 0.1, h, 200e9, 7850.0, poissons_ratio=0.3)))
+        for h in (0.001, 0.002)
+    )
+    for name in ("shear deformation", "rotary inertia of sections"):
+        ratio = thick.left_out[name] / thin.left_out[name]
+        np.testing.assert_allclose(ratio, 4.0, rtol=1e-3)  # the next term is (h/L)^2 times n^2, 1e-4
+
+
+@pytest.mark.parametrize("physics", [bd.Physics(shear=True), bd.Physics(planes=2)])
+def test_critical_speed(physics: bd.Physics) -> None:
+    beam = replace(TWISTED if physics.planes == 2 else STRIP, axial_stiffness=None)
+    scene = bd.Scene(beam, INWARD)
+    without = bd.critical_point(scene)
+    true = bd.critical_speed(replace(scene, physics=physics)) / without.speed - 1
+    name = "twist" if physics.planes == 2 else "shear deformation"
+    assert abs(true) > 1e-4
+    np.testing.assert_allclose(without.left_out[name], true, rtol=0.02)  # of the step's higher orders

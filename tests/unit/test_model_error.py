@@ -1,0 +1,266 @@
+"""What results and commands say of the physics that their model leaves out."""
+
+from __future__ import annotations
+
+import json
+import math
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+import beamdyn as bd
+from beamdyn.cli.program import main
+from beamdyn.common.digits import count_sure
+from beamdyn.common.edge.rendering import html
+from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.model_error.left_out_effects import LeftOutEffects, say_change
+from beamdyn.result_tables import locus_table, modes_table
+
+STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
+OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)
+SCENE = bd.Scene(STRIP, OUTWARD)
+NEVER = ("torsion", "offsets of sections", "warping and Poisson contraction", "contact")
+
+FILE = """
+[beam]
+length = "0.5 m"
+width = "60 mm"
+thickness = "30 mm"
+youngs_modulus = "200 GPa"
+density = "7850 kg/m3"
+
+[mount]
+radius = "200 mm"
+setting_angle = "180 deg"
+bending_angle = "90 deg"
+"""
+
+
+# What is stated -----------------------------------------------------------------------------------
+
+
+def test_model_error_is_the_size_of_the_sum() -> None:
+    modes = bd.natural_modes(SCENE, 100.0)
+    total = sum(modes.left_out.values())
+    assert modes.model_error.shape == (3,)
+    np.testing.assert_array_equal(modes.model_error, np.abs(total))
+    with pytest.raises(TypeError):
+        modes.left_out["shear deformation"] = np.zeros(3)  # pyright: ignore[reportIndexIssue]
+
+
+def test_nothing_is_left_out_of_what_is_modelled() -> None:
+    physics = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
+    modes = bd.natural_modes(replace(SCENE, physics=physics), 100.0)
+    assert {*modes.left_out} == {"large deflection"}
+    assert modes.left_out_effects.not_modelled == NEVER
+
+
+def test_what_the_beam_lacks_is_named() -> None:
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 10.0)
+    effects = bd.natural_modes(bd.Scene(beam, OUTWARD), 1.0).left_out_effects
+    assert effects.not_known == {
+        "shear deformation": "give shear_stiffness",
+        "rotary inertia of sections": "give rotary_inertia",
+        "stretch": "give axial_stiffness",
+        "second plane of bending": "give second_bending_stiffness",
+    }
+    assert "not known: second plane of bending (give second_bending_stiffness)" in effects.sentence()
+
+
+def test_shear_of_a_rectangle_is_estimated_by_an_assumed_ratio_which_is_said() -> None:
+    silent = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0)
+    assumed, given = (bd.natural_modes(bd.Scene(beam, OUTWARD), 100.0) for beam in (silent, STRIP))
+    name = "shear deformation"
+    np.testing.assert_allclose(assumed.left_out[name], given.left_out[name], rtol=1e-12)  # the same sums
+    assert assumed.left_out_effects.assumed == {name: "with Poisson's ratio 0.3 assumed"}
+    assert "with Poisson's ratio 0.3 assumed" in assumed.left_out_effects.sentence()
+    assert not given.left_out_effects.assumed
+
+
+def test_sections_that_are_no_rectangles_are_not_assumed_to_be() -> None:
+    beam = replace(STRIP, shear_stiffness=None, outer_fibre=STRIP.outer_fibre and STRIP.outer_fibre.scaled(2))
+    assert "shear deformation" in bd.natural_modes(bd.Scene(beam, OUTWARD)).left_out_effects.not_known
+
+
+def test_modes_without_a_frequency_are_not_judged() -> None:
+    """A free turn has the frequency 0, and a mode past the critical speed has none."""
+    hinge = bd.natural_modes(replace(SCENE, mount=bd.Mount(0.0, math.pi, 0.0, root_stiffness=0.0)), 0.0)
+    assert np.isnan(hinge.left_out["shear deformation"][0])
+    assert np.isfinite(hinge.left_out["shear deformation"][1:]).all()
+    scene = bd.Scene(replace(STRIP, axial_stiffness=None), bd.Mount(1.0))
+    unstable = bd.natural_modes(scene, 1.1 * bd.critical_speed(scene))
+    assert unstable.status[0] == "divergence"
+    assert np.isnan(unstable.model_error[0])
+
+
+def test_where_nothing_loads_the_straight_beam_large_deflection_changes_nothing() -> None:
+    np.testing.assert_array_equal(bd.natural_modes(SCENE, 100.0).left_out["large deflection"], 0.0)
+    trailing = replace(SCENE, mount=bd.Mount(0.2, math.pi / 2))
+    np.testing.assert_array_equal(bd.natural_modes(trailing, 0.0).left_out["large deflection"], 0.0)
+
+
+HARVESTER = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+
+
+@pytest.mark.parametrize(
+    "physics", [bd.Physics(), bd.Physics(stretch=True), bd.Physics(shear=True, rotary_inertia=True)]
+)
+def test_large_deflection_is_solved(physics: bd.Physics) -> None:
+    """Where it cannot be combined, the plain beam stands for it: to the 1e-4 that the rest is worth."""
+    beam = replace(HARVESTER, shear_stiffness=HARVESTER.axial_stiffness)
+    scene = bd.Scene(beam, bd.Mount(0.215, math.radians(45)), physics=physics)
+    bent = bd.natural_modes(replace(scene, physics=bd.Physics(large_deflection=True)), 100.0)
+    straight = bd.natural_modes(replace(scene, physics=bd.Physics()), 100.0)
+    true = bent.frequency / straight.frequency - 1
+    found = bd.natural_modes(scene, 100.0)
+    assert true[0] > 0.09  # 55.62 Hz in place of 60.66
+    np.testing.assert_allclose(found.left_out["large deflection"], true, rtol=2e-4)
+    assert "large deflection +9.1 % (mode 1)" in found.left_out_effects.sentence()
+
+
+def test_large_deflection_that_cannot_be_solved_makes_the_model_error_unknown() -> None:
+    """Oblique bending; a second plane; a straight beam that has buckled."""
+    mount, buckled = bd.Mount(0.215, math.radians(45)), bd.Scene(HARVESTER, bd.Mount(0.215))
+    cases = {
+        "multiple of 90 deg": (bd.Scene(HARVESTER, replace(mount, bending_angle=0.3)), 100.0),
+        "one plane": (bd.Scene(HARVESTER, mount, physics=bd.Physics(planes=2)), 100.0),
+        "unstable": (buckled, 1.2 * bd.critical_speed(buckled)),
+    }
+    for reason, (scene, speed) in cases.items():
+        modes = bd.natural_modes(scene, speed)
+        assert np.isnan(modes.model_error).all()
+        assert reason in modes.left_out_effects.not_known["large deflection"]
+
+
+def test_about_the_bent_beam_other_effects_are_those_of_the_straight_one() -> None:
+    scene = bd.Scene(HARVESTER, bd.Mount(0.215, math.radians(45)))
+    bent = bd.natural_modes(replace(scene, physics=bd.Physics(large_deflection=True)), 100.0)
+    straight = bd.natural_modes(scene, 100.0)
+    assert "large deflection" not in bent.left_out
+    name = "rotary inertia of sections"
+    np.testing.assert_allclose(bent.left_out[name], straight.left_out[name], rtol=1e-6)
+    assert bent.left_out_effects.assumed[name] == "as of the straight beam"
+
+
+def test_critical_speed_has_the_same_words() -> None:
+    point = bd.critical_point(bd.Scene(STRIP, bd.Mount(1.0)))
+    assert point.model_error.shape == ()
+    assert point.left_out["large deflection"] == 0  # the straight beam is an equilibrium until it buckles
+    assert np.isnan(bd.critical_point(SCENE).model_error)  # there is no critical speed to change
+    oblique = bd.critical_point(bd.Scene(STRIP, bd.Mount(1.0, 0.3)))
+    assert "does not buckle" in oblique.left_out_effects.not_known["large deflection"]
+
+
+def test_locus_states_it_at_some_of_its_speeds() -> None:
+    locus = bd.frequency_locus(SCENE, np.linspace(0.0, 100.0, 40), 2)
+    assert locus.model_error.shape == (len(locus.left_out_speeds), 2)
+    last = bd.natural_modes(SCENE, 100.0, 2).left_out["shear deformation"]
+    np.testing.assert_allclose(locus.left_out["shear deformation"][-1], last, rtol=1e-6)  # by other bases
+    np.testing.assert_allclose(locus.left_out_at([39]).changes["shear deformation"][0], last, rtol=1e-6)
+
+
+def test_results_keep_it_in_pickles_and_files(tmp_path: Path) -> None:
+    modes = bd.natural_modes(SCENE, 100.0)
+    expected = modes.model_error
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(modes)).model_error, expected)
+    modes.save(tmp_path / "modes.json")
+    np.testing.assert_array_equal(bd.load(tmp_path / "modes.json").model_error, expected)
+
+
+# In words and digits --------------------------------------------------------------------------------
+
+
+def test_warning_above_one_percent_or_the_tolerance() -> None:
+    effects = LeftOutEffects({"a": np.array([0.004, 0.006])}, {}, {}, (), {"a": "why"})
+    assert not [*effects.warnings()]
+    assert not [*effects.warnings(0.0061)]
+    (text,) = effects.warnings(0.001)
+    assert text == ("the model error, 0.6 %, exceeds 0.1 %: a, left out, changes the answer by +0.6 %; why")
+
+
+def test_sentence_begins_with_the_largest() -> None:
+    changes = {"small": np.array([1e-5, -3e-5]), "large": np.array([0.094, 0.01])}
+    said = LeftOutEffects(changes, {"x": "give y"}, {}, ("torsion",), {}).sentence(where="at 5 rad/s")
+    assert said == (
+        "left out at 5 rad/s: large +9.4 % (mode 1), small -0.003 % (mode 2); not known: x (give y); "
+        "not modelled: torsion"
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [(0.0906, "+9.1 %"), (-3e-5, "-0.003 %"), (0, "0 %"), (1e-12, "below 1e-7 %"), (4.56, "+456 %")],
+)
+def test_changes_in_percent(change: float, words: str) -> None:
+    assert say_change(change) == words
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "sure"),
+    [
+        ("55.62047", 0.004, "55.62"),  # half a unit of the digit is not below the error: as `supported`
+        ("55.62047", 0.006, "55.6"),
+        ("1234.5", 4.0, "123"),
+        ("1.2345e-05", 4e-8, "1.23"),
+        ("55.62", 0.0, "55.62"),
+        ("55.62", math.nan, ""),
+        ("55.62", 500.0, ""),
+        ("-", math.nan, "-"),
+        ("0 ± 3", 1.0, "0 ± 3"),
+    ],
+)
+def test_digits_beyond_an_error(text: str, error: float, sure: str) -> None:
+    assert text[: count_sure(text, error)] == sure
+
+
+def test_digits_beyond_the_model_error_are_dimmed_and_kept() -> None:
+    cell = set_apart("55.62047", 0.004)
+    assert (cell.plain, [(s.start, s.end, s.style) for s in cell.spans]) == ("55.62047", [(5, 8, "dim")])
+    assert '55.62<span class="beyond">047</span>' in html([table("t", ["f"], [[cell]])])
+    console = Console(force_terminal=True, color_system="truecolor", width=120)
+    with console.capture() as captured:
+        console.print(modes_table(bd.natural_modes(SCENE, 100.0)))
+        console.print(locus_table(bd.frequency_locus(SCENE, [0.0, 100.0], 2)))
+    assert captured.get().count("\x1b[2m") >= 3 + 4  # each frequency
+
+
+# Commands -------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def scene_file(tmp_path: Path) -> Path:
+    path = tmp_path / "scene.toml"
+    path.write_text(FILE, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "command",
+    [["modes", "--speed", "100 rad/s"], ["locus", "--speeds", "0, 100 rad/s"], ["critical"]],
+)
+def test_commands_say_it_below_the_table_and_in_json(
+    command: list[str], scene_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out.json"
+    assert main([command[0], str(scene_file), *command[1:], "--json", str(out)]) == 0
+    said = capsys.readouterr()
+    printed = " ".join(said.out.split())
+    assert "left out" in printed
+    assert "not modelled: torsion, offsets of sections" in printed
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert "shear deformation" in found["left_out"]
+    assert "model_error" in found
+    assert found["not_modelled"] == list(NEVER)
+    if command[0] != "critical":
+        assert "with Poisson's ratio 0.3 assumed" in printed
+        assert "exceeds 1 %: shear deformation, left out, changes the answer by" in said.err
+        assert "Physics(shear=True) includes it, with shear_stiffness or poissons_ratio" in said.err
+
+
+def test_no_warning_below_a_stated_tolerance(scene_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["modes", str(scene_file), "--tolerance", "0.1"]) == 0
+    assert "exceeds" not in capsys.readouterr().err
