@@ -213,6 +213,12 @@ class DeflectedState:
             self.cos[..., None, :] * angles
         )
 
+    def positions(self, xi: np.ndarray) -> np.ndarray:
+        """Positions (k, 2) along b1 and e [m] at x/L = xi of shape (k,), for one set of coordinates."""
+        points = self.elastica.points
+        weights = points.length * points.quadrature.integrate_to(xi)
+        return np.stack([weights @ self.cos[:-1], weights @ self.sin[:-1]], axis=-1)
+
     # What each quantity of the root's motion does to the mass points ----------------------------------
 
     def inertial_forces(self, quantity: Quantity) -> NodalForces:
