@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.table import Table
+from rich.console import Group
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 _AXES = "b1", "b2", "b3"
 
 
-def equilibrium_table(result: Equilibrium) -> Table:
+def equilibrium_table(result: Equilibrium) -> Group:
     """Position and slope of the tip, and whether the beam stays there."""
     length = result.scene.beam.length
-    title = f"Equilibrium at {result.speed:.10g} rad/s ({result.branch} branch), by {result.provenance.method}"
+    title = (
+        f"Equilibrium at {result.speed:.10g} rad/s ({result.branch} branch), by {result.provenance.method}"
+    )
     rows = [
         (f"tip along {axis}", supported(1e3 * x, 1e3 * result.error), f"{x / length:.4f}")
         for axis, x in zip(_AXES, result.tip.tolist(), strict=True)
@@ -36,7 +38,7 @@ def equilibrium_csv(result: Equilibrium) -> Iterator[Sequence[object]]:
     yield result.speed, result.branch, *result.tip.tolist(), result.stable, result.growth_rate
 
 
-def branches_table(result: EquilibriumBranches) -> Table:
+def branches_table(result: EquilibriumBranches) -> Group:
     """From where to where each branch goes, and where it is stable."""
     title = f"Branches of equilibria up to {result.top_speed:.10g} rad/s, by {result.provenance.method}"
     rows = [(branch.name, *_describe(branch)) for branch in result.branches]
