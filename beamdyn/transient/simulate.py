@@ -218,8 +218,9 @@ class Transient(Result):
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are.
 
-        With large deflection, kinetic energy relative to the rotating axes, elastic energy and the potential of
-        the centrifugal forces and of the root's acceleration: constant without damping if these are.
+        With large deflection, kinetic energy relative to the rotating axes, elastic energy and the
+        potential of the centrifugal forces and of the root's acceleration: constant, without damping, if
+        the speed and that acceleration are.
         """
         t = self._times_in_run(t)
         return self.system.energy(t, *self.path.at(t))
