@@ -13,13 +13,15 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.results import Provenance, Result, plain
+from beamdyn.common.results import Provenance, plain
 from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
+from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.scene.motion import Line, Motion
+from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
@@ -57,7 +59,7 @@ _WITHOUT_STIFFNESS = "past the critical speed", "turns freely about the root"
 
 
 @dataclass(frozen=True)
-class SteadyResponse(Result):
+class SteadyResponse(OfChosenPhysics):
     """Steady response over speed, after the free vibration from the start has decayed.
 
     Parameters
@@ -225,6 +227,7 @@ def steady_response(
     steps = None if harmonics is None else count("harmonics", harmonics, least=0, most=_MOST_HARMONICS)
     tolerance = positive("tolerance", tolerance)
     smallest = basis or ModalBasis(FEWEST_MODES)
+    scene = choose_for_motion(scene, speeds, basis and basis.modes, tolerance)
     request = ResponseRequest(scene, speeds, smallest, steps, tolerance, discretization)
     return request.run() if basis else request.run_smallest_basis()
 
@@ -413,6 +416,7 @@ def _warnings(
     undecided: np.ndarray,
 ) -> Iterator[str]:
     yield from warn_of_left_out(scene)
+    yield from warn_of_peak(scene, float(np.nanmax(amplitude, initial=0.0)))
     for name in ("parametric instability", *_WITHOUT_STIFFNESS):
         if (at := speeds[status == name]).size:
             yield f"{name} at {len(at)} speed(s), {list_range(at)}: no steady response"
