@@ -31,6 +31,7 @@ from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
 from beamdyn.modal.model import Model
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
@@ -38,6 +39,10 @@ from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.modes import static_load
 from beamdyn.spectrum.planes import separate_planes
 
+_BENT = (
+    "rotation bends the beam from rest on, so that it does not buckle; equilibrium_branches finds where its "
+    "equilibrium turns back"
+)
 _SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
 _TO_HALF = 4  # steps from a basis to one of about half its size
 _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
@@ -141,6 +146,9 @@ def critical_point(
     check_scene(scene)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     check_discretization(discretization)
+    if _bends_from_rest(scene):
+        return _argued(scene, Buckling(False, _BENT), start)
+    scene = _about_straight_beam(scene)
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
@@ -166,6 +174,17 @@ def critical_point(
         scene=scene,
         model=found.model,
     )
+
+
+def _bends_from_rest(scene: Scene) -> bool:
+    """Whether large deflection is modelled, and rotation bends the beam at every speed."""
+    across = exact_cos_sin(scene.mount.setting_angle)[1] * exact_cos_sin(scene.mount.bending_angle)[0]
+    return scene.physics.large_deflection and bool(scene.mount.radius * across)
+
+
+def _about_straight_beam(scene: Scene) -> Scene:
+    """The scene without large deflection, which does not change when a straight beam buckles."""
+    return replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
 
 
 def _is_within_theory(model: Model) -> bool:
@@ -376,6 +395,10 @@ def setting_angle_limits(
     """
     start = perf_counter()
     check_scene(scene)
+    if scene.physics.large_deflection:
+        bound = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
+        remedy = "leave it out, or ask frequency_locus for the locus at a setting angle"
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
     _refuse_hinge(scene)
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     scene = replace(_without_stretch(scene), damping_ratio=0.0)
