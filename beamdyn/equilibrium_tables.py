@@ -20,7 +20,9 @@ _AXES = "b1", "b2", "b3"
 def equilibrium_table(result: Equilibrium) -> Table:
     """Position and slope of the tip, and whether the beam stays there."""
     length = result.scene.beam.length
-    title = f"Equilibrium at {result.speed:.10g} rad/s ({result.branch} branch), by {result.provenance.method}"
+    title = (
+        f"Equilibrium at {result.speed:.10g} rad/s ({result.branch} branch), by {result.provenance.method}"
+    )
     rows = [
         (f"tip along {axis}", supported(1e3 * x, 1e3 * result.error), f"{x / length:.4f}")
         for axis, x in zip(_AXES, result.tip.tolist(), strict=True)

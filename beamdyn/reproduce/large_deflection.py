@@ -107,11 +107,11 @@ def notes() -> Iterator[str]:
     angle = load("lee_yoo_2019")["setting_angle_limits"]["first"]["value"][1]
     rest, turning = (_first_frequency(bending_scene(angle), speed)[0] for speed in (0.0, _SPEEDS[0]))
     yield (
-        "(9) Linear equations are no longer those of this beam, which rotation bends unless it points at the "
-        "axis: ours are those of an inextensible beam of any slope. It has the first limit of the paper at "
-        f"rest only: at {angle:g} deg its frequency does not stay, but is {turning - rest:.2f} Hz above that at rest at "
-        f"{_SPEEDS[0]:g} rad/s. From {_second_limit()[0]:.2f} deg on it rises again before {TOP:g} rad/s, "
-        "and no angle is left at which it rises first and then falls."
+        "(9) Rotation bends this beam, unless it points at the axis, and the paper's equations are linear "
+        "about the straight beam: ours are those of an inextensible beam of any slope. It has the first limit "
+        f"of the paper at rest only: at {angle:g} deg its frequency does not stay, but is "
+        f"{turning - rest:.2f} Hz higher at {_SPEEDS[0]:g} rad/s. From {_second_limit()[0]:.2f} deg on it rises "
+        f"again before {TOP:g} rad/s, and at no angle does it rise first and then fall."
     )
 
 
