@@ -80,6 +80,9 @@ def sections(fig_6_sweep: Sweep) -> dict[str, list[Comparison]]:
         "Fig. 7: speeds of resonance [rad/s]": [*motion.resonances()],
         "Section 3.3: limits of the setting angle [deg]": [*frequencies.limits_of_setting_angle()],
         "Section 4: speed of buckling, beam pointing inward [rad/s]": [*frequencies.buckling_speed()],
+        "Table 3 with large deflection: largest tip deflection in 20 to 30 s [mm]": [
+            *motion.largest_deflections_of_bent_beam()
+        ],
         "Fig. 8 and 9 with large deflection: first natural frequency [Hz]": [
             *large_deflection.first_frequencies()
         ],

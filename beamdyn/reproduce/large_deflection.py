@@ -15,12 +15,11 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.model import Model
 from beamdyn.output.plots import plot_loci_by_angle
 from beamdyn.published import load
-from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
+from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, published_scene
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.modes import frequency_locus, natural_modes
 
-BENDS = "large deflection (9)"  # why the paper's numbers differ
 _LINEAR = "paper's model"
 _SPEEDS = (100.0, 400.0)  # at which the figures are judged [rad/s]: that of Table 2, and one beyond
 _BASIS = Ritz(16)  # of the limits: their frequencies are good to 1e-13
@@ -108,10 +107,10 @@ def notes() -> Iterator[str]:
     rest, turning = (_first_frequency(bending_scene(angle), speed)[0] for speed in (0.0, _SPEEDS[0]))
     yield (
         "(9) Rotation bends this beam, unless it points at the axis, and the paper's equations are linear "
-        "about the straight beam: ours are those of an inextensible beam of any slope. It has the first limit "
-        f"of the paper at rest only: at {angle:g} deg its frequency does not stay, but is "
-        f"{turning - rest:.2f} Hz higher at {_SPEEDS[0]:g} rad/s. From {_second_limit()[0]:.2f} deg on it rises "
-        f"again before {TOP:g} rad/s, and at no angle does it rise first and then fall."
+        "about the straight beam: ours are those of an inextensible beam of any slope. It has the first "
+        f"limit of the paper at rest only: at {angle:g} deg its frequency does not stay, but is "
+        f"{turning - rest:.2f} Hz higher at {_SPEEDS[0]:g} rad/s. From {_second_limit()[0]:.2f} deg on it "
+        f"rises again before {TOP:g} rad/s, and at no angle does it rise first and then fall."
     )
 
 
