@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.table import Table
+from rich.console import Group
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _AXES = "b1", "b2", "b3"
 
 
-def equilibrium_table(result: Equilibrium) -> Table:
+def equilibrium_table(result: Equilibrium) -> Group:
     """Position and slope of the tip, and whether the beam stays there."""
     length = result.scene.beam.length
     title = (
@@ -38,7 +38,7 @@ def equilibrium_csv(result: Equilibrium) -> Iterator[Sequence[object]]:
     yield result.speed, result.branch, *result.tip.tolist(), result.stable, result.growth_rate
 
 
-def branches_table(result: EquilibriumBranches) -> Table:
+def branches_table(result: EquilibriumBranches) -> Group:
     """From where to where each branch goes, and where it is stable."""
     title = f"Branches of equilibria up to {result.top_speed:.10g} rad/s, by {result.provenance.method}"
     rows = [(branch.name, *_describe(branch)) for branch in result.branches]
