@@ -49,6 +49,7 @@ _MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
 _MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
+_FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 
@@ -296,7 +297,7 @@ class ResponseRequest(FieldsOnly):
     def _smallest_basis(self) -> ModalBasis:
         """Modes at the slowest and the fastest speed; about equilibria, those at each speed are taken."""
         if self.scene.physics.large_deflection:
-            return ModalBasis(FEWEST_MODES)
+            return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
         return ModalBasis(FEWEST_MODES, tuple(np.unique([speed.min(), speed.max()]).tolist()))
 

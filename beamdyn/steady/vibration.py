@@ -16,6 +16,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.deflected import DeflectedSolver
 from beamdyn.modal.eigen import Solver
+from beamdyn.modal.equilibrium import NoEquilibrium
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
@@ -154,7 +155,7 @@ def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
     assert isinstance(solver, DeflectedSolver)
     try:
         return solver.equilibria(speeds)
-    except ArithmeticError:
+    except NoEquilibrium:
         return _find_each(solver, speeds)
 
 
@@ -165,7 +166,7 @@ def _find_each(solver: DeflectedSolver, speeds: np.ndarray) -> np.ndarray:
         try:
             q[k] = solver.equilibria(speeds[[k]])[0]
             reached = True
-        except ArithmeticError:
+        except NoEquilibrium:
             if reached:
                 break
     return q
@@ -175,8 +176,10 @@ def choose_vibrating(
     scene: Scene, discretization: DiscretizationChoice, speeds: np.ndarray, modes: int
 ) -> Model:
     """Choose a model at the speeds at which the beam has an equilibrium: see `choose_model`."""
-    if not scene.physics.large_deflection:
+    try:
         return choose_model(scene, discretization, speeds, modes)
+    except NoEquilibrium:
+        pass
     from_rest = replace(scene, physics=replace(scene.physics, branch="straight"))
     at_rest = choose_model(from_rest, discretization, np.zeros(1), modes)
     rough = Model(scene, at_rest.discretization)
