@@ -56,7 +56,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
     found = _gather(simple, change, None if model.scene.physics.large_deflection else bent)
-    return _say_lost_modes(found, np.array([_vibrate(s) for s, _ in found_modes]))
+    return _say_lost_modes(found, np.array([vibrate(s) for s, _ in found_modes]))
 
 
 def _say_lost_modes(effects: LeftOutEffects, vibrate: np.ndarray) -> LeftOutEffects:
