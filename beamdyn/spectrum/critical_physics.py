@@ -22,9 +22,20 @@ _FUNCTIONS = 5  # of a model of which only the loads are read
 class _Point(Protocol):
     """What is read of a critical point."""
 
-    speed: float
-    error: float
-    model: Model | None
+    @property
+    def speed(self) -> float:
+        """Critical speed [rad/s]."""
+        ...
+
+    @property
+    def error(self) -> float:
+        """Its relative error."""
+        ...
+
+    @property
+    def model(self) -> Model | None:
+        """The model that found it; None if an argument did."""
+        ...
 
 
 def choose_for_critical_speed(
