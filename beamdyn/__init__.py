@@ -45,6 +45,13 @@ _NAMES = {
         "critical_speed",
         "setting_angle_limits",
     ),
+    "spectrum.equilibria": (
+        "Equilibrium",
+        "EquilibriumBranch",
+        "EquilibriumBranches",
+        "equilibrium",
+        "equilibrium_branches",
+    ),
     "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
@@ -93,6 +100,13 @@ if TYPE_CHECKING:
         critical_point,
         critical_speed,
         setting_angle_limits,
+    )
+    from beamdyn.spectrum.equilibria import (
+        Equilibrium,
+        EquilibriumBranch,
+        EquilibriumBranches,
+        equilibrium,
+        equilibrium_branches,
     )
     from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds

@@ -66,7 +66,7 @@ def modes_table(result: Modes) -> Group:
 
 def _model_error_cell(effects: LeftOutEffects, mode: int) -> str:
     """Relative model error of a mode with one digit; with a question mark where the beam lacks data."""
-    size, more = effects.total[mode], " + ?" if effects.not_known else ""
+    size, more = effects.total[mode], " + ?" if effects.not_known.keys() - effects.changes.keys() else ""
     return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
 

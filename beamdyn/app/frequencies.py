@@ -15,7 +15,7 @@ from beamdyn.app.inputs import DRAGS, TABLES, read
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.app.screens import Screen
 from beamdyn.output.plots import mark_critical
-from beamdyn.result_tables import crossings_table, locus_csv, locus_table
+from beamdyn.result_tables import crossings_table, locus_csv, locus_table, where_worst
 from beamdyn.spectrum.modes import Locus
 from beamdyn.steady.resonance import Crossings
 
@@ -75,7 +75,9 @@ def draw(answer: Frequencies, _: float = 0.0) -> Figure:
 def warnings(answer: Frequencies) -> Sequence[str]:
     """Warnings of both, and why there are no crossings."""
     crossings = () if answer.crossings is None else answer.crossings.warnings
-    return [*([answer.refused] if answer.refused else []), *answer.locus.warnings, *crossings]
+    left_out = answer.locus.left_out_effects.warnings(where=where_worst(answer.locus))
+    refused = [answer.refused] if answer.refused else []
+    return [*refused, *answer.locus.warnings, *left_out, *crossings]
 
 
 def rows(answer: Frequencies) -> Iterable[Sequence[object]]:

@@ -213,6 +213,12 @@ class DeflectedState:
             self.cos[..., None, :] * angles
         )
 
+    def positions(self, xi: np.ndarray) -> np.ndarray:
+        """Positions (k, 2) along b1 and e [m] at x/L = xi of shape (k,), for one set of coordinates."""
+        points = self.elastica.points
+        weights = points.length * points.quadrature.integrate_to(xi)
+        return np.stack([weights @ self.cos[:-1], weights @ self.sin[:-1]], axis=-1)
+
     # What each quantity of the root's motion does to the mass points ----------------------------------
 
     def inertial_forces(self, quantity: Quantity) -> NodalForces:
@@ -290,10 +296,7 @@ class DeflectedState:
         return geometric
 
     def linearized(self) -> Equations:
-        """Equations of small motions about this state.
-
-        Loads are those of the motion of the root, without the constant force of the deflected beam.
-        """
+        """Equations of small motions about this state, the elastic force of which is among the loads."""
         linear, elastica = self.elastica.linear, self.elastica
         _, V = self.gradients
         space = DeflectedShapes(self)
@@ -325,6 +328,7 @@ class DeflectedState:
             yield term(f"stiffness by {quantity}", 0, self.stiffness_of(quantity), quantity)
 
     def _loads(self) -> Iterator[Load]:
+        yield Load("elastic force", _BENDING, self.elastica.stiffness @ self.q, "unity", -1.0)
         for quantity in QUANTITIES:
             yield Load(f"load by {quantity}", _BENDING, self.inertia_of(quantity), quantity, -1.0)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from time import perf_counter
 
@@ -130,12 +130,15 @@ def terms(scene: Scene) -> Terms:
     """
     start = perf_counter()
     check_scene(scene)
-    sampled, assembled = SampledScene(scene), _terms_by_name(scene)
-    modelled = (field for field in FIELDS if field.is_modelled(scene))
-    complete = reduce(lambda scene, field: field.complete(scene), modelled, scene)
-    entries = (
+    straight = replace(scene, physics=replace(scene.physics, large_deflection=False))
+    sampled, assembled = SampledScene(scene), _terms_by_name(straight)
+    modelled = (field for field in FIELDS if field.is_modelled(straight))
+    complete = reduce(lambda scene, field: field.complete(scene), modelled, straight)
+    entries = [
         _describe(every, assembled.get(name, []), sampled) for name, every in _terms_by_name(complete).items()
-    )
+    ]
+    if scene.physics.large_deflection:
+        entries.append(_ANY_SLOPE)
     lines = scene.motion.lines if scene.motion is not None else ()
     gravity = (Line("gravity", 1.0),) if scene.gravity else ()
     provenance = Provenance(__version__, str(_BASIS), "", perf_counter() - start)
@@ -166,6 +169,15 @@ def _describe(every: list[Term | Load], assembled: list[Term | Load], scene: Sam
     )
 
 
+_ANY_SLOPE = Entry(
+    name="large deflection",
+    symbol="cos θ, sin θ",
+    fields=("bending",),
+    quantity="1",
+    largest=1.0,
+    present=True,
+    reason="slopes of any size are modelled; the other terms are what they are for a straight beam",
+)
 _EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
 _QUANTITY = {

@@ -6,7 +6,8 @@ beam and by the parameter over its scale (Keller's pseudo-arclength method).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -19,6 +20,8 @@ _EASY = 4  # iterations up to which the next step is longer
 _CONVERGED = 1e-14  # change of the slope angles [rad]
 _STALLED = 1e-9  # change of the slope angles from which on rounding may end the iteration [rad]
 _STRAYED = 0.5  # correction of a step over its length, above which it may have met another curve
+_LOOSE = 2.0  # the same where the points on both sides are known to be on one curve
+_NEAR = 1e-4  # arc length within which directions of another sign are a bifurcation, and no other curve
 
 
 class Problem(Protocol):
@@ -90,12 +93,28 @@ def start_curve(problem: Problem, q: np.ndarray, p: float, towards: float) -> Po
     return _normalized(problem, q, p, q_rate, 1.0, towards)
 
 
-def follow(problem: Problem, start: Point) -> Iterator[Point]:
-    """Yield the points of a curve, beginning after `start`, in steps that follow its curvature."""
+def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterator[Point]:
+    """Yield the points of a curve, beginning after `start`, in steps that follow its curvature.
+
+    Parameters
+    ----------
+    problem : Problem
+        The equations.
+    start : Point
+        A point of the curve.
+    longest : float
+        Longest step, by arc length.
+
+    Raises
+    ------
+    NotConverged
+        If the curve cannot be followed further.
+    """
     point, step = start, _FIRST
     while True:
         try:
             following, iterations = advance(problem, point, step)
+            _check_same_curve(problem, point, following, step)
         except NotConverged:
             step /= 4
             if step < _SHORTEST:
@@ -103,15 +122,31 @@ def follow(problem: Problem, start: Point) -> Iterator[Point]:
             continue
         point = following
         yield point
-        step = min(_LONGEST, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
+        step = min(longest, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
 
 
-def advance(problem: Problem, point: Point, step: float) -> tuple[Point, int]:
-    """Advance along a curve by an arc length; also the number of iterations that it took."""
+def _check_same_curve(problem: Problem, before: Point, after: Point, step: float) -> None:
+    """Raise NotConverged if stability changes otherwise than by a turning point: on another curve."""
+    changed = abs(count_negative(problem, after) - count_negative(problem, before))
+    turned = int(after.p_rate * before.p_rate < 0)
+    if changed != turned and step > _NEAR:
+        raise NotConverged
+
+
+def count_negative(problem: Problem, point: Point) -> int:
+    """Number of negative eigenvalues of the symmetric Jacobian at a point: 0 where it is stable."""
+    return int((np.linalg.eigvalsh(problem.jacobian(point.q, point.p)) < 0).sum())
+
+
+def advance(problem: Problem, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:
+    """Advance along a curve by an arc length; also the number of iterations that it took.
+
+    A correction larger than the step times `strayed` is refused.
+    """
     q, p = point.q + step * point.q_rate, point.p + step * point.p_rate * problem.scale
     corrected, p_corrected, iterations = _newton(problem, q, p, point)
-    strayed = np.abs((corrected - q) @ problem.angles).max() + abs(p_corrected - p) / problem.scale
-    if strayed > _STRAYED * step:
+    correction = np.abs((corrected - q) @ problem.angles).max() + abs(p_corrected - p) / problem.scale
+    if correction > strayed * abs(step):
         raise NotConverged
     A = _bordered(problem, corrected, p_corrected, point)
     tangent = np.linalg.solve(A, np.append(np.zeros(len(q)), 1.0))
@@ -120,12 +155,34 @@ def advance(problem: Problem, point: Point, step: float) -> tuple[Point, int]:
 
 def find_turning_point(problem: Problem, before: Point, after: Point) -> Point:
     """Find where the parameter is extreme, between two successive points of a curve."""
-    length = _metric(problem, after.q - before.q, (after.p - before.p) / problem.scale)
-    reach = 1.5 * length
-    while advance(problem, before, reach)[0].p_rate * before.p_rate > 0:
-        reach *= 1.2
-    step = brentq(lambda s: advance(problem, before, s)[0].p_rate if s else before.p_rate, 0.0, reach)
-    return advance(problem, before, float(step))[0]
+    return _find_between(problem, before, after, lambda point: point.p_rate)
+
+
+def find_at(problem: Problem, before: Point, after: Point, p: float) -> np.ndarray:
+    """Find the coordinates at a parameter, between two successive points of a curve."""
+    if p in (before.p, after.p):
+        return before.q if p == before.p else after.q
+    share = (p - before.p) / (after.p - before.p)
+    between = before.q + share * (after.q - before.q)
+    size = _metric(problem, after.q - before.q, 0.0)
+    with suppress(NotConverged):
+        q = solve_at(problem, between, p)
+        if _metric(problem, q - between, 0.0) < size / 2:
+            return q
+    point = _find_between(problem, before, after, lambda point: (point.p - p) / problem.scale)
+    return solve_at(problem, point.q, p)
+
+
+def _find_between(problem: Problem, before: Point, after: Point, function: Callable[[Point], float]) -> Point:
+    """Find the root of a function between two successive points of a curve, along its arc."""
+    reach = _metric(problem, after.q - before.q, (after.p - before.p) / problem.scale)
+
+    def at(step: float) -> Point:
+        return advance(problem, before, step, _LOOSE)[0] if step else before
+
+    while function(at(reach)) * function(before) > 0:
+        reach *= 1.1
+    return at(float(brentq(lambda step: function(at(step)), 0.0, reach)))
 
 
 def _newton(problem: Problem, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:

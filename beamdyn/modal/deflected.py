@@ -88,8 +88,21 @@ class DeflectedSolver(Eigensolver):
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
         """Coordinates (S, n) in equilibrium at each speed, each computed once."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
-        if self.branch == "bent":
-            self._found.update((v, find_bent(self.load, v)) for v in missing)
-        elif len(missing):
-            self._found.update(zip(missing.tolist(), follow_to(self.load, missing), strict=True))
+        if len(missing):
+            start = self._start(missing)
+            self._found.update(
+                zip(missing.tolist(), follow_to(self.load, missing, self._found[start], start), strict=True)
+            )
         return np.array([self._found[abs(v)] for v in speeds])
+
+    def _start(self, missing: np.ndarray) -> float:
+        """A speed near those that are missing at which the equilibrium is known."""
+        if not self._found:
+            fastest = float(missing[-1])
+            self._found |= (
+                {0.0: np.zeros(self.size)}
+                if self.branch == "straight"
+                else {fastest: find_bent(self.load, fastest)}
+            )
+        known = np.array(list(self._found))
+        return float(known[np.abs(known - missing[0]).argmin()])

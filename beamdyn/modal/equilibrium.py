@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.equations.elastica import QUANTITIES, DeflectedState, Elastica
 from beamdyn.equations.root_motion import Quantity, root_motion
-from beamdyn.modal.continuation import NotConverged, Point, find_turning_point, follow, solve_at, start_curve
+from beamdyn.modal.continuation import NotConverged, Point, find_at, find_turning_point, follow, start_curve
 from beamdyn.scene.motion import MotionSample
 
 Branch = Literal["straight", "bent"]
@@ -117,27 +117,48 @@ class Pushed:
         return self.load.elastica.at(q).inertia_of("root_transverse")
 
 
-def follow_to(load: SteadyLoad, speeds: np.ndarray) -> np.ndarray:
-    """Follow the equilibria from rest to each of some speeds [rad/s]: coordinates (S, n).
+def follow_to(
+    load: SteadyLoad, speeds: np.ndarray, q: np.ndarray | None = None, start: float = 0.0
+) -> np.ndarray:
+    """Follow the equilibria to each of some speeds [rad/s]: coordinates (S, n).
+
+    Parameters
+    ----------
+    load : SteadyLoad
+        The beam under rotation.
+    speeds : ndarray, shape (S,)
+        The speeds.
+    q : ndarray, shape (n,), optional
+        Coordinates in equilibrium at the speed `start` [rad/s]; by default the beam at rest.
 
     Raises
     ------
     NoEquilibrium
-        If the branch turns back before the fastest.
+        If the branch turns back before a speed.
     """
-    found = np.zeros((len(speeds), load.elastica.size))
-    pending = [k for k in np.argsort(np.abs(speeds), kind="stable") if speeds[k]]
-    if not load.transverse:
-        return found  # the straight beam is an equilibrium at every speed
-    before = start_curve(load, found[0] if len(found) else np.zeros(load.elastica.size), 0.0, 1.0)
-    curve = follow(load, before)
-    while pending:
-        after = _next(load, curve, before)
-        while pending and speeds[pending[0]] ** 2 <= after.p:
-            k = pending.pop(0)
-            found[k] = solve_at(load, _between(before, after, float(speeds[k]) ** 2), float(speeds[k]) ** 2)
-        before = after
+    q = np.zeros(load.elastica.size) if q is None else q
+    squares = speeds**2
+    found = np.tile(q, (len(speeds), 1))
+    for towards in (1.0, -1.0):
+        pending = [
+            k for k in np.argsort(towards * squares, kind="stable") if towards * (squares[k] - start**2) > 0
+        ]
+        if pending and (
+            load.transverse or q.any()
+        ):  # else the straight beam is in equilibrium at every speed
+            found[pending] = _follow_in_order(load, start_curve(load, q, start**2, towards), squares[pending])
     return found
+
+
+def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np.ndarray:
+    """Coordinates at squared speeds in the order in which a curve meets them."""
+    found, curve, towards = [], follow(load, before), np.sign(before.p_rate)
+    while len(found) < len(squares):
+        after = _next(load, curve, before)
+        while len(found) < len(squares) and towards * (after.p - squares[len(found)]) >= 0:
+            found.append(find_at(load, before, after, float(squares[len(found)])))
+        before = after
+    return np.array(found)
 
 
 def _next(load: SteadyLoad, curve: Iterator[Point], before: Point) -> Point:
@@ -145,18 +166,15 @@ def _next(load: SteadyLoad, curve: Iterator[Point], before: Point) -> Point:
     try:
         after = next(curve)
     except NotConverged:
-        speed = np.sqrt(max(before.p, 0.0))
-        raise NoEquilibrium(f"the branch from rest could not be followed beyond {speed:.6g} rad/s") from None
+        raise NoEquilibrium(f"the branch could not be followed beyond {_speed(before):.6g} rad/s") from None
     if after.p_rate * before.p_rate < 0:
-        turning = np.sqrt(find_turning_point(load, before, after).p)
-        raise NoEquilibrium(f"the branch from rest turns back at {turning:.6g} rad/s")
+        turning = find_turning_point(load, before, after)
+        raise NoEquilibrium(f"the branch turns back at {_speed(turning):.6g} rad/s")
     return after
 
 
-def _between(before: Point, after: Point, p: float) -> np.ndarray:
-    """Coordinates at a parameter between two points of a curve, by linear interpolation."""
-    share = (p - before.p) / (after.p - before.p)
-    return before.q + share * (after.q - before.q)
+def _speed(point: Point) -> float:
+    return float(np.sqrt(max(point.p, 0.0)))
 
 
 def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
@@ -169,32 +187,30 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
     NoEquilibrium
         If the beam does not stay there at this speed.
     """
-    length, natural = load.elastica.length, load.transverse
+    natural, squared = load.transverse, speed**2
     side = 1.0 if natural >= 0 else -1.0
-    push = -2 * natural - side * _PUSH * length
-    q = follow_to(replace(load, push=push), np.array([speed]))[0]
-    squared = speed**2
-    released = Pushed(load, squared, scale=abs(push) * squared)
-    point = start_curve(released, q, push * squared, -np.sign(push))
+    push = -2 * natural - side * _PUSH * load.elastica.length
     try:
-        for after in follow(released, point):
-            if after.p_rate * point.p_rate < 0:
-                break
-            if after.p * push <= 0:
-                return _other_than(load, speed, solve_at(released, _between(point, after, 0.0), 0.0))
-            point = after
-    except NotConverged:
-        pass
-    raise _no_bent(speed)
-
-
-def _other_than(load: SteadyLoad, speed: float, bent: np.ndarray) -> np.ndarray:
-    """The bent equilibrium, unless it is that of the branch from rest."""
-    straight = follow_to(load, np.array([speed]))[0] if not load.transverse else None
-    if straight is not None and np.abs((bent - straight) @ load.angles).max() < _SAME:
-        raise _no_bent(speed)
+        q = follow_to(replace(load, push=push), np.array([speed]))[0]
+        bent = _release(Pushed(load, squared, scale=abs(push) * squared), q, push * squared)
+    except (NotConverged, NoEquilibrium):
+        bent = None
+    straight = follow_to(load, np.array([speed]))[0]
+    if bent is None or np.abs((bent - straight) @ load.angles).max() < _SAME:
+        raise NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
     return bent
 
 
-def _no_bent(speed: float) -> NoEquilibrium:
-    return NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
+def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:
+    """Follow an equilibrium until the push has ended; None if it is lost before."""
+    before = start_curve(pushed, q, push, -np.sign(push))
+    for after in follow(pushed, before):
+        turned = after.p_rate * before.p_rate < 0
+        if turned:
+            after = find_turning_point(pushed, before, after)
+        if after.p * push <= 0:
+            return find_at(pushed, before, after, 0.0)
+        if turned:
+            return None
+        before = after
+    return None

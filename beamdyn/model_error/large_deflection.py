@@ -16,6 +16,7 @@ NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buc
 _BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch='bent') bends it"
 _TWO_PLANES = "it is solved in one plane of bending"
 _OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
+_NOT_FOUND = "the equilibrium was not found"
 _EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
 
 
@@ -86,6 +87,8 @@ def _change_at(straight: Model, bent: Model, speed: float, eigenvalue: np.ndarra
         within = bent.solver.solve(speeds, count).eigenvalue[0]
     except ArithmeticError as error:
         return np.full(len(eigenvalue), np.nan), str(error)
+    except np.linalg.LinAlgError:  # a hinge, on which the beam has no single equilibrium at rest
+        return np.full(len(eigenvalue), np.nan), _NOT_FOUND
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.imag(within[order]) / np.imag(without[order]) - 1
     return np.where(np.imag(within[order]) > 0, change, np.nan), ""

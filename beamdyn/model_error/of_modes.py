@@ -18,6 +18,7 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
 from beamdyn.scene.scene import Scene
 
+_LOST = "it turns a mode into others"
 _STRAIGHT = "as of the straight beam"
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
 
@@ -44,17 +45,24 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         with it.
     """
     simple = Simple.of(without_large_deflection(model), eigenvalue.shape[1])
-    found = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+    found_modes = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
 
     def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
-        each = zip(speeds.tolist(), found, strict=True)
+        each = zip(speeds.tolist(), found_modes, strict=True)
         return np.array([_change_of_frequencies(pencil, speed, s, embed(v)) for speed, (s, v) in each])
 
     def bent() -> tuple[np.ndarray, str]:
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
         return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
-    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+    found = _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+    return _say_lost_modes(found, np.array([vibrate(s) for s, _ in found_modes]))
+
+
+def _say_lost_modes(effects: LeftOutEffects, vibrate: np.ndarray) -> LeftOutEffects:
+    """Name the effects that have no estimate at a mode that vibrates."""
+    lost = {name: _LOST for name, change in effects.changes.items() if np.isnan(change[vibrate]).any()}
+    return replace(effects, not_known=lost | effects.not_known)
 
 
 def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:

@@ -3,7 +3,7 @@
 The equations with the effect, at the eigenvalue s and mode v of those without it, give a step of inverse
 iteration, z = D(s)^-1 D'(s) v with D(s) = s^2 M + s (C + omega G) + K, whence the new eigenvalue is the root
 of y^T D(s) z = 0 next to s, with y from the transposed equations.  The error of the vectors enters squared:
-no new eigenproblem is solved, and no modes are matched.  A second step serves large effects and close modes.
+no new eigenproblem is solved, and no modes are matched.  Further steps serve large effects and close modes.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import scipy.linalg
 from beamdyn.equations.equations_of_motion import SteadyPencil
 
 _APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
-_STEPS = 2  # of inverse iteration: the second counts where the effect is large, or modes are close
+_STEPS = 8  # of inverse iteration at most: one will do unless the effect is large, or modes are close
+_CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
 _KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
 
 
@@ -47,7 +48,9 @@ def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarr
             y, z = _improve(M, C, K, at * (1 + _APART), y, z)
         except (ValueError, np.linalg.LinAlgError):
             return complex(np.nan)
-        at = _root_near(s, *(complex(y @ A @ z) for A in (M, C, K)))
+        before, at = at, _root_near(s, *(complex(y @ A @ z) for A in (M, C, K)))
+        if abs(at - before) <= _CONVERGED * abs(at - s) + _ROUNDING * abs(s):
+            break
     kept = abs(x.conj() @ M @ z) ** 2 / ((x.conj() @ M @ x) * (z.conj() @ M @ z)).real
     return at if kept > _KEPT else complex(np.nan)
 

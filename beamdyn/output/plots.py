@@ -460,3 +460,47 @@ def add_legend(ax: Axes) -> Axes:
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
     ax.legend(fontsize=10, **place)
     return ax
+
+
+def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None) -> Axes:
+    """Draw a bent beam, by its positions along the straight beam and across it, over its length."""
+    ax = _new_axes() if ax is None else ax
+    ax.plot(along, across, color=COLOURS[0])
+    ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)
+    labels = {"xlabel": "along the beam at rest, over its length", "ylabel": "deflection over the length"}
+    ax.set(aspect="equal", **labels)
+    return ax
+
+
+def plot_branches(
+    branches: Sequence[tuple[str, np.ndarray, np.ndarray, np.ndarray]], ax: Axes | None = None
+) -> Axes:
+    """Draw branches of equilibria over speed: solid where they are stable, dashed where not.
+
+    Parameters
+    ----------
+    branches : sequence of tuple
+        Name, speeds (k,) [rad/s], tip deflections over the length (k,) and stability (k,) of each.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _new_axes() if ax is None else ax
+    for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
+        for where, style, word in ((stable, "-", "stable"), (_with_neighbours(~stable), "--", "unstable")):
+            if where.any():
+                ax.plot(speeds, np.where(where, tip, np.nan), style, color=colour, label=f"{name}, {word}")
+    ax.set(xlabel=SPEED_LABEL, ylabel="tip deflection over the length")
+    ax.legend()
+    return ax
+
+
+def _with_neighbours(where: np.ndarray) -> np.ndarray:
+    """Extend a selection of points by those next to it, so that lines meet."""
+    extended = where.copy()
+    extended[1:] |= where[:-1]
+    extended[:-1] |= where[1:]
+    return extended

@@ -77,6 +77,8 @@ class Scene:
         set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
         if isinstance(self.physics, str) and self.physics == AUTO_NAME:
             set_fields(self, physics=AUTO)
+        elif isinstance(self.physics, AutomaticPhysics) and self.physics != AUTO:
+            set_fields(self, physics=Physics(**vars(self.physics)))  # an effect was set: it is given
         remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
@@ -112,9 +114,13 @@ def check_scene(scene: object) -> None:
 
 
 def _check_large_deflection(scene: Scene) -> None:
-    """Refuse large deflection where it would leave the plane of bending."""
-    oblique = min(map(abs, exact_cos_sin(scene.mount.bending_angle))) != 0
-    if scene.physics.large_deflection and oblique:
+    """Refuse large deflection that would leave the plane of bending, or has no equilibrium at rest."""
+    if not scene.physics.large_deflection:
+        return
+    if scene.mount.root_stiffness == 0:
+        bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
+        raise InvalidValue("mount.root_stiffness", 0.0, bound, "give a soft one", "N m/rad")
+    if min(map(abs, exact_cos_sin(scene.mount.bending_angle))) != 0:
         bound = "with physics.large_deflection it must be a multiple of 90 deg"
         remedy = "bend in the plane of rotation (0) or out of it (90 deg), or leave large_deflection out"
         raise InvalidValue("mount.bending_angle", scene.mount.bending_angle, bound, remedy, "rad")

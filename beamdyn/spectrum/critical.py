@@ -32,14 +32,19 @@ from beamdyn.modal.model import Model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds, warn_of_left_out
+from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
-from beamdyn.spectrum.critical_physics import choose_for_critical_speed
+from beamdyn.spectrum.critical_physics import find_with_chosen_physics
 from beamdyn.spectrum.modes import static_load
 from beamdyn.spectrum.planes import separate_planes
 
+_BENT = (
+    "rotation bends the beam from rest on, so that it does not buckle; equilibrium_branches finds where its "
+    "equilibrium turns back"
+)
 _SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
 _TO_HALF = 4  # steps from a basis to one of about half its size
 _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
@@ -142,9 +147,13 @@ def critical_point(
     start = perf_counter()
     check_scene(scene)
     if scene.chooses_physics:
-        return _of_chosen_physics(scene, discretization, tolerance)
+        find = partial(critical_point, discretization=discretization, tolerance=tolerance)
+        return find_with_chosen_physics(scene, find, tolerance)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     check_discretization(discretization)
+    if _bends_from_rest(scene):
+        return _argued(scene, Buckling(False, _BENT), start)
+    scene = _about_straight_beam(scene)
     target = max(target, least_target(discretization))
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
@@ -172,13 +181,15 @@ def critical_point(
     )
 
 
-def _of_chosen_physics(
-    scene: Scene, discretization: DiscretizationChoice, tolerance: float | None
-) -> CriticalPoint:
-    """The critical point with the effects that change it by more than the tolerance."""
-    chosen = choose_for_critical_speed(scene, lambda s: critical_point(s, "ritz", tolerance), tolerance)
-    point = critical_point(chosen, discretization, tolerance)
-    return replace(point, warnings=(*point.warnings, *warn_of_left_out(chosen)))
+def _bends_from_rest(scene: Scene) -> bool:
+    """Whether large deflection is modelled, and rotation bends the beam at every speed."""
+    across = exact_cos_sin(scene.mount.setting_angle)[1] * exact_cos_sin(scene.mount.bending_angle)[0]
+    return scene.physics.large_deflection and bool(scene.mount.radius * across)
+
+
+def _about_straight_beam(scene: Scene) -> Scene:
+    """The scene without large deflection, which does not change when a straight beam buckles."""
+    return replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
 
 
 def _is_within_theory(model: Model) -> bool:
@@ -389,6 +400,10 @@ def setting_angle_limits(
     """
     start = perf_counter()
     check_scene(scene)
+    if scene.physics.large_deflection:
+        bound = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
+        remedy = "leave it out, or ask frequency_locus for the locus at a setting angle"
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
     _refuse_hinge(scene)
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     unresolved, scene = scene, plain_physics(scene)

@@ -149,9 +149,9 @@ def model(duration: float, setting: Setting) -> tuple[Any, int, list[Any]]:
     system = container.AddSystem()
     data = given()
     cable = Cable2D(
-        physicsMassPerLength=data["line_density"],
-        physicsBendingStiffness=data["bending_stiffness"],
-        physicsAxialStiffness=data["axial_stiffness"] * setting.stiffening,
+        massPerLength=data["line_density"],
+        bendingStiffness=data["bending_stiffness"],
+        axialStiffness=data["axial_stiffness"] * setting.stiffening,
     )
     end = [data["length"], 0, 0]
     parts = GenerateBeamElementsAlongLine(system, [0, 0, 0], end, setting.cables, cable)
