@@ -12,7 +12,7 @@ from beamdyn.common.comparison import Comparison
 from beamdyn.common.edge.tables import comparison_table, progress_bar
 from beamdyn.common.pictures import save_figure
 from beamdyn.published import load
-from beamdyn.reproduce import frequencies, motion, others
+from beamdyn.reproduce import frequencies, large_deflection, motion, others
 from beamdyn.reproduce.others import Summary
 from beamdyn.transient.sweep import Sweep
 
@@ -50,7 +50,7 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
     with progress_bar("Fig. 6") as progress:
         fig_6_sweep = motion.run_sweep(progress)
     all_comparisons = _print_comparisons(screen, fig_6_sweep)
-    for note in (*frequencies.notes(), *motion.notes()):
+    for note in (*frequencies.notes(), *motion.notes(), *large_deflection.notes()):
         screen.print(note)
     screen.print("")
     if summaries := [*others.summarize_sources(), *others.summarize_twisted()] if tables else []:
@@ -80,6 +80,15 @@ def sections(fig_6_sweep: Sweep) -> dict[str, list[Comparison]]:
         "Fig. 7: speeds of resonance [rad/s]": [*motion.resonances()],
         "Section 3.3: limits of the setting angle [deg]": [*frequencies.limits_of_setting_angle()],
         "Section 4: speed of buckling, beam pointing inward [rad/s]": [*frequencies.buckling_speed()],
+        "Table 3 with large deflection: largest tip deflection in 20 to 30 s [mm]": [
+            *motion.largest_deflections_of_bent_beam()
+        ],
+        "Fig. 8 and 9 with large deflection: first natural frequency [Hz]": [
+            *large_deflection.first_frequencies()
+        ],
+        "Section 3.3 with large deflection: limits of the setting angle [deg]": [
+            *large_deflection.limits_of_setting_angle()
+        ],
     }
 
 

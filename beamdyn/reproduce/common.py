@@ -14,6 +14,7 @@ from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 
 PAPER, OWN = "paper", "independent (5)"  # sources of the values compared with; (5) is a note
+BENDS = "large deflection (9)"  # why a beam that bends by any angle differs from the paper's
 TOP = 150.0  # highest speed [rad/s]: the end of Fig. 6; Fig. 8 and 9 do not say where they end
 
 

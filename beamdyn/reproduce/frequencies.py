@@ -14,6 +14,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.output.plots import mark_points, plot_loci_by_angle, plot_locus
 from beamdyn.published import load
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
+from beamdyn.reproduce.large_deflection import draw_first_frequencies
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import critical_point, setting_angle_limits
@@ -21,7 +22,9 @@ from beamdyn.spectrum.modes import frequency_locus, natural_modes
 
 _ANSYS = "ANSYS (4)"
 _ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly
-_OUTSIDE = "(linear equations, outside their range)"
+_OUTSIDE = "(left and middle: linear equations, outside their range)"
+_BENT = "what a beam that bends does: both rise"
+_TOP_BENT = 400.0  # highest speed of that beside Fig. 9 [rad/s]
 
 
 def first_frequencies() -> Iterator[Comparison]:
@@ -149,8 +152,8 @@ def fig_4() -> Figure:
 def fig_8() -> Figure:
     """Draw the first frequency over speed on either side of the first setting-angle limit."""
     angles = load("lee_yoo_2019")["figures"]["fig_8"]["setting_angle"]
-    figure = Figure(figsize=(12, 4.8), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    figure = Figure(figsize=(16, 4.8), layout="constrained")
+    left, right, bent = figure.subplots(1, 3)
     speeds = np.linspace(0, TOP, 301)
     plot_loci_by_angle(speeds, _first_frequencies_by_angle(angles, speeds), angles, left)
     speeds = np.linspace(0, 17, 171)
@@ -159,6 +162,8 @@ def fig_8() -> Figure:
     right.set(ylim=(-0.5, 0.5), ylabel="change from rest [µHz]")
     left.set_title("over speed")
     right.set_title("near rest: one falls, the other first rises")
+    draw_first_frequencies(angles, TOP, bent)
+    bent.set_title(_BENT)
     figure.suptitle(
         f"Fig. 8: first natural frequency on either side of the first setting-angle limit {_OUTSIDE}"
     )
@@ -168,15 +173,18 @@ def fig_8() -> Figure:
 def fig_9() -> Figure:
     """Draw the first frequency over speed on either side of the second setting-angle limit."""
     angles = load("lee_yoo_2019")["figures"]["fig_9"]["setting_angle"]
-    figure = Figure(figsize=(12, 4.8), layout="constrained")
+    figure = Figure(figsize=(16, 4.8), layout="constrained")
+    *linear, bent = figure.subplots(1, 3)
     cases = (
         (12000.0, Ritz(5, "eigenfunctions"), "five clamped-free modes: one turns, the other rises on"),
         (5000.0, "ritz", "converged: both turn"),
     )
-    for ax, (top, discretization, title) in zip(figure.subplots(1, 2), cases, strict=True):
+    for ax, (top, discretization, title) in zip(linear, cases, strict=True):
         speeds = np.linspace(0, top, 501)
         plot_loci_by_angle(speeds, _first_frequencies_by_angle(angles, speeds, discretization), angles, ax)
         ax.set_title(title)
+    draw_first_frequencies(angles, _TOP_BENT, bent)
+    bent.set_title(_BENT)
     figure.suptitle(f"Fig. 9: first natural frequency on either side of the paper's second limit {_OUTSIDE}")
     return figure
 

@@ -82,6 +82,8 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
 
 
 def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseResult]:
+    if request.scene.physics.large_deflection:
+        return [_solve_single(request, motion) for motion in motions]
     equations = excited_equations(request.model.modal_equations(request.basis), motions, request.t_end)
     systems = [ModalSystem(equations, motion) for motion in motions]
     if is_record(systems[-1], request.t_end, StepSize.from_tolerance(request.tolerance)):

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, as_floats
+from beamdyn.transient.elastica_equilibrium import find_equilibrium
+from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.system import ModalSystem
 
 _FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
 
 
-def initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
+def initial_state(initial: str | np.ndarray, system: ModalSystem | ElasticaSystem) -> np.ndarray:
     """Coordinates and velocities (2 n,) that "rest", "equilibrium" or an array stand for.
 
     Raises
@@ -23,7 +25,8 @@ def initial_state(initial: str | np.ndarray, system: ModalSystem) -> np.ndarray:
         if initial == "rest":
             return np.zeros(2 * n)
         if initial == "equilibrium":
-            return np.concatenate([_equilibrium(system), np.zeros(n)])
+            found = find_equilibrium(system) if isinstance(system, ElasticaSystem) else _equilibrium(system)
+            return np.concatenate([found, np.zeros(n)])
         raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
     y0 = as_floats(initial)
     if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():

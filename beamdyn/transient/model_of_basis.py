@@ -33,6 +33,9 @@ def choose_for_basis(
     Model
     """
     speeds, modes = np.array(basis.speeds), basis.modes or 1
+    if scene.physics.large_deflection:  # the modes are those of the straight beam
+        straight = replace(scene, physics=replace(scene.physics, large_deflection=False))
+        return Model(scene, choose_for_basis(straight, discretization, basis, target).discretization)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.damping_ratio:
         return choose_model(scene, discretization, speeds, modes, target)

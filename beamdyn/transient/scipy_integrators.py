@@ -10,8 +10,9 @@ import numpy as np
 from scipy.integrate import OdeSolver, solve_ivp
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.gauss import GaussCollocation
-from beamdyn.transient.step_size import integrate
+from beamdyn.transient.integration import integrate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import SAMPLES
 
@@ -65,7 +66,7 @@ def check_method(method: object) -> None:
 
 
 def integrate_by_solve_ivp(
-    system: ModalSystem,
+    system: ModalSystem | ElasticaSystem,
     y0: np.ndarray,
     t_end: float,
     method: str | type[OdeSolver],
@@ -76,7 +77,7 @@ def integrate_by_solve_ivp(
 
     Parameters
     ----------
-    system : ModalSystem
+    system : ModalSystem or ElasticaSystem
         The equations.
     y0 : ndarray, shape (2 n,)
         Coordinates and velocities at time 0.
@@ -111,7 +112,9 @@ def integrate_by_solve_ivp(
     return SolveIvpPath(result.sol, np.concatenate([*steps, [t_end]]))
 
 
-def _absolute_tolerance(system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float) -> np.ndarray:
+def _absolute_tolerance(
+    system: ModalSystem | ElasticaSystem, y0: np.ndarray, t_end: float, tolerance: float
+) -> np.ndarray:
     """Absolute tolerances of coordinates and velocities, scaled by a coarse run of our own integrator."""
     path, _, _ = integrate(system, y0, t_end, _SCALING_TOLERANCE)
     sizes = [np.abs(x).max(axis=0) for x in path.samples[1:]]

@@ -18,7 +18,6 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import (
     FEWEST_MODES,
@@ -33,15 +32,17 @@ from beamdyn.scene.motion import Motion
 from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
+from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.initial_state import initial_state
+from beamdyn.transient.integration import integrate
 from beamdyn.transient.limits import check_growth, check_motion
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.model_of_basis import choose_for_basis
 from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.scipy_integrators import check_method, integrate_by_solve_ivp
-from beamdyn.transient.step_size import TOLERANCES, TooManySteps, integrate
+from beamdyn.transient.step_size import TOLERANCES, TooManySteps
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import SAMPLES, Path, largest_deflection
+from beamdyn.transient.trajectory import SAMPLES, Path, Size, largest_on
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,7 +95,7 @@ class Transient(OfChosenPhysics):
     largest: float
     warnings: tuple[str, ...]
     provenance: Provenance
-    system: ModalSystem = field(repr=False)
+    system: ModalSystem | ElasticaSystem = field(repr=False)
     path: Path = field(repr=False)
     request: TransientRequest = field(repr=False)
 
@@ -136,7 +137,8 @@ class Transient(OfChosenPhysics):
     def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
         t, q, _ = (x[:: 1 + len(x) // _TIMES_COMPARED] for x in self.path.samples)
-        each = (q @ tip - other.deflection(t, i) for i, tip in enumerate(self.system.tips))
+        tips = self.system.deflections(q)
+        each = (tips[:, i] - other.deflection(t, i) for i in range(tips.shape[1]))
         return float(np.hypot.reduce([np.abs(difference) for difference in each]).max())
 
     def to_dict(self) -> dict[str, Any]:
@@ -169,7 +171,7 @@ class Transient(OfChosenPhysics):
         is rigid.
         """
         xi = np.asarray(x) / self.scene.beam.length
-        return self.at(t)[0] @ self.system.equations.deflection(xi, direction=direction)
+        return self.system.shape(self.at(t)[0], xi, direction)
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Bending strain of the outer fibre at the root at times t [s]: shape (len(t),).
@@ -205,6 +207,10 @@ class Transient(OfChosenPhysics):
 
     @cached_property
     def _root_strain(self) -> RootStrain:
+        if isinstance(self.system, ElasticaSystem):
+            bound = "the root strain of a beam with large deflection is not computed"
+            remedy = "leave large_deflection out where the deflection is small"
+            raise InvalidValue("physics.large_deflection", True, bound, remedy)
         return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
     def deflection(self, t: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -212,11 +218,14 @@ class Transient(OfChosenPhysics):
         return self.shape([self.scene.beam.length], t, direction)[:, 0]
 
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are."""
+        """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are.
+
+        With large deflection, kinetic energy relative to the rotating axes, elastic energy and the
+        potential of the centrifugal forces and of the root's acceleration: constant, without damping, if
+        the speed and that acceleration are.
+        """
         t = self._times_in_run(t)
-        q, v = self.path.at(t)
-        _, K, f = self.system.coefficients(t)
-        return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
+        return self.system.energy(t, *self.path.at(t))
 
     def peak(self, start: float, end: float, direction: int | None = None) -> float:
         """Largest |tip deflection| [m] from `start` to `end` [s], also between samples.
@@ -225,10 +234,14 @@ class Transient(OfChosenPhysics):
         0 is that of bending at the root, 1 that across.
         """
         _check_window(start, end, self.path)
+        return largest_on(self._size(direction), self.path, start, end)
+
+    def _size(self, direction: int | None) -> Size:
+        """Magnitude of the tip's deflection by the coordinates, or of its component in a direction."""
         if direction is None:
-            return largest_deflection(self.system.tips, self.path, start, end)
-        tip = (self.system.tip, self.system.equations.tip_across)[check_direction(direction)]
-        return largest_deflection(tip[None], self.path, start, end)
+            return lambda q: _magnitude(self.system.deflections(q))
+        chosen = check_direction(direction)
+        return lambda q: np.abs(_in_direction(self.system.deflections(q), chosen))
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
@@ -247,6 +260,18 @@ class Transient(OfChosenPhysics):
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)
         write_series(path, x, t, self.shape(x, t), force=force, across=self.shape(x, t, 1))
+
+
+def _magnitude(deflections: np.ndarray) -> np.ndarray:
+    """Magnitude (...) of deflections in each direction (..., 1 or 2)."""
+    return np.hypot.reduce(np.abs(np.moveaxis(deflections, -1, 0)))
+
+
+def _in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
+    """Deflection (...) in a direction, from those in each (..., 1 or 2); 0 where that is not modelled."""
+    if direction >= deflections.shape[-1]:
+        return np.zeros(deflections.shape[:-1])
+    return deflections[..., direction]
 
 
 def _check_window(start: float, end: float, path: Path) -> None:
@@ -361,18 +386,19 @@ class TransientRequest(FieldsOnly):
         motion, t_end = self.motion, self.t_end
         model = self.model
         check_motion(motion, t_end, model)
-        system = self._system(model.modal_equations(self.basis))
+        system = self._system(model)
         path, error, name = self._integrate(system, initial_state(self.initial, system))
         t, q, v = path.samples
-        largest = largest_deflection(system.tips, path, path.start, path.end)
+        largest = largest_on(lambda q: _magnitude(system.deflections(q)), path, path.start, path.end)
         check_growth(self.scene, largest)
         if self.t_eval is not None:
             t = self.t_eval
             q, v = path.at(t)
+        tips = system.deflections(q)
         return Transient(
             t=t,
-            tip=q @ system.tip,
-            tip_across=q @ system.equations.tip_across,
+            tip=_in_direction(tips, 0),
+            tip_across=_in_direction(tips, 1),
             coordinates=q,
             velocities=v,
             time_error=error,
@@ -389,8 +415,11 @@ class TransientRequest(FieldsOnly):
             request=self,
         )
 
-    def _system(self, equations: Equations) -> ModalSystem:
+    def _system(self, model: Model) -> ModalSystem | ElasticaSystem:
         """Equations of the run, without the coordinates that stay at rest."""
+        if self.scene.physics.large_deflection:
+            return ElasticaSystem.of_model(model, self.basis, self.motion)
+        equations = model.modal_equations(self.basis)
         if isinstance(self.initial, str):
             return ModalSystem.from_rest(equations, self.motion, self.t_end)
         return ModalSystem(equations, self.motion)
@@ -450,7 +479,7 @@ class TransientRequest(FieldsOnly):
         """The discretized scene, chosen for the modal basis and the tolerance."""
         return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
 
-    def _integrate(self, system: ModalSystem, y0: np.ndarray) -> tuple[Path, float, str]:
+    def _integrate(self, system: ModalSystem | ElasticaSystem, y0: np.ndarray) -> tuple[Path, float, str]:
         """Integrate: the path, its time-integration error [m], and the integrator's name."""
         if self.method == "auto":
             return integrate(system, y0, self.t_end, self.tolerance)
@@ -492,7 +521,8 @@ def _work(run: Transient) -> float:
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
     yield from warn_of_left_out(scene)
     yield from warn_of_peak(scene, largest)
-    yield from warn_of_deflection(np.array([largest]), scene.beam.length)
+    if not scene.physics.large_deflection:
+        yield from warn_of_deflection(np.array([largest]), scene.beam.length)
     if scene.motion is not None:
         road = scene.motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
         yield from warn_of_road(np.array([np.abs(road).max()]))

@@ -26,7 +26,7 @@ _MOST_STEPS = 3_000_000  # of a run
 _MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
 _TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
-_ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
+ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
 _SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
 _ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
@@ -121,7 +121,7 @@ def integrate(
         largest = max(
             float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments
         )
-        stalled = last / 2 < error.total < _ROUNDING * largest
+        stalled = last / 2 < error.total < ROUNDING * largest
         finest = step_size.is_finest and order == ERROR_ORDER
         if error.total <= tolerance * largest or stalled or finest:
             steps = sum(len(s.acceleration) for s in path.segments)

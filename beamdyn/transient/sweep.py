@@ -243,7 +243,7 @@ def _check_means(
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     """Raise a ValueError for a case that passes the critical speed, or a motion that ends early."""
     model, t = request.model, np.linspace(0, request.t_end, SPEED_SAMPLES)
-    critical = model.solver.critical_speed
+    critical = np.inf if request.scene.physics.large_deflection else model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
     if (fastest >= critical).any():
         past = np.array(speeds)[fastest >= critical]
@@ -338,7 +338,8 @@ def _warnings(sweep: Sweep, tolerance: float) -> Iterator[str]:
     yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))
     if (at := speeds[np.array([s != DONE for s in sweep.status])]).size:
         yield f"{len(at)} of {len(speeds)} cases failed, at {list_range(at)}: see status"
-    yield from warn_of_deflection(sweep.largest, sweep.scene.beam.length, speeds)
+    if not sweep.scene.physics.large_deflection:
+        yield from warn_of_deflection(sweep.largest, sweep.scene.beam.length, speeds)
     if motion is not None:
         yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := speeds[sweep.time_error > tolerance * sweep.largest]).size:

@@ -48,6 +48,19 @@ class ModalSystem:
         """Tip deflection per unit of each coordinate [kg^-1/2] in the direction of bending, shape (n,)."""
         return self.tips[0]
 
+    def deflections(self, q: np.ndarray) -> np.ndarray:
+        """Deflection of the tip in each direction [m] at coordinates q (..., n): shape (..., 1 or 2)."""
+        return components(q, self.tips)
+
+    def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
+        """Deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+        return q @ self.equations.deflection(xi, direction=direction)
+
+    def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Energy of the vibration [J] at times t (T,): q' q' / 2 + q K q / 2 - f q."""
+        _, K, f = self.coefficients(t)
+        return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
+
     @classmethod
     def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
         """Equations of a run from rest, without the coordinates that nothing excites."""
@@ -109,6 +122,11 @@ class ModalSystem:
         if C is not None:
             J[n:, n:] = -C
         return J
+
+
+def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+    """Values (..., d) of linear functions of coordinates q (..., n), given per unit of each (d, n)."""
+    return np.stack([q @ output for output in outputs], axis=-1)
 
 
 def excited_equations(equations: Equations, motions: Sequence[Motion], t_end: float) -> Equations:

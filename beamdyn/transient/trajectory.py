@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from beamdyn.transient.record_steps import RecordSegment
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
 _REFINEMENTS = 4  # of a maximum, each on a grid 17 times as fine
+
+Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
 
 
 class Path(Protocol):
@@ -109,12 +112,17 @@ def magnitude(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
 
 
 def largest_deflection(tips: np.ndarray, path: Path, start: float, end: float) -> float:
+    """Find the largest magnitude of a tip deflection (d, n) per unit of each coordinate: `largest_on`."""
+    return largest_on(lambda q: magnitude(q, tips), path, start, end)
+
+
+def largest_on(size_of: Size, path: Path, start: float, end: float) -> float:
     """Find the largest magnitude of the tip's deflection on a path in a time window, also between samples.
 
     Parameters
     ----------
-    tips : ndarray, shape (d, n)
-        Tip deflection per unit of each coordinate, in each of d directions.
+    size_of : callable
+        Magnitude (k,) of the deflection [m] at coordinates (k, n).
     path : Path
         The coordinates over time.
     start, end : float
@@ -127,13 +135,13 @@ def largest_deflection(tips: np.ndarray, path: Path, start: float, end: float) -
     """
     times, q, _ = path.samples
     inside = (times >= start) & (times <= end)
-    size = magnitude(q[inside], tips)
+    size = size_of(q[inside])
     ends = np.array([start, end])
     t = np.concatenate([times[inside][_find_highest_maxima(size)], ends])
     half_width = np.diff(times).max()
     for _ in range(_REFINEMENTS):
         near = np.clip(t[:, None] + np.linspace(-half_width, half_width, 35), start, end)
-        size = magnitude(path.at(near.ravel())[0], tips).reshape(near.shape)
+        size = size_of(path.at(near.ravel())[0]).reshape(near.shape)
         t, half_width = near[np.arange(len(t)), size.argmax(axis=1)], half_width / 17
     return float(size.max())
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from beamdyn.equations.discretization import CLAMPED, FIXED
+from beamdyn.equations.arc_quadrature import Cells
+from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
 STRETCH = (1, 2)
@@ -44,7 +45,7 @@ class PowerSpaces:
     length: float
 
     def functions(self, conditions):
-        return Powers({CLAMPED: BENDING, FIXED: STRETCH}[conditions], self.length)
+        return Powers({CLAMPED: BENDING, HINGED: (1, *BENDING), FIXED: STRETCH}[conditions], self.length)
 
     def product(self, weight, rows, columns, orders=(0, 0)):
         each = zip((rows, columns), orders, strict=True)
@@ -59,6 +60,9 @@ class PowerSeries:
 
     def spaces(self, beam):
         return PowerSpaces(beam.length)
+
+    def cells(self, beam):
+        return Cells(np.array([0.0, 1.0]), 30)
 
     def coarser(self):
         return self

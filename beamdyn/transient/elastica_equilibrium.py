@@ -1,0 +1,63 @@
+"""Static equilibrium of a beam that bends by any angle under the loads at the beginning of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.elastica import QUANTITIES
+from beamdyn.equations.root_motion import Quantity
+from beamdyn.modal.eigen import Solver
+from beamdyn.modal.equilibrium import Branch, NoEquilibrium, SteadyLoad, find_bent, follow_to
+from beamdyn.transient.elastica_system import ElasticaSystem
+
+
+@dataclass(frozen=True)
+class LoadAtOnce(SteadyLoad):
+    """Equilibrium under all loads of a moment together, gravity and angular acceleration included.
+
+    The parameter is the squared speed, in proportion to which the other quantities are raised as well; of a
+    beam that does not rotate, it is their share.
+
+    Parameters
+    ----------
+    quantities : dict of str to float
+        Quantities of the root's motion, per unit of the parameter.
+    """
+
+    quantities: dict[Quantity, float] | None = None
+
+    @cached_property
+    def _values(self) -> dict[Quantity, float]:
+        values = dict(self.quantities or {})
+        values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
+        return {quantity: value for quantity, value in values.items() if value}
+
+    @property
+    def transverse(self) -> float:
+        """Transverse acceleration of the root, or what else bends the straight beam, per parameter."""
+        given = self._values.get("root_transverse", 0.0)
+        return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
+
+
+def find_equilibrium(system: ElasticaSystem, branch: Branch = "straight") -> np.ndarray:
+    """Coordinates (n,) in equilibrium with the loads at time 0, on a branch of equilibria.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
+    speed = abs(float(root.speed)) or 1.0
+    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
+    size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
+    load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
+    try:
+        return find_bent(load, speed) if branch == "bent" else follow_to(load, np.array([speed]))[0]
+    except NoEquilibrium as error:
+        bound = f"at time 0 there is none: {error}"
+        raise InvalidValue("initial", "equilibrium", bound, "give 'rest' or an array") from None
