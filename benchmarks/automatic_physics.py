@@ -148,7 +148,7 @@ def random_scene(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, flo
     low, high = (5, 60) if "stocky" in kinds else (300, 2000)
     ratio, slenderness = 10 ** rng.uniform(0.3, 2.0), 10 ** rng.uniform(np.log10(low), np.log10(high))
     length = 10 ** rng.uniform(-2, 1)
-    section = Section(length, slenderness, ratio).properties()
+    section: dict[str, Any] = Section(length, slenderness, ratio).properties()
     axial = section["mass_per_length"] * _STEEL[0] / _STEEL[1]
     twist = random_twist(rng) if "twisted" in kinds else None
     beam = bd.Beam.from_stiffness(length, **section, axial_stiffness=axial, twist=twist)

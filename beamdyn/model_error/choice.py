@@ -268,8 +268,12 @@ def choose_by(
     if straight:
         start = start.without(LARGE_DEFLECTION, straight)
     best = _grow(start, judge, tolerance, {LARGE_DEFLECTION})
-    if best.left_out[LARGE_DEFLECTION] > _SMALL * tolerance and best.model_error > _MARGIN * tolerance:
-        best = min([best, *_bent(start, judge, tolerance)], key=lambda candidate: candidate.model_error)
+    needed = start.addable().get(LARGE_DEFLECTION, 0.0) > _SMALL * tolerance
+    if needed and best.model_error > _MARGIN * tolerance:
+        try:
+            best = min(best, _bent(start, judge, tolerance), key=lambda candidate: candidate.model_error)
+        except (InvalidValue, ArithmeticError) as error:
+            best = best.without(LARGE_DEFLECTION, str(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
 
 
@@ -286,15 +290,10 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
             candidate = candidate.without(largest, str(error))
 
 
-def _bent(start: _Candidate, judge: Judge, tolerance: float) -> Iterator[_Candidate]:
-    """The scene with large deflection and what that is combined with, if there is an answer."""
-    if LARGE_DEFLECTION in start.reasons:
-        return
-    try:
-        bent = start.add(LARGE_DEFLECTION, judge)
-    except (InvalidValue, ArithmeticError):
-        return
-    yield _grow(bent, judge, tolerance, bent.left_out.keys() - {*_WITH_LARGE_DEFLECTION})
+def _bent(start: _Candidate, judge: Judge, tolerance: float) -> _Candidate:
+    """The scene with large deflection and what that is combined with; raises what `add` does."""
+    bent = start.add(LARGE_DEFLECTION, judge)
+    return _grow(bent, judge, tolerance, bent.left_out.keys() - {*_WITH_LARGE_DEFLECTION})
 
 
 def _describe(

@@ -115,7 +115,7 @@ def _say_included(effect: JudgedEffect) -> str:
 def _percent(size: float) -> str:
     if math.isnan(size):
         return "an unknown change"
-    return "another order of modes" if math.isinf(size) else f"{100 * size:.2g} %"
+    return "another answer" if math.isinf(size) else f"{100 * size:.2g} %"
 
 
 class OfChosenPhysics(Result):

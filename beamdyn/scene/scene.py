@@ -77,6 +77,8 @@ class Scene:
         set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
         if isinstance(self.physics, str) and self.physics == AUTO_NAME:
             set_fields(self, physics=AUTO)
+        elif isinstance(self.physics, AutomaticPhysics) and self.physics != AUTO:
+            set_fields(self, physics=Physics(**vars(self.physics)))  # an effect was set: it is given
         remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:

@@ -34,10 +34,10 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelErro
 from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds, warn_of_left_out
+from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
-from beamdyn.spectrum.critical_physics import choose_for_critical_speed
+from beamdyn.spectrum.critical_physics import find_with_chosen_physics
 from beamdyn.spectrum.modes import static_load
 from beamdyn.spectrum.planes import separate_planes
 
@@ -147,7 +147,8 @@ def critical_point(
     start = perf_counter()
     check_scene(scene)
     if scene.chooses_physics:
-        return _of_chosen_physics(scene, discretization, tolerance)
+        find = partial(critical_point, discretization=discretization, tolerance=tolerance)
+        return find_with_chosen_physics(scene, find, tolerance)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     check_discretization(discretization)
     if _bends_from_rest(scene):
@@ -189,15 +190,6 @@ def _bends_from_rest(scene: Scene) -> bool:
 def _about_straight_beam(scene: Scene) -> Scene:
     """The scene without large deflection, which does not change when a straight beam buckles."""
     return replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
-
-
-def _of_chosen_physics(
-    scene: Scene, discretization: DiscretizationChoice, tolerance: float | None
-) -> CriticalPoint:
-    """The critical point with the effects that change it by more than the tolerance."""
-    chosen = choose_for_critical_speed(scene, lambda s: critical_point(s, "ritz", tolerance), tolerance)
-    point = critical_point(chosen, discretization, tolerance)
-    return replace(point, warnings=(*point.warnings, *warn_of_left_out(chosen)))
 
 
 def _is_within_theory(model: Model) -> bool:

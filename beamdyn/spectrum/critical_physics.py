@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol
+from dataclasses import replace
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -12,10 +13,10 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.model import Model
 from beamdyn.model_error.choice import PHYSICS_TOLERANCE, Judged, choose_by
 from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
-from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends
+from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_left_out
 
-_STRAIGHT = "the critical speed is that of the straight beam"
 _FUNCTIONS = 5  # of a model of which only the loads are read
 
 
@@ -23,27 +24,26 @@ class _Point(Protocol):
     """What is read of a critical point."""
 
     @property
-    def speed(self) -> float:
-        """Critical speed [rad/s]."""
-        ...
+    def speed(self) -> float: ...
 
     @property
-    def error(self) -> float:
-        """Its relative error."""
-        ...
+    def error(self) -> float: ...
 
     @property
-    def model(self) -> Model | None:
-        """The model that found it; None if an argument did."""
-        ...
+    def model(self) -> Model | None: ...
+
+    @property
+    def warnings(self) -> tuple[str, ...]: ...
 
 
-def choose_for_critical_speed(
-    scene: Scene, find: Callable[[Scene], _Point], tolerance: float | None
-) -> Scene:
-    """Choose the physics by the critical speeds that are found with each effect.
+Point = TypeVar("Point", bound=_Point)
 
-    They are found, not estimated: a second plane may buckle where the first does not.
+
+def find_with_chosen_physics(scene: Scene, find: Callable[[Scene], Point], tolerance: float | None) -> Point:
+    """Find a critical point with the effects that change it by more than the tolerance.
+
+    Each effect is judged by the critical speed that is found with it: a second plane may buckle where the
+    first does not.
 
     Parameters
     ----------
@@ -56,26 +56,30 @@ def choose_for_critical_speed(
 
     Returns
     -------
-    Scene
-        The scene with the physics, and how it was chosen.
+    CriticalPoint
+        With the warnings of the choice.
     """
+    chosen = _choose(scene, find, PHYSICS_TOLERANCE if tolerance is None else tolerance)
+    point: Any = find(chosen)
+    return replace(point, scene=chosen, warnings=(*point.warnings, *warn_of_left_out(chosen)))
+
+
+def _choose(scene: Scene, find: Callable[[Scene], _Point], tolerance: float) -> Scene:
+    """The scene with the effects that change the critical speed."""
 
     def judge(candidate: Scene) -> Judged:
         known = find(candidate)
         additions, not_known, _ = list_effects(candidate)
         sizes = {added.name: _change(known, find(added.scene)) for added in additions}
         assumed = {added.name: f"it is estimated {added.assumed}" for added in additions if added.assumed}
-        does = bends(Model(candidate, Ritz(_FUNCTIONS)))
-        sizes[LARGE_DEFLECTION] = math.nan if does else 0.0
-        sizes |= dict.fromkeys(not_known, math.nan)
-        bent = {LARGE_DEFLECTION: NO_CRITICAL_SPEED if does else _STRAIGHT}
-        return Judged(sizes, assumed | not_known | bent)
+        # Where rotation bends the beam from rest on, it does not buckle.
+        sizes[LARGE_DEFLECTION] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
+        return Judged(sizes | dict.fromkeys(not_known, math.nan), assumed | not_known)
 
     def count(candidate: Scene) -> int:
         found = find(candidate).model
         return 1 if found is None else found.solver.size
 
-    tolerance = PHYSICS_TOLERANCE if tolerance is None else tolerance
     return choose_by(scene, judge, count, tolerance, np.array([]))
 
 
