@@ -17,13 +17,13 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.columns import read_columns
 from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section, describe
-from beamdyn.common.edge.sections import one_of_kinds, section_of
+from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
-from beamdyn.scene.physics import Physics
+from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 
@@ -164,10 +164,42 @@ ROTATIONS = {name: section_of(made, name) for name, made in KINDS.items() if iss
 _ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
 MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}
 
+
+class _ChoosablePhysics(MadeSection):
+    """[physics], or the word "auto" in its place."""
+
+    auto: Annotated[
+        bool, Field(description="each analysis adds the effects whose size exceeds its tolerance")
+    ] = False
+
+    @cached_property
+    def core(self) -> Physics:
+        """The physics."""
+        with of_file(self.key_of):
+            given = self.made(**self.given)
+        if not self.auto:
+            return given
+        if given != Physics():
+            name = next(name for name, value in vars(given).items() if value != getattr(Physics(), name))
+            bound = "physics is auto: each analysis chooses the effects"
+            raise InvalidValue(f"physics.{name}", getattr(given, name), bound, "leave one of the two out")
+        return AUTO
+
+
+def _auto_as_table(given: Any) -> Any:
+    """The word "auto" as the table that says the same."""
+    if not isinstance(given, str):
+        return given
+    if given != AUTO_NAME:
+        raise InvalidInput("", given, f'give "{AUTO_NAME}", or a table [physics]')
+    return {AUTO_NAME: True}
+
+
 if TYPE_CHECKING:
     _TipInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
 else:
-    _TipInput, _MountInput, _PhysicsInput = section_of(TipMass), section_of(Mount), section_of(Physics)
+    _TipInput, _MountInput = section_of(TipMass), section_of(Mount)
+    _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
     _MotionInput = one_of_kinds(MOTIONS)
 
 
@@ -361,7 +393,7 @@ class SceneInput(CoreSection):
     mount: _MountInput
     motion: _MotionInput | None = None
     model: ModelInput = ModelInput()
-    physics: _PhysicsInput = _PhysicsInput()
+    physics: Annotated[_PhysicsInput, BeforeValidator(_auto_as_table)] = _PhysicsInput()
 
     @cached_property
     def core(self) -> Scene:

@@ -7,12 +7,14 @@ from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.program import app, deliver, warn
+from beamdyn.cli.program import app, deliver, describe_choice, warn
 from beamdyn.cli.values import (
     Discretization,
     ModeCount,
+    PhysicsOption,
     SceneFile,
     Text,
+    load_with,
     parse_positive,
     parse_speeds,
     speed_or_final,
@@ -36,6 +38,7 @@ def modes(
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
     shapes: Path | None = None,
+    physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Natural frequencies at one speed, with their errors and stability.
@@ -55,17 +58,25 @@ def modes(
         Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
-    from beamdyn import load_scene, natural_modes
+    from beamdyn import natural_modes
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import modes_csv, modes_table
 
     outputs.check(scene, shapes=shapes)
-    loaded = load_scene(scene)
+    loaded = load_with(scene, physics)
     question = Question.on_file(
-        "beamdyn modes", scene, speed=speed, modes=modes, discretization=discretization, tolerance=tolerance
+        "beamdyn modes",
+        scene,
+        speed=speed,
+        modes=modes,
+        discretization=discretization,
+        tolerance=tolerance,
+        physics=physics,
     )
     result = natural_modes(loaded, speed_or_final(loaded, speed), modes, discretization, tolerance)
     if shapes is not None:
@@ -85,6 +96,7 @@ def locus(
     modes: ModeCount = 3,
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
+    physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Natural frequencies over speed; each mode is tracked through crossings.
@@ -101,19 +113,27 @@ def locus(
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
         Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
-    from beamdyn import frequency_locus, load_scene
+    from beamdyn import frequency_locus
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import locus_csv, locus_table, where_worst
 
     outputs.check(scene)
     given = parse_speeds(speeds)
     question = Question.on_file(
-        "beamdyn locus", scene, speeds=speeds, modes=modes, discretization=discretization, tolerance=tolerance
+        "beamdyn locus",
+        scene,
+        speeds=speeds,
+        modes=modes,
+        discretization=discretization,
+        tolerance=tolerance,
+        physics=physics,
     )
-    result = frequency_locus(load_scene(scene), given, modes, discretization, tolerance)
+    result = frequency_locus(load_with(scene, physics), given, modes, discretization, tolerance)
     tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
     warnings = *result.warnings, *result.left_out_effects.warnings(tolerance, where_worst(result))
     deliver(result, outputs, question, tables, rows, draw, warnings)
@@ -125,6 +145,7 @@ def critical(
     /,
     *,
     discretization: Discretization = "ritz",
+    physics: PhysicsOption = None,
     json: Path | None = None,
     force: Flag = False,
 ) -> None:
@@ -136,20 +157,22 @@ def critical(
         The scene.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     json
         Write the result with its error estimate and provenance into this file.
     force
         Overwrite a file that exists.
     """
-    from beamdyn import critical_point, load_scene
+    from beamdyn import critical_point
     from beamdyn.common.edge.tables import console
     from beamdyn.result_tables import critical_answer
 
     outputs = Outputs(json=json, force=force)
     outputs.check(scene)
-    result = critical_point(load_scene(scene), discretization)
+    result = critical_point(load_with(scene, physics), discretization)
     write(result, outputs)
-    console().print(critical_answer(result))
+    console().print(critical_answer(result), *describe_choice(result), sep="\n")
     if isinf(result.error):  # there is one, perhaps, but it was not found or not resolved
         raise NoAnswer("; ".join(result.warnings))
     warn([*result.warnings, *result.left_out_effects.warnings()])
@@ -162,6 +185,7 @@ def limits(
     *,
     top_speed: Text,
     discretization: Discretization = "ritz",
+    physics: PhysicsOption = None,
     json: Path | None = None,
     force: Flag = False,
 ) -> None:
@@ -175,6 +199,8 @@ def limits(
         Speed up to which the frequency must rise for the second limit, with its unit, e.g. "400 rad/s".
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     json
         Write the result with its error estimate and provenance into this file.
     force
@@ -182,14 +208,14 @@ def limits(
     """
     from math import isnan
 
-    from beamdyn import load_scene, setting_angle_limits
+    from beamdyn import setting_angle_limits
     from beamdyn.common.edge.tables import console
     from beamdyn.result_tables import limits_table
 
     outputs = Outputs(json=json, force=force)
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
-    result = setting_angle_limits(load_scene(scene), top, discretization)
+    result = setting_angle_limits(load_with(scene, physics), top, discretization)
     write(result, outputs)
     if isnan(result.first) or isnan(result.second):
         raise NoAnswer(result.warnings[0])
@@ -198,25 +224,33 @@ def limits(
 
 
 @app.command
-def terms(scene: SceneFile, /, *, json: Path | None = None, force: Flag = False) -> None:
+def terms(
+    scene: SceneFile,
+    /,
+    *,
+    physics: PhysicsOption = None,
+    json: Path | None = None,
+    force: Flag = False,
+) -> None:
     """Terms of the equations of motion: which of them the scene has, and why.
 
     Parameters
     ----------
     scene
         The scene.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     json
         Write the list into this file.
     force
         Overwrite a file that exists.
     """
-    from beamdyn import load_scene
     from beamdyn.common.edge.tables import console, table
     from beamdyn.equations.terms import terms
 
     outputs = Outputs(json=json, force=force)
     outputs.check(scene)
-    result = terms(load_scene(scene))
+    result = terms(load_with(scene, physics))
     write(result, outputs)
     heads = ("", "term", "symbol", "largest", "reason")
     console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))

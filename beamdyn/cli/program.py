@@ -40,6 +40,12 @@ def warn(warnings: Iterable[str]) -> None:
     program.warn("beamdyn", warnings)
 
 
+def describe_choice(result: Result) -> list[str]:
+    """The line on the physics of a result, where that was chosen."""
+    choice = getattr(result, "physics_choice", None)
+    return [] if choice is None else [choice.sentence()]
+
+
 def deliver(
     result: Result,
     outputs: Outputs,
@@ -74,6 +80,7 @@ def deliver(
     from beamdyn.common.edge.tables import show
 
     refusals = [refusal] if refusal else []
+    tables = [*tables, *describe_choice(result)]
     # The files of a long computation do not depend on who reads the tables.
     write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
     show(tables)

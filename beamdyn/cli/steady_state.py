@@ -10,8 +10,10 @@ from beamdyn.cli.values import (
     Discretization,
     ModeCount,
     Order,
+    PhysicsOption,
     SceneFile,
     Text,
+    load_with,
     parse_positive,
     parse_speeds,
 )
@@ -27,6 +29,7 @@ def resonances(
     modes: ModeCount = 3,
     order: Order = 1,
     discretization: Discretization = "ritz",
+    physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Speeds of resonance, at which a frequency that the scene excites meets a natural frequency.
@@ -43,18 +46,20 @@ def resonances(
         1: resonances with the load; more: also combination resonances by the periodic coefficients.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
-    from beamdyn import load_scene, resonance_speeds
+    from beamdyn import resonance_speeds
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import crossings_csv, crossings_table
 
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
     options = {"modes": modes, "order": order, "discretization": discretization}
-    question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options)
-    result = resonance_speeds(load_scene(scene), top, modes, order, discretization)
+    question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options, physics=physics)
+    result = resonance_speeds(load_with(scene, physics), top, modes, order, discretization)
     tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, result.warnings)
 
@@ -68,6 +73,7 @@ def steady(
     modes: BasisSize = "auto",
     tolerance: float = 1e-5,
     discretization: Discretization = "ritz",
+    physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Steady response over speed, after the transient of the start has decayed.
@@ -84,18 +90,20 @@ def steady(
         Largest error by the harmonics left out, relative to the sum of all lines.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
-    from beamdyn import load_scene, steady_response
+    from beamdyn import steady_response
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import steady_csv, steady_table
 
     outputs.check(scene)
     given = parse_speeds(speeds)
     options: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
-    question = Question.on_file("beamdyn steady", scene, speeds=speeds, **options)
-    result = steady_response(load_scene(scene), given, **options)
+    question = Question.on_file("beamdyn steady", scene, speeds=speeds, **options, physics=physics)
+    result = steady_response(load_with(scene, physics), given, **options)
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
     refusal = "" if result.stable.any() else none
     tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)

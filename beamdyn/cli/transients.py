@@ -14,6 +14,7 @@ from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
     Discretization,
+    PhysicsOption,
     SceneFile,
     Text,
     Workers,
@@ -49,6 +50,7 @@ def simulate(
     window: Text | None = None,
     series: Path | None = None,
     animation: Path | None = None,
+    physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Transient of the beam, from rest.
@@ -73,6 +75,8 @@ def simulate(
         Write three periods around the largest deflection (within the window) for ParaView: .xdmf.
     animation
         Write an animation of the same: .gif.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
@@ -83,10 +87,10 @@ def simulate(
     outputs.check(scene, series=series, animation=animation)
     end = parse_positive("--t-end", t_end, "s")
     span = None if window is None else parse_window(window, end)
-    loaded = load_moving(scene)
+    loaded = load_moving(scene, physics)
     question = Question.on_file(
         "beamdyn simulate", scene, t_end=t_end, modes=modes, tolerance=tolerance, method=method,
-        discretization=discretization, window=window,
+        discretization=discretization, window=window, physics=physics,
     )  # fmt: skip
     with naming_option("t_end", "--t-end", t_end):
         run = simulate(loaded, end, modes, tolerance, method, discretization)
@@ -108,6 +112,7 @@ def sweep(
         str | None, Parameter(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
     ] = None,
     store: Path | None = None,
+    physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Largest deflection within a time window over speed: one transient per speed.
@@ -128,6 +133,8 @@ def sweep(
         Number of processes.
     store
         Folder for finished speeds: after an interruption the same command computes only the others.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
@@ -136,9 +143,15 @@ def sweep(
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
-    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene)
+    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene, physics)
     question = Question.on_file(
-        "beamdyn sweep", scene, speeds=speeds, window=window, modes=modes, tolerance=tolerance
+        "beamdyn sweep",
+        scene,
+        speeds=speeds,
+        window=window,
+        modes=modes,
+        tolerance=tolerance,
+        physics=physics,
     )
     named = naming_option("t_end", "--window", window)
     with _executor(scheduler) as executor, _progress(len(given), store) as progress, named:

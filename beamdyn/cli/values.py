@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Discretization = Literal["ritz", "fem"]
+PhysicsOption = Literal["auto"] | None
 
 
 def _whole(kind: object, tokens: Sequence[Token]) -> int | str:
@@ -177,11 +178,19 @@ def _member(text: str, number: str, unit: str) -> float:
     return parse_speed("--speeds", f"{number} {unit}")
 
 
-def load_moving(path: Path) -> Scene:
-    """Read a scene that must have a motion."""
-    from beamdyn.config import ConfigError, load_scene
+def load_with(path: Path, physics: PhysicsOption = None) -> Scene:
+    """Read a scene, with the physics of the option in place of its own if that is given."""
+    from beamdyn.config import load_scene
 
     scene = load_scene(path)
+    return scene if physics is None else replace(scene, physics=physics)
+
+
+def load_moving(path: Path, physics: PhysicsOption = None) -> Scene:
+    """Read a scene that must have a motion, as `load_with` does."""
+    from beamdyn.config import ConfigError
+
+    scene = load_with(path, physics)
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
         sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"

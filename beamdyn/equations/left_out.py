@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from beamdyn.equations.directions import name_directions
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
+
+_CHOSEN = 'physics is "auto": an analysis adds it where it matters'
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,15 @@ _NEVER = (
 
 
 def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
-    """List the effects that the model of a scene leaves out, those that it could include first."""
+    """List the effects that the model of a scene leaves out, those that it could include first.
+
+    Where the physics is "auto", the model is that of the plain beam, and analyses choose what they add.
+    """
+    if scene.chooses_physics:
+        for effect in list_left_out(replace(scene, physics=Physics())):
+            assumed = effect.reason.partition(";")[0]
+            yield replace(effect, reason=f"{assumed}; {_CHOSEN}") if effect.physics else effect
+        return
     yield from _second_plane(scene)
     physics, beam = scene.physics, scene.beam
     if not physics.shear:

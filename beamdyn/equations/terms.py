@@ -121,7 +121,8 @@ def terms(scene: Scene) -> Terms:
     Parameters
     ----------
     scene : Scene
-        The scene; without a motion, steady rotation at 1 rad/s is assumed.
+        The scene; without a motion, steady rotation at 1 rad/s is assumed.  Physics "auto" is the plain
+        beam, and what is left out says that analyses choose.
 
     Returns
     -------

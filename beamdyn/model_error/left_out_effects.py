@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.results import Result, plain
+from beamdyn.common.results import plain
+from beamdyn.scene.physics_choice import OfChosenPhysics
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
 _NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
@@ -127,8 +128,8 @@ def _percent(value: float, sign: str = "") -> str:
 # Results that carry it ----------------------------------------------------------------------------
 
 
-class StatesModelError(Result):
-    """Base of results that say what the effects left out of their model would change; see `Result`.
+class StatesModelError(OfChosenPhysics):
+    """Base of results that say what the effects left out of their model would change; see `OfChosenPhysics`.
 
     A subclass has the cached property `left_out_effects`, which is computed when asked for.
     """

@@ -53,10 +53,10 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
 
     def bent() -> tuple[np.ndarray, str]:
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
-        return np.where(_vibrate(eigenvalue), changes, np.nan), reason
+        return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
     found = _gather(simple, change, None if model.scene.physics.large_deflection else bent)
-    return _say_lost_modes(found, np.array([_vibrate(s) for s, _ in found_modes]))
+    return _say_lost_modes(found, np.array([vibrate(s) for s, _ in found_modes]))
 
 
 def _say_lost_modes(effects: LeftOutEffects, vibrate: np.ndarray) -> LeftOutEffects:
@@ -140,12 +140,12 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 def _change_of_frequencies(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) with the pencil of an effect."""
-    pairs = zip(s.tolist(), v.T, _vibrate(s), strict=True)
+    pairs = zip(s.tolist(), v.T, vibrate(s), strict=True)
     shifted = np.array([shift_eigenvalue(pencil, speed, r, x) if ok else np.nan for r, x, ok in pairs])
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(_vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
+        return np.where(vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
 
 
-def _vibrate(s: np.ndarray) -> np.ndarray:
+def vibrate(s: np.ndarray) -> np.ndarray:
     """Whether modes have a frequency, and do not grow but by rounding."""
     return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))

@@ -66,3 +66,15 @@ class Physics:
             if (given := getattr(self, name)) != plain:
                 bound = "it cannot be combined with large_deflection"
                 raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")
+
+
+@dataclass(frozen=True, repr=False)
+class AutomaticPhysics(Physics):
+    """Physics that each analysis chooses; what does not choose reads it as the plain beam."""
+
+    def __repr__(self) -> str:
+        return repr(AUTO_NAME)
+
+
+AUTO_NAME = "auto"
+AUTO = AutomaticPhysics()

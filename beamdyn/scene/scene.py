@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
 
 from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse, set_fields
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount, exact_cos_sin
-from beamdyn.scene.physics import Physics
+from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics
+from beamdyn.scene.physics_choice import PhysicsChoice
 from beamdyn.scene.profile import mean
 
 
@@ -30,8 +32,11 @@ class Scene:
         Modal damping ratio of every mode of the beam at rest, from 0 to below 1.
     gravity : float
         Gravitational acceleration along -n2 [m/s2].
-    physics : Physics
-        Effects beyond the slender beam that bends in one plane.
+    physics : Physics or "auto"
+        Effects beyond the slender beam that bends in one plane; "auto": each analysis adds those whose size
+        exceeds its tolerance, and its result says which.
+    physics_choice : PhysicsChoice, optional
+        How the physics was chosen: analyses set it in the scene of their result.
 
     Raises
     ------
@@ -46,6 +51,20 @@ class Scene:
     damping_ratio: float = 0.0
     gravity: float = 0.0
     physics: Physics = Physics()
+    physics_choice: PhysicsChoice | None = field(default=None, repr=False, compare=False)
+
+    if TYPE_CHECKING:  # the word "auto" is accepted, but what is read is a Physics
+
+        def __init__(
+            self,
+            beam: Beam,
+            mount: Mount = Mount(),
+            motion: Motion | None = None,
+            damping_ratio: float = 0.0,
+            gravity: float = 0.0,
+            physics: Physics | Literal["auto"] = Physics(),
+            physics_choice: PhysicsChoice | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         kind("beam", self.beam, Beam, "Beam.rectangular and Beam.from_stiffness make one")
@@ -56,11 +75,20 @@ class Scene:
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
         set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
-        remedy = "physics = Physics(planes=2, shear=True) models both planes and shear deformation"
+        if isinstance(self.physics, str) and self.physics == AUTO_NAME:
+            set_fields(self, physics=AUTO)
+        remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
         kind("physics", self.physics, Physics, remedy)
+        if self.physics_choice is not None and self.physics_choice.physics != self.physics:
+            set_fields(self, physics_choice=None)  # of another physics
         _check_properties(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
+
+    @property
+    def chooses_physics(self) -> bool:
+        """Whether the physics was given as "auto"."""
+        return isinstance(self.physics, AutomaticPhysics)
 
     @property
     def modelled_beam(self) -> Beam:

@@ -23,7 +23,10 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
 
 
 def warn_of_left_out(scene: Scene) -> Iterator[str]:
-    """Yield a warning for what is given for a second plane of bending that is not modelled."""
+    """Yield a warning for what is given for a second plane that is not modelled, or what a choice leaves."""
+    if scene.physics_choice is not None:
+        yield from scene.physics_choice.warnings()
+        return
     given = {
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,

@@ -53,6 +53,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modal.eigen import Solver
+from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.profile import Profile
@@ -117,7 +118,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is not used.
+        The scene; its motion is not used.  Physics "auto" is the plain beam.
     speed : float
         Speed [rad/s].
     modes : int
@@ -135,6 +136,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     """
     start = perf_counter()
     check_scene(scene)
+    unresolved, scene = scene, plain_physics(scene)
     speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
     _check_input(scene, speed, modes)
     enclosed = [_enclose_plane(plane, speed, modes) for plane in separate_planes(scene, speed != 0)]
@@ -150,7 +152,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         upper_squared=upper,
         width=high / low - 1,
         how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
-        warnings=tuple(_warnings(lower, upper)),
+        warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper)),
         provenance=Provenance(__version__, str(Ritz(functions)), "its complement", perf_counter() - start),
         scene=scene,
     )

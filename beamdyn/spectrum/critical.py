@@ -29,13 +29,15 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
 from beamdyn.modal.model import Model
+from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds
+from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, check_speeds, warn_of_left_out
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
+from beamdyn.spectrum.critical_physics import choose_for_critical_speed
 from beamdyn.spectrum.modes import static_load
 from beamdyn.spectrum.planes import separate_planes
 
@@ -144,6 +146,8 @@ def critical_point(
     """
     start = perf_counter()
     check_scene(scene)
+    if scene.chooses_physics:
+        return _of_chosen_physics(scene, discretization, tolerance)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     check_discretization(discretization)
     if _bends_from_rest(scene):
@@ -185,6 +189,15 @@ def _bends_from_rest(scene: Scene) -> bool:
 def _about_straight_beam(scene: Scene) -> Scene:
     """The scene without large deflection, which does not change when a straight beam buckles."""
     return replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+
+
+def _of_chosen_physics(
+    scene: Scene, discretization: DiscretizationChoice, tolerance: float | None
+) -> CriticalPoint:
+    """The critical point with the effects that change it by more than the tolerance."""
+    chosen = choose_for_critical_speed(scene, lambda s: critical_point(s, "ritz", tolerance), tolerance)
+    point = critical_point(chosen, discretization, tolerance)
+    return replace(point, warnings=(*point.warnings, *warn_of_left_out(chosen)))
 
 
 def _is_within_theory(model: Model) -> bool:
@@ -378,7 +391,7 @@ def setting_angle_limits(
     ----------
     scene : Scene
         The scene; its setting angle, motion, damping and stretch are not used.  In two planes the first
-        frequency is the lowest of both.
+        frequency is the lowest of both.  Physics "auto" is the plain beam.
     top_speed : float
         Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
     discretization : {"ritz", "fem"} or Discretization
@@ -401,6 +414,7 @@ def setting_angle_limits(
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
     _refuse_hinge(scene)
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
+    unresolved, scene = scene, plain_physics(scene)
     scene = replace(_without_stretch(scene), damping_ratio=0.0)
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
@@ -415,7 +429,7 @@ def setting_angle_limits(
         error=_limits_error(first, second, coarse_limits, top_speed),
         top_speed=top_speed,
         static_deflection=deflection,
-        warnings=tuple(_limit_warnings(first, second, deflection)),
+        warnings=(*warn_of_plain(unresolved), *_limit_warnings(first, second, deflection)),
         provenance=Provenance(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),

@@ -27,6 +27,7 @@ from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
+from beamdyn.model_error.choice import choose_physics
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene
@@ -198,6 +199,7 @@ def natural_modes(
     speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
     check_speeds(speeds, "speed")
     tolerance = _check_tolerance(tolerance)
+    scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
     vectors, status = _with_positive_tip(equations.tips, solution.eigen.vector[0]), _status(s)
@@ -425,6 +427,7 @@ def frequency_locus(
     speeds, modes = ascending("speeds", speeds), count("modes", modes)
     check_speeds(speeds)
     tolerance = _check_tolerance(tolerance)
+    scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _EXTRA_MODES)
     order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
     s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]

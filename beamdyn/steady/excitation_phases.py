@@ -6,6 +6,8 @@ motion's `road_multiple`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
@@ -37,18 +39,34 @@ def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndar
     ValueError
         If the motion's steady state is not known, or is not smooth in the phases.
     """
-    motion = check_steady_state(motion)
-    spectra = _expand_quantities(equations, motion, speeds)
-    mean = np.zeros((3, len(speeds), equations.size, equations.size))
+    return periodic_system_of_each([equations] * len(speeds), motion, speeds)
+
+
+def periodic_system_of_each(
+    equations: Sequence[Equations], motion: Motion | None, speeds: np.ndarray
+) -> PeriodicSystem:
+    """Expand equations of the same terms at each speed: as `periodic_system`, for S sets of equations."""
+    motion, first = check_steady_state(motion), equations[0]
+    spectra = _expand_quantities(first, motion, speeds)
+    mean = np.zeros((3, len(speeds), first.size, first.size))
     varying = []
-    for order, matrices in enumerate(equations.matrices):
-        for quantity, matrix in matrices.items():
-            mean[order] += np.real(spectra[quantity][:, :1, :1]) * matrix
+    for order in range(3):
+        for quantity in first.matrices[order]:
+            matrices = _stack([each.matrices[order][quantity] for each in equations])
+            mean[order] += np.real(spectra[quantity][:, :1, :1]) * matrices
             if (periodic := _without_mean(spectra[quantity])).any():
-                varying.append((order, periodic, matrix))
-    loads = tuple((spectra[quantity], vector) for quantity, vector in equations.vectors.items())
+                varying.append((order, periodic, matrices))
+    vectors = {name: _stack([each.vectors[name] for each in equations]) for name in first.vectors}
+    loads = tuple((spectra[quantity], vector) for quantity, vector in vectors.items())
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
     return PeriodicSystem(rates, mean, tuple(varying), loads)
+
+
+def _stack(arrays: list[np.ndarray]) -> np.ndarray:
+    """Arrays of each speed as one; a view where all are the same."""
+    if all(array is arrays[0] for array in arrays):
+        return np.broadcast_to(arrays[0], (len(arrays), *arrays[0].shape))
+    return np.array(arrays)
 
 
 def split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:

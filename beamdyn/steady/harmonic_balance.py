@@ -41,9 +41,9 @@ class PeriodicSystem:
     mean : ndarray, shape (3, S, n, n)
         Constant parts of K, C and M, in this order: of the derivatives 0, 1 and 2.
     varying : tuple of (int, ndarray, ndarray)
-        Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its matrix (n, n).
+        Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its matrices (S, n, n).
     loads : tuple of (ndarray, ndarray)
-        Terms of the load: a spectrum, its vector (n,).
+        Terms of the load: a spectrum, its vectors (S, n).
     """
 
     rates: np.ndarray
@@ -56,15 +56,15 @@ class PeriodicSystem:
         return PeriodicSystem(
             self.rates[chosen],
             self.mean[:, chosen],
-            tuple((order, spectrum[chosen], matrix) for order, spectrum, matrix in self.varying),
-            tuple((spectrum[chosen], vector) for spectrum, vector in self.loads),
+            tuple((order, spectrum[chosen], matrix[chosen]) for order, spectrum, matrix in self.varying),
+            tuple((spectrum[chosen], vector[chosen]) for spectrum, vector in self.loads),
         )
 
     def part(self, coordinates: np.ndarray) -> PeriodicSystem:
         """Equations of some coordinates, which no term couples with others."""
         rows = coordinates[:, None]
-        varying = ((order, spectrum, matrix[rows, coordinates]) for order, spectrum, matrix in self.varying)
-        loads = ((spectrum, vector[coordinates]) for spectrum, vector in self.loads)
+        varying = ((order, spectrum, A[:, rows, coordinates]) for order, spectrum, A in self.varying)
+        loads = ((spectrum, vector[:, coordinates]) for spectrum, vector in self.loads)
         return PeriodicSystem(
             self.rates,
             self.mean[..., rows, coordinates],
@@ -214,8 +214,10 @@ def _assemble(system: PeriodicSystem, harmonics: list[Pair], T: np.ndarray) -> t
         A += np.einsum("sab,sij->saibj", rate, C)
     for order, spectrum, matrix in system.varying:
         R = np.real(T.conj().T @ convolution_matrix(spectrum, harmonics) @ T)
-        A += np.einsum("sab,ij->saibj", R @ rate if order else R, matrix)
-    load = sum((_select(f, h)[..., None] * vector for f, vector in system.loads), np.zeros((S, H, n)))
+        A += np.einsum("sab,sij->saibj", R @ rate if order else R, matrix)
+    load = sum(
+        (_select(f, h)[..., None] * vector[:, None] for f, vector in system.loads), np.zeros((S, H, n))
+    )
     return A.reshape(S, H * n, H * n), np.real(T.conj().T @ load).reshape(S, H * n)
 
 

@@ -13,7 +13,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, count, positive
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.error_estimate import solve_with_error
@@ -21,7 +21,9 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import UncoupledSolver
+from beamdyn.model_error.choice import NOT_HERE, choose_physics
 from beamdyn.scene.motion import Line, Motion
+from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
@@ -76,7 +78,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Crossings(Result, Sequence[Crossing]):
+class Crossings(OfChosenPhysics, Sequence[Crossing]):
     """Sequence of crossings, by ascending speed.
 
     Parameters
@@ -181,7 +183,7 @@ def resonance_speeds(
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
-    scene = replace(scene, damping_ratio=0.0)
+    scene = choose_physics(replace(scene, damping_ratio=0.0), [0.0, top], modes, straight=NOT_HERE)
     model = _choose_resolved(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)

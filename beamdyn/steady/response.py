@@ -13,15 +13,17 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.results import Provenance, Result, plain
+from beamdyn.common.results import Provenance, plain
 from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.modal.choice import DiscretizationChoice, choose_model, ensure_size
-from beamdyn.modal.eigen import Solver
+from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
+from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.scene.motion import Line, Motion
+from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
+    LARGE_DEFLECTION,
     check_speeds,
     list_range,
     warn_of_deflection,
@@ -31,8 +33,6 @@ from beamdyn.scene.validity import (
 from beamdyn.steady.excitation_phases import (
     check_steady_state,
     name_line,
-    periodic_system,
-    split_uncoupled,
 )
 from beamdyn.steady.harmonic_balance import (
     Pair,
@@ -41,7 +41,7 @@ from beamdyn.steady.harmonic_balance import (
     largest_over_phases,
     solve_harmonic_balance,
 )
-from beamdyn.steady.stability import fastest_growth
+from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,13 +51,12 @@ _MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
 _MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
+_FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
-_NO_FREQUENCY = 1e-8  # over the frequency of a clamped beam: what rounding leaves of a square of 0
-_WITHOUT_STIFFNESS = "past the critical speed", "turns freely about the root"
 
 
 @dataclass(frozen=True)
-class SteadyResponse(Result):
+class SteadyResponse(OfChosenPhysics):
     """Steady response over speed, after the free vibration from the start has decayed.
 
     Parameters
@@ -73,9 +72,11 @@ class SteadyResponse(Result):
     stable : ndarray of bool, shape (S,)
         Whether free vibration decays, or without damping stays bounded.
     status : ndarray of str, shape (S,)
-        "stable", "parametric instability", "past the critical speed" or "turns freely about the root".
+        "stable", "parametric instability", "past the critical speed" or "turns freely about the root"; with
+        large deflection also "no equilibrium" or "unstable equilibrium".
     growth_rate : ndarray, shape (S,)
-        Largest growth rate of free vibration [1/s]; nan where the beam turns freely about its root.
+        Largest growth rate of free vibration [1/s]; nan where the beam turns freely about its root, or has
+        no equilibrium.
     growth_rate_error : ndarray, shape (S,)
         Estimated error [1/s]: for resonant modes by the harmonics left out and between the phases tried; for
         others the second-order shift by the periodic coefficients.
@@ -225,6 +226,7 @@ def steady_response(
     steps = None if harmonics is None else count("harmonics", harmonics, least=0, most=_MOST_HARMONICS)
     tolerance = positive("tolerance", tolerance)
     smallest = basis or ModalBasis(FEWEST_MODES)
+    scene = choose_for_motion(scene, speeds, basis and basis.modes, tolerance)
     request = ResponseRequest(scene, speeds, smallest, steps, tolerance, discretization)
     return request.run() if basis else request.run_smallest_basis()
 
@@ -243,39 +245,38 @@ class ResponseRequest(FieldsOnly):
     def run(self) -> SteadyResponse:
         """Solve with the modal basis of the request."""
         start = perf_counter()
-        scene, speeds, model = self.scene, self.speeds, self.model
-        equations = model.modal_equations(self.basis)
-        system = periodic_system(equations, scene.motion, speeds)
-        parts = split_uncoupled(system, equations)
-        rate, rate_error, status, undecided = _decide_stability(model, parts, speeds)
-        used, c, error = _solve_parts(parts, equations.tips, self.harmonics, self.tolerance)
+        scene, speeds, motion = self.scene, self.speeds, check_steady_state(self.scene.motion)
+        vibration = vibration_of(self.model, self.basis, motion, speeds)
+        rate, rate_error, status, undecided = vibration.stability()
+        used, c, error = _solve_parts(vibration.parts, vibration.tips, self.harmonics, self.tolerance)
         stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
-        amplitude = np.full(len(speeds), np.nan)
-        motion = check_steady_state(scene.motion)
-        harmonic, line = _combine_pairs(c, used, motion)
-        amplitude[stable] = largest_over_phases(line[stable], harmonic)
+        harmonic, vibrating = _combine_pairs(c, used, motion)
+        line, share = _add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
         return SteadyResponse(
             speeds=speeds,
-            amplitude=amplitude,
+            amplitude=_largest(line, harmonic, stable),
             bound=_sizes(line).sum(axis=1),
             stable=stable,
             status=status,
             growth_rate=rate,
             growth_rate_error=rate_error,
-            error=error,
+            error=error * share,
             lines=tuple(name_line(motion, h) for h in map(tuple, harmonic.tolist())),
-            line_frequency=np.abs(system.rates @ harmonic.T) / (2 * np.pi),
+            line_frequency=np.abs(vibration.parts[0][0].rates @ harmonic.T) / (2 * np.pi),
             line_amplitude=_along(line),
             line_amplitude_across=_across(line),
             harmonics=harmonic,
-            warnings=tuple(_warnings(scene, speeds, status, amplitude, error, self.tolerance, undecided)),
+            warnings=tuple(
+                _warnings(self, status, _largest(vibrating, harmonic, stable), error * share, undecided)
+            ),
             provenance=self._provenance(len(used), start),
             request=self,
         )
 
     def _provenance(self, harmonics: int, start: float) -> Provenance:
-        method = f"{self.model.discretization}, {self.basis}, {harmonics} harmonics"
+        about = " about the equilibrium at each speed" if self.scene.physics.large_deflection else ""
+        method = f"{self.model.discretization}, {self.basis}{about}, {harmonics} harmonics"
         estimated = "without the harmonics of the last interaction"
         return Provenance(__version__, method, estimated, perf_counter() - start)
 
@@ -289,54 +290,33 @@ class ResponseRequest(FieldsOnly):
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""
-        speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
-        ends = tuple(np.unique([speed.min(), speed.max()]).tolist())
-        response = replace(self, basis=ModalBasis(FEWEST_MODES, ends)).run()
+        response = replace(self, basis=self._smallest_basis()).run()
         while (response.mode_error > self.tolerance).any():
             if (response.request.basis.modes or 0) >= _MOST_MODES or response.refined is None:
                 break
             response = response.refined
         return response
 
+    def _smallest_basis(self) -> ModalBasis:
+        """Modes at the slowest and the fastest speed; about equilibria, those at each speed are taken."""
+        if self.scene.physics.large_deflection:
+            return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
+        speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
+        return ModalBasis(FEWEST_MODES, tuple(np.unique([speed.min(), speed.max()]).tolist()))
+
     @cached_property
     def model(self) -> Model:
         """The discretized scene, chosen for the number of modes and the speeds."""
-        return choose_model(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
-
-
-def _decide_stability(
-    model: Model, parts: list[tuple[PeriodicSystem, np.ndarray]], speeds: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Growth rates of free motion, their errors, the status, and whether it is undecided: (S,) each."""
-    free = _turns_freely(model, speeds)
-    rate, error = np.full((2, len(speeds)), np.nan)
-    rate[~free], error[~free] = fastest_growth([part[~free] for part, _ in parts])
-    status = _status(rate, speeds, model.solver.critical_speed, free)
-    return rate, error, status, (np.abs(rate) < error) & ~np.isin(status, _WITHOUT_STIFFNESS)
-
-
-def _status(rate: np.ndarray, speeds: np.ndarray, critical: float, free: np.ndarray) -> np.ndarray:
-    """Status at each speed."""
-    past, turning = _WITHOUT_STIFFNESS
-    status = np.where(rate > 0, "parametric instability", "stable")
-    return np.select([free, np.abs(speeds) >= critical], [turning, past], status)
-
-
-def _turns_freely(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Whether nothing resists a rotation of the beam about its root, shape (S,)."""
-    if not model.equations.shift:  # the stiffness at rest is positive definite
-        return np.zeros(len(speeds), dtype=bool)
-    lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
-    return lowest < _NO_FREQUENCY * np.sqrt(model.equations.shift)
+        return choose_vibrating(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
 
 
 def _solve_parts(
     parts: list[tuple[PeriodicSystem, np.ndarray]], tips: np.ndarray, steps: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
     """Harmonics (H), tip deflections (S, d, H) and errors (S) of parts that no term couples, together."""
-    solved = [_solve_harmonics(part, tips[:, places], steps, tolerance) for part, places in parts]
+    solved = [_solve_harmonics(part, tips[..., places], steps, tolerance) for part, places in parts]
     index = {h: i for i, h in enumerate(dict.fromkeys(h for harmonics, *_ in solved for h in harmonics))}
-    c = np.zeros((len(solved[0][1]), len(tips), len(index)), dtype=complex)
+    c = np.zeros((*tips.shape[:2], len(index)), dtype=complex)
     for harmonics, of_part, _ in solved:
         c[..., [index[h] for h in harmonics]] += of_part
     return list(index), c, np.max([error for *_, error in solved], axis=0)
@@ -346,7 +326,7 @@ def _solve_harmonics(
     system: PeriodicSystem, tips: np.ndarray, steps: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
     """Harmonics (H), tip deflections (S, d, H), errors (S); each speed solved with as many as it needs."""
-    S, d = len(system.rates), len(tips)
+    S, d = tips.shape[:2]
     if not system.load_harmonics:
         return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
     most = _MOST_INTERACTIONS if steps is None else steps
@@ -359,7 +339,7 @@ def _solve_harmonics(
         exact = complete and used == len(levels)
         unconverged = np.flatnonzero(~(error <= tolerance))
         for part in _split_by_memory(unconverged, system.size * sizes[used - 1]):
-            c[part, :, : sizes[used - 1]], error[part] = _solve_tip(system[part], tips, levels[:used])
+            c[part, :, : sizes[used - 1]], error[part] = _solve_tip(system[part], tips[part], levels[:used])
             error[part] = _ROUNDING if exact else error[part]
     return [h for level in levels for h in level], c, error
 
@@ -374,7 +354,7 @@ def _solve_tip(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Tip deflections (S, d, H), and their distance from those without the last level, over their sum."""
     solutions = solve_harmonic_balance(system, levels)
-    c, truncated = (np.stack([q @ tip for tip in tips], axis=1) for q in solutions)
+    c, truncated = (np.einsum("shn,sdn->sdh", q, tips) for q in solutions)
     total = _sizes(c).sum(axis=1)
     return c, _sizes(c - truncated).sum(axis=1) / np.where(total == 0, 1, total)
 
@@ -403,28 +383,61 @@ def _combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tupl
     return harmonic, c[..., forward] * np.where(harmonic.any(axis=1), 2.0, 1.0)
 
 
+def _add_static(
+    line: np.ndarray, harmonics: np.ndarray, static: np.ndarray, directions: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Add the deflection in equilibrium (S, d) to the static line; also its size before over that after.
+
+    Of the directions in which the tip vibrates, those of the modelled planes are kept.
+    """
+    total = line[:, :directions].copy()
+    total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]
+    before, after = (_sizes(each).sum(axis=1) for each in (line, total))
+    return total, np.minimum(before / np.where(after == 0, 1.0, after), 1.0)
+
+
+def _largest(line: np.ndarray, harmonics: np.ndarray, stable: np.ndarray) -> np.ndarray:
+    """Largest size over the phases of a sum of lines (S, d, l); nan where there is no response."""
+    size = np.full(len(line), np.nan)
+    size[stable] = largest_over_phases(line[stable], harmonics)
+    return size
+
+
 def _warnings(
-    scene: Scene,
-    speeds: np.ndarray,
+    request: ResponseRequest,
     status: np.ndarray,
-    amplitude: np.ndarray,
+    vibration: np.ndarray,
     error: np.ndarray,
-    tolerance: float,
     undecided: np.ndarray,
 ) -> Iterator[str]:
+    scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from warn_of_left_out(scene)
-    for name in ("parametric instability", *_WITHOUT_STIFFNESS):
+    yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
+    for name in (UNSTABLE, *WITHOUT_STABLE_MEAN):
         if (at := speeds[status == name]).size:
             yield f"{name} at {len(at)} speed(s), {list_range(at)}: no steady response"
-    if (at := speeds[amplitude == 0]).size:
+    if (at := speeds[vibration == 0]).size:
         yield (
             f"nothing excites the beam at {list_range(at)}, so that it does not move: "
             "that takes gravity, or a wavy road and a speed other than 0"
         )
-    yield from warn_of_deflection(amplitude, scene.beam.length, speeds)
+    yield from warn_of_vibration(vibration, scene, speeds)
     motion = check_steady_state(scene.motion)
     yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := speeds[error > tolerance]).size:
         yield f"the harmonics are not resolved to {tolerance:g} at {list_range(at)}; see error"
     if (at := speeds[undecided]).size:
         yield f"stability is not decided at {list_range(at)}: growth_rate is within growth_rate_error"
+
+
+def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[str]:
+    """Yield a warning if the tip moves too far [m] from what the equations are linear about."""
+    if not scene.physics.large_deflection:
+        yield from warn_of_deflection(vibration, scene.beam.length, speeds)
+        return
+    large = vibration > LARGE_DEFLECTION * scene.beam.length
+    if large.any():
+        yield (
+            f"the tip vibrates by {vibration[large].max() / scene.beam.length:.2g} of the length about the "
+            f"equilibrium at {list_range(speeds[large])}: past {LARGE_DEFLECTION:g} vibration is not linear"
+        )

@@ -16,6 +16,7 @@ from beamdyn.common.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.ritz import MOST_FUNCTIONS
 from beamdyn.modal.choice import choose_model
+from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.excitation_phases import check_steady_state
@@ -115,6 +116,7 @@ def tradeoff(
     """
     start = perf_counter()
     check_scene(scene)
+    unresolved, scene = scene, plain_physics(scene)
     modes, budget = count("modes", modes, most=MOST_FUNCTIONS - 3), _check_budget(budget)
     if progress is not None:
         function("progress", progress, "it takes the numbers of finished diagrams and of all")
@@ -134,7 +136,7 @@ def tradeoff(
         speed=speed,
         t_end=end,
         diagrams=tuple(d for d in diagrams if d.measurements),
-        warnings=tuple(_warnings(scene, diagrams)),
+        warnings=(*warn_of_plain(unresolved), *_warnings(scene, diagrams)),
         provenance=Provenance(__version__, f"{modes} modes, budget {budget:g} s", "", perf_counter() - start),
         scene=scene,
     )

@@ -38,7 +38,7 @@ class LoadAtOnce(SteadyLoad):
 
     @property
     def transverse(self) -> float:
-        """Transverse acceleration of the root, or what else bends the straight beam, per unit of parameter."""
+        """Transverse acceleration of the root, or what else bends the straight beam, per parameter."""
         given = self._values.get("root_transverse", 0.0)
         return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
 
@@ -52,11 +52,10 @@ def find_equilibrium(system: ElasticaSystem, branch: Branch = "straight") -> np.
         If there is none.
     """
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
-    values: dict[Quantity, float] = {name: float(getattr(root, name)) for name in QUANTITIES}
     speed = abs(float(root.speed)) or 1.0
-    per_speed = {name: value / speed**2 for name, value in values.items()}
-    size = max(1.0, abs(per_speed["root_transverse"]) / system.elastica.length)
-    load = LoadAtOnce(system.elastica, lowest / size, quantities=per_speed)
+    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
+    size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
+    load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
     try:
         return find_bent(load, speed) if branch == "bent" else follow_to(load, np.array([speed]))[0]
     except NoEquilibrium as error:

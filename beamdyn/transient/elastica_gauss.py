@@ -8,21 +8,21 @@ numerical damping, so that energy does not drift.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TypeAlias
+from collections.abc import Iterator
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from beamdyn.equations.root_motion import RootMotion
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, tableau
 
 _ITERATIONS = 30  # of Newton's method
 _CONVERGED = 1e-13  # change of the accelerations over their size: the error left is far smaller
 _STALLED = 1e-9  # the same from which on rounding may end the iteration
 _FAST = 0.1  # reduction by an iteration with which derivatives are kept
+_FEW = 4  # iterations of a step up to which the next begins with the same derivatives
 
 
 class StepNotSolved(ArithmeticError):
@@ -68,9 +68,9 @@ def propagate_elastica(
     acceleration = np.empty((steps, stages, n))
     known = None if like is None else at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
-    for k, root in enumerate(_roots(system, t0, h, steps, step.table)):
+    for k, drive in enumerate(_drives(system, t0, h, steps, step.table)):
         guess = None if like is None or known is None else known @ like.acceleration[k]
-        q, v, a = step.advance(root, q, v, guess)
+        q, v, a = step.advance(drive, q, v, guess)
         acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
     return Segment(t0, h, state, acceleration)
 
@@ -83,65 +83,75 @@ def at_nodes(given: int, wanted: int) -> np.ndarray:
     return legendre.legvander(2 * tableau(wanted).c - 1, given - 1) @ series
 
 
-def _roots(system: ElasticaSystem, t0: float, h: float, steps: int, table: Tableau):
+def _drives(system: ElasticaSystem, t0: float, h: float, steps: int, table: Tableau) -> Iterator[Drive]:
     """Motion of the root at the nodes of each step, computed for blocks of steps."""
     for first in range(0, steps, BLOCK):
         k = np.arange(first, min(first + BLOCK, steps))
-        block = system.root(t0 + h * (k[:, None] + table.c))
-        values = [getattr(block, f.name) for f in fields(RootMotion)]
-        yield from (RootMotion(*each) for each in zip(*values, strict=True))
+        block = system.drive(system.root(t0 + h * (k[:, None] + table.c)))
+        yield from (Drive(*each) for each in zip(*block, strict=True))
 
 
 Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # of a matrix, and the pivots
 
 
-@dataclass(frozen=True)
+class Tangent(NamedTuple):
+    """Derivatives of the equations by coordinates and rates (1, n, n), and the factors of a step's matrix."""
+
+    stiffness: np.ndarray
+    damping: np.ndarray
+    factors: Factors
+
+
 class _Step:
-    """Solution of steps of one length and number of stages."""
+    """Solution of steps of one length h [s] and one number of stages."""
 
-    system: ElasticaSystem
-    h: float
-    table: Tableau
-
-    def __post_init__(self) -> None:
-        table, h = self.table, self.h
-        weights = {
-            "to_v": h * table.A,
-            "to_q": h**2 * table.A2,
-            "end_v": h * table.b,
-            "end_q": h**2 * table.b2,
-        }
-        for name, value in (weights | {"drift": h * table.c[:, None]}).items():
-            object.__setattr__(self, name, value)
+    def __init__(self, system: ElasticaSystem, h: float, table: Tableau) -> None:
+        self.system, self.h, self.table = system, h, table
+        self.drift, self.to_v, self.to_q = h * table.c[:, None], h * table.A, h**2 * table.A2
+        self.end_v, self.end_q = h * table.b, h**2 * table.b2
+        self.tangent: Tangent | None = None
 
     def advance(
-        self, root: RootMotion, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
+        self, drive: Drive, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Coordinates and rates at the end of a step, and accelerations at its nodes."""
-        s, drift = len(self.table.c), self.drift * v
-        still = np.zeros((s, len(q)))
-        start = self.system.at(root, still + q, still, still)
-        factors = self._factorize(start.stiffness, start.damping, start.mass)
-        if guess is None:  # as if the equations were linear about the beginning of the step
-            load = start.residual + start.damping @ v + (start.stiffness @ drift[..., None])[..., 0]
-            guess = self._divide(factors, -load)
-        a = self._solve(root, q + drift, v, guess, factors)
+        drift = self.drift * v
+        if self.tangent is None:
+            self.tangent = self._tangent_at(drive, q)
+        if guess is None:
+            guess = self._guess(drive, q, v, drift)
+        a = self._solve(drive, q + drift, v, guess)
         return q + self.h * v + self.end_q @ a, v + self.end_v @ a, a
 
-    def _solve(
-        self, root: RootMotion, drifted: np.ndarray, v: np.ndarray, a: np.ndarray, factors: Factors | None
-    ) -> np.ndarray:
-        """Solve for the accelerations (s, n) by Newton's method, from some accelerations and derivatives."""
+    def _tangent_at(self, drive: Drive, q: np.ndarray) -> Tangent:
+        """Derivatives at rest in some coordinates (n,), the same for all nodes of a step."""
+        middle, still = Drive(*(x[[len(x) // 2]] for x in drive)), np.zeros((1, len(q)))
+        here = self.system.at(middle, q[None], still, still)
+        return Tangent(here.stiffness, here.damping, self._factorize(here))
+
+    def _guess(self, drive: Drive, q: np.ndarray, v: np.ndarray, drift: np.ndarray) -> np.ndarray:
+        """Accelerations (s, n) as if the equations were linear about the beginning of the step."""
+        assert self.tangent is not None
+        still = np.zeros((len(self.table.c), len(q)))
+        load = self.system.at(drive, still + q, still, still).residual
+        load += self.tangent.damping[0] @ v + drift @ self.tangent.stiffness[0].T
+        return -_divide(self.tangent.factors, load)
+
+    def _solve(self, drive: Drive, drifted: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """Solve for the accelerations (s, n) by Newton's method; the tangent is kept while it serves."""
+        assert self.tangent is not None
+        factors: Factors | None = self.tangent.factors
         last = np.inf
-        for _ in range(_ITERATIONS):
-            now = self.system.at(root, drifted + self.to_q.dot(a), v + self.to_v.dot(a), a)
-            if factors is None:
-                factors = self._factorize(now.stiffness, now.damping, now.mass)
+        for iteration in range(_ITERATIONS):
+            now = self.system.at(drive, drifted + self.to_q.dot(a), v + self.to_v.dot(a), a)
+            factors = factors or self._factorize(now)
             residual = now.residual
-            change = self._divide(factors, residual)
+            change = _divide(factors, residual)
             a = a - change
             size, scale = np.abs(change).max(), np.abs(a).max() + np.abs(residual).max()
             if size <= _CONVERGED * scale or last * _FAST < size <= _STALLED * scale:
+                if iteration > _FEW:
+                    self.tangent = None
                 return a
             if not np.isfinite(size):
                 break
@@ -150,16 +160,16 @@ class _Step:
             last = size
         raise StepNotSolved("the equations of a step were not solved: take shorter steps")
 
-    def _factorize(self, stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray) -> Factors:
+    def _factorize(self, now: Evaluation) -> Factors:
         """LU factors of the derivative of all residuals of a step by all accelerations."""
-        s, n, _ = mass.shape
-        matrix = self.to_q[:, None, :, None] * stiffness[:, :, None]
-        matrix += self.to_v[:, None, :, None] * damping[:, :, None]
+        s, n = len(self.table.c), self.system.size
+        matrix = self.to_q[:, None, :, None] * now.stiffness[:, :, None]
+        matrix += self.to_v[:, None, :, None] * now.damping[:, :, None]
         index = np.arange(s)
-        matrix[index, :, index] += mass
+        matrix[index, :, index] += now.mass
         lu, pivots, _ = dgetrf(matrix.reshape(s * n, s * n))
         return lu, pivots
 
-    @staticmethod
-    def _divide(factors: Factors, residual: np.ndarray) -> np.ndarray:
-        return dgetrs(*factors, residual.ravel())[0].reshape(residual.shape)
+
+def _divide(factors: Factors, residual: np.ndarray) -> np.ndarray:
+    return dgetrs(*factors, residual.ravel())[0].reshape(residual.shape)

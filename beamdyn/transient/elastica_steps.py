@@ -15,7 +15,13 @@ import numpy as np
 from beamdyn.transient.elastica_gauss import StepNotSolved, propagate_elastica
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
-from beamdyn.transient.step_size import ROUNDING, StepSize, check_number_of_steps, split_at_breakpoints
+from beamdyn.transient.step_size import (
+    ROUNDING,
+    TOLERANCES,
+    StepSize,
+    check_number_of_steps,
+    split_at_breakpoints,
+)
 from beamdyn.transient.time_error import (
     ERROR_ORDER,
     STAGES,
@@ -30,7 +36,8 @@ _FINER = STAGES + 2  # stages of the second run
 _INSIDE = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error of interpolation
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 _TIMES_COMPARED = 257  # times at which the motion of the root is compared with that at the start
-_SHORTER = 0.6  # of a step that was not solved
+_SHORTER = 0.5  # of a step that was not solved
+_SHORT = 1.0  # phase angle of steps [rad] below which they resolve one mode more instead
 _CHECKED = 48  # steps of a segment at which the interpolation is checked
 
 
@@ -55,13 +62,20 @@ def integrate_elastica(
         except StepNotSolved:
             if step_size.is_finest:
                 raise
-            step_size = StepSize(step_size.phase * _SHORTER, step_size.modes)
+            step_size = _shorten(step_size, system.size)
             continue
         error, bound = run.error, tolerance * run.largest
         stalled = last / 2 < error.total < ROUNDING * run.largest
         if error.total <= bound or stalled or step_size.is_finest:
             return run.path, error.total, f"Gauss collocation of order {2 * _FINER}, {run.steps} steps"
         step_size, last = step_size.refine(error, bound, ERROR_ORDER), error.total
+
+
+def _shorten(step_size: StepSize, size: int) -> StepSize:
+    """Shorten steps that were not solved, at last until they resolve the vibration of all coordinates."""
+    if step_size.phase < _SHORT and step_size.modes < size:
+        return StepSize(StepSize.from_tolerance(TOLERANCES[1]).phase, step_size.modes + 1)
+    return StepSize(step_size.phase * _SHORTER, step_size.modes)
 
 
 @dataclass(frozen=True)
@@ -175,7 +189,7 @@ def _stays_in_equilibrium(system: ElasticaSystem, y0: np.ndarray, t_end: float) 
     values = [getattr(root, name) for name in system.equations.vectors]
     if not all((value == value[0]).all() for value in (*values, root.speed_squared, root.root_axial)):
         return False
-    force = system.at(system.root(np.zeros(1)), q, none, none).residual
+    force = system.at(system.drive(system.root(np.zeros(1))), q, none, none).residual
     elastic = np.abs(system.elastica.stiffness) @ np.abs(q[0])
     return bool(np.abs(force).max() <= _BALANCE * elastic.max())
 

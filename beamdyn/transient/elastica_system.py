@@ -6,13 +6,14 @@ angles, H = P m P': the forces are
 
     F = -sin theta (H X + a_1 g) + cos theta (H Y + a_2 g) + (moments of inertia),   g = P m,
 
-with X, Y the accelerations per length along b1 and e, without that of the root.
+with X, Y the changes along the beam of the acceleration along b1 and e, as seen from the ground.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -81,7 +82,7 @@ class ElasticaSystem:
         return points.length * slopes @ points.quadrature.integrate_to(np.asarray(xi)).T
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Energy [J] at times t (T,): kinetic relative to the rotating axes, elastic, and of the root's motion.
+        """Energy [J] at times t (T,): kinetic relative to the rotating axes, elastic, of the root's motion.
 
         The last is the potential of the centrifugal forces and of the acceleration of the root, which an
         angular acceleration has not.
@@ -113,16 +114,38 @@ class ElasticaSystem:
         return self.elastica.points.moments(self.elastica.points.mass)
 
     @cached_property
-    def _has_tilting(self) -> bool:
-        return not self.elastica.in_plane and bool(self.elastica.points.tilting.any())
+    def out_of_plane(self) -> float:
+        """1 where the beam bends out of the plane of rotation, 0 where it bends in it."""
+        return 1 - self.elastica.in_plane**2
 
     @cached_property
-    def _has_inertia(self) -> bool:
+    def has_inertia(self) -> bool:
+        """Whether sections or the tip body have moments of inertia."""
         return bool(self.elastica.points.inertia.any())
 
-    def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluation:
-        """Evaluate the equations at coordinates, rates and accelerations (s, n), with the root's motion (s,)."""
-        return Evaluation(self, root, q, v, a)
+    @cached_property
+    def is_damped(self) -> bool:
+        """Whether the beam is damped."""
+        return bool(self.elastica.damping.any())
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """Slope angles per coordinate, shape (N + 1, n) [1/m]."""
+        return np.ascontiguousarray(self.elastica.angles.T)
+
+    def drive(self, root: RootMotion) -> Drive:
+        """Quantities of the root's motion as they enter the equations."""
+        c = self.elastica.in_plane
+        return Drive(
+            coriolis=2 * c * root.speed,
+            squared=root.speed_squared,
+            euler=c * root.acceleration,
+            root=root.root_axial + 1j * root.root_transverse,
+        )
+
+    def at(self, drive: Drive, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluation:
+        """Evaluate the equations at coordinates, rates and accelerations (s, n) under a drive (s,)."""
+        return Evaluation(self, drive, q, v, a)
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
@@ -130,98 +153,123 @@ class ElasticaSystem:
         return np.concatenate([v, self._acceleration(t, q, v)])
 
     def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        here = self.at(self.root(np.array([t])), q[None], v[None], np.zeros((1, self.size)))
+        here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
         return np.linalg.solve(here.mass[0], -here.residual[0])
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
         """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
         n = self.size
         q, v = np.split(y, 2)
-        here = self.at(self.root(np.array([t])), q[None], v[None], self._acceleration(t, q, v)[None])
+        drive = self.drive(self.root(np.array([t])))
+        here = self.at(drive, q[None], v[None], self._acceleration(t, q, v)[None])
         J = np.zeros((2 * n, 2 * n))
         J[:n, n:] = np.eye(n)
         J[n:] = -np.linalg.solve(here.mass[0], np.hstack([here.stiffness[0], here.damping[0]]))
         return J
 
 
+class Drive(NamedTuple):
+    """What the motion of the root does to the beam, at the nodes of a step: arrays of shape (..., s).
+
+    Parameters
+    ----------
+    coriolis, squared, euler : ndarray
+        2 c omega [rad/s], omega^2 [rad2/s2] and c omega' [rad/s2].
+    root : ndarray of complex
+        Acceleration of the root along b1, and i times that along e [m/s2].
+    """
+
+    coriolis: np.ndarray
+    squared: np.ndarray
+    euler: np.ndarray
+    root: np.ndarray
+
+
 class Evaluation:
     """The equations at s sets of coordinates, rates and accelerations: their residual and its derivatives.
+
+    Vectors in the plane of bending are complex numbers, x + i y = exp(i theta) (along + i across).
 
     Parameters
     ----------
     system : ElasticaSystem
         The equations.
-    root : RootMotion
-        Motion of the root, quantities of shape (s,).
+    drive : Drive
+        Motion of the root, of shape (s,).
     q, v, a : ndarray, shape (s, n)
         Coordinates, their rates and accelerations.
     """
 
     def __init__(
-        self, system: ElasticaSystem, root: RootMotion, q: np.ndarray, v: np.ndarray, a: np.ndarray
+        self, system: ElasticaSystem, drive: Drive, q: np.ndarray, v: np.ndarray, a: np.ndarray
     ) -> None:
-        elastica, c = system.elastica, system.elastica.in_plane
-        self.system, self.q, self.v = system, q, v
-        theta, self.turning, self.turned = (
-            np.concatenate([q, v, a]).dot(elastica.angles).reshape(3, len(q), -1)
-        )
-        self.cos, self.sin = np.cos(theta), np.sin(theta)
-        self.squared, self.acceleration = root.speed_squared[:, None], root.acceleration[:, None]
-        self.coriolis, self.euler = 2 * c * root.speed[:, None], c * self.acceleration
-        # Terms along the bent axis (with cos in X, sin in Y) and across it (with -sin in X, cos in Y).
-        self.along = self.turning * (self.coriolis - self.turning)
-        X = (self.along - self.squared) * self.cos - (self.turned - self.euler) * self.sin
-        Y = (self.along - c**2 * self.squared) * self.sin + (self.turned - self.euler) * self.cos
-        self.forces = np.concatenate([X, Y]).dot(system.kernel).reshape(2, len(q), -1)
-        self.forces[0] += root.root_axial[:, None] * system.moments
-        self.forces[1] += root.root_transverse[:, None] * system.moments
+        self.system, self.drive, self.q, self.v = system, drive, q, v
+        s = len(q)
+        angles = system.slopes.dot(np.concatenate([q, v, a]).T)
+        self.cos, self.sin = np.cos(angles[:, :s]), np.sin(angles[:, :s])
+        self.turning = angles[:, s : 2 * s]
+        self.along = self.turning * (drive.coriolis - self.turning)
+        self.across = angles[:, 2 * s :] - drive.euler
+        self.axis = self.cos + 1j * self.sin
+        acceleration = self.axis * (self.along - drive.squared + 1j * self.across)
+        if system.out_of_plane:
+            acceleration += 1j * system.out_of_plane * drive.squared * self.sin
+        forces = system.kernel.dot(acceleration.view(float)).view(complex)
+        forces += np.multiply.outer(system.moments, drive.root)
+        turned = forces * np.conj(self.axis)
+        self.force_along, self.force_across = np.real(turned), np.imag(turned)
 
     @property
     def residual(self) -> np.ndarray:
         """Residual of the equations of motion (s, n)."""
-        system, elastica = self.system, self.system.elastica
-        by_angle = self.cos * self.forces[1] - self.sin * self.forces[0]
-        if system._has_inertia:
-            by_angle += (self.turned - self.euler) * elastica.points.inertia
-        if system._has_tilting:
-            by_angle += self.squared * elastica.points.tilting * self.sin * self.cos
-        total = by_angle.dot(elastica.angles.T) + self.q.dot(elastica.stiffness)
-        return total + self.v.dot(elastica.damping)
+        elastica, by_angle = self.system.elastica, self.force_across
+        if self.system.has_inertia:
+            by_angle = by_angle + self.across * elastica.points.inertia[:, None]
+        if self.system.out_of_plane:
+            tilting = self.cos * self.sin * elastica.points.tilting[:, None]
+            by_angle = by_angle + self.system.out_of_plane * self.drive.squared * tilting
+        total = elastica.angles.dot(by_angle).T + self.q.dot(elastica.stiffness)
+        return total + self.v.dot(elastica.damping) if self.system.is_damped else total
 
     @cached_property
-    def _weighted(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the slopes along b1 and e by the coordinates, times the kernel: (s, n, N + 1)."""
-        angles, kernel = self.system.elastica.angles, self.system.kernel
-        return (-self.sin[:, None] * angles) @ kernel, (self.cos[:, None] * angles) @ kernel
+    def _turned(self) -> np.ndarray:
+        """Slopes by the coordinates, turned by a right angle: (s, N + 1, n)."""
+        return 1j * self.axis.T[:, :, None] * self.system.slopes
 
-    def _derivative(self, X: np.ndarray, Y: np.ndarray, by_angle: np.ndarray | None = None) -> np.ndarray:
-        """Derivative (s, n, n) from those of X, Y and of the moments by the angles, each (s, N + 1)."""
-        U, V = self._weighted
-        angles = self.system.elastica.angles
-        total = (U * X[:, None] + V * Y[:, None]) @ angles.T
-        return total if by_angle is None else total + (angles * by_angle[:, None]) @ angles.T
+    @cached_property
+    def _weighted(self) -> np.ndarray:
+        """The same times the kernel, conjugate and transposed: (s, n, N + 1)."""
+        s, _, n = self._turned.shape
+        columns = self._turned.transpose(1, 0, 2).reshape(-1, s * n)
+        weighted = (self.system.kernel @ columns.view(float)).view(complex)
+        return np.conj(weighted).reshape(-1, s, n).transpose(1, 2, 0)
+
+    def _derivative(self, change: np.ndarray) -> np.ndarray:
+        """Derivative (s, n, n) from that of the acceleration by the angles, complex (N + 1, s)."""
+        return np.real(self._weighted @ (change.T[:, :, None] * self.system.slopes))
 
     @cached_property
     def mass(self) -> np.ndarray:
         """Derivative by the accelerations (s, n, n)."""
         angles, inertia = self.system.elastica.angles, self.system.elastica.points.inertia
-        return self._derivative(-self.sin, self.cos) + (angles * inertia) @ angles.T
+        return self._derivative(1j * self.axis) + (angles * inertia) @ angles.T
 
     @cached_property
     def damping(self) -> np.ndarray:
         """Derivative by the rates (s, n, n)."""
-        rate = self.coriolis - 2 * self.turning
-        return self._derivative(rate * self.cos, rate * self.sin) + self.system.elastica.damping
+        rate = self.drive.coriolis - 2 * self.turning
+        return self._derivative(rate * self.axis) + self.system.elastica.damping
 
     @cached_property
     def stiffness(self) -> np.ndarray:
         """Derivative by the coordinates (s, n, n)."""
-        system, c = self.system, self.system.elastica.in_plane
-        across = self.turned - self.euler
-        X = -(self.along - self.squared) * self.sin - across * self.cos
-        Y = (self.along - c**2 * self.squared) * self.cos - across * self.sin
-        by_angle = -self.cos * self.forces[0] - self.sin * self.forces[1]
-        if system._has_tilting:
-            tilting = system.elastica.points.tilting
-            by_angle = by_angle + self.squared * tilting * (self.cos**2 - self.sin**2)
-        return self._derivative(X, Y, by_angle) + system.elastica.stiffness
+        system, angles = self.system, self.system.elastica.angles
+        along = self.along - self.drive.squared
+        change, by_angle = self.axis * (1j * along - self.across), -self.force_along
+        if share := system.out_of_plane:
+            change += 1j * share * self.drive.squared * self.cos
+            tilting = system.elastica.points.tilting[:, None] * (self.cos**2 - self.sin**2)
+            by_angle = by_angle + share * self.drive.squared * tilting
+        return (
+            self._derivative(change) + (by_angle.T[:, None] * angles) @ angles.T + system.elastica.stiffness
+        )

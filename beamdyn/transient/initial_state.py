@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, as_floats
-from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.elastica_equilibrium import find_equilibrium
+from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.system import ModalSystem
 
 _FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely

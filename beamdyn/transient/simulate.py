@@ -16,7 +16,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, ascending, positive, real, real_array, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import (
@@ -27,7 +27,9 @@ from beamdyn.modal.modal_basis import (
     given_basis,
 )
 from beamdyn.modal.model import Model
+from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.scene.motion import Motion
+from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.elastica_system import ElasticaSystem
@@ -55,7 +57,7 @@ _TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried 
 
 
 @dataclass(frozen=True)
-class Transient(Result):
+class Transient(OfChosenPhysics):
     """Motion of a beam in time, as `simulate` computes it.
 
     Parameters
@@ -218,8 +220,9 @@ class Transient(Result):
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are.
 
-        With large deflection, kinetic energy relative to the rotating axes, elastic energy and the potential of
-        the centrifugal forces and of the root's acceleration: constant without damping if these are.
+        With large deflection, kinetic energy relative to the rotating axes, elastic energy and the
+        potential of the centrifugal forces and of the root's acceleration: constant, without damping, if
+        the speed and that acceleration are.
         """
         t = self._times_in_run(t)
         return self.system.energy(t, *self.path.at(t))
@@ -354,7 +357,9 @@ def simulate(
     basis = ModalBasis(None) if modes is None else given_basis(modes)
     if basis is None and not isinstance(initial, str):
         raise ValueError('initial is an array: give the number of its modes, not modes = "auto"')
-    smallest = basis or ModalBasis(FEWEST_MODES, find_speed_range(scene.motion, t_end))
+    speeds = find_speed_range(scene.motion, t_end)
+    smallest = basis or ModalBasis(FEWEST_MODES, speeds)
+    scene = choose_for_motion(scene, np.array(speeds), basis and basis.modes, tolerance)
     request = TransientRequest(
         scene, t_end, tolerance, method, discretization, initial, times, options, smallest
     )
@@ -515,6 +520,7 @@ def _work(run: Transient) -> float:
 
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
     yield from warn_of_left_out(scene)
+    yield from warn_of_peak(scene, largest)
     if not scene.physics.large_deflection:
         yield from warn_of_deflection(np.array([largest]), scene.beam.length)
     if scene.motion is not None:

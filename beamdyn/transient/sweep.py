@@ -17,7 +17,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, function, positive, real, within
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import (
@@ -27,7 +27,9 @@ from beamdyn.modal.modal_basis import (
     find_speed_range,
     given_basis,
 )
+from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.scene.motion import check_picklable
+from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
@@ -43,7 +45,7 @@ _KIND = "beamdyn sweep"
 
 
 @dataclass(frozen=True)
-class Sweep(Result):
+class Sweep(OfChosenPhysics):
     """Peaks of transients over speed.
 
     Parameters
@@ -170,6 +172,8 @@ def sweep(
     workers, chunk = count("workers", workers), count("chunk", chunk)
     _check_means(workers, executor, store, progress)
     basis = given_basis(modes)
+    scene = choose_for_motion(scene, _end_speeds(request, cases), basis and basis.modes, request.tolerance)
+    request = replace(request, scene=replace(scene, physics_choice=None))  # whose times no key may hold
     _check_speeds(request := replace(request, basis=basis or _smallest_basis(request, cases)), cases)
     if store is not None or executor is not None or workers > 1:
         _check_sendable(request, importable=workers > 1)
@@ -181,6 +185,7 @@ def sweep(
     collector.collect(executor, workers)
     method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model.discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
+    request = replace(request, scene=scene)
     result = _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
     missed = () if basis else warn_of_missed_modes(result.mode_error, request.tolerance, str(request.basis))
     return replace(result, warnings=(*result.warnings, *missed, *collector.warnings))
@@ -250,8 +255,13 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
 
 def _smallest_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
     """Smallest modal basis that is tried: modes at the slowest and at the fastest speed of all cases."""
+    return ModalBasis(FEWEST_MODES, tuple(_end_speeds(request, speeds).tolist()))
+
+
+def _end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
+    """The slowest and the fastest speed of all cases [rad/s], one where they are the same."""
     ends = [find_speed_range(motion, request.t_end) for motion in request.motions((speeds[0], speeds[-1]))]
-    return ModalBasis(FEWEST_MODES, tuple(np.unique([ends[0][0], ends[1][-1]]).tolist()))
+    return np.unique([ends[0][0], ends[1][-1]])
 
 
 @one_blas_thread()
@@ -325,6 +335,7 @@ def _assemble_result(
 def _warnings(sweep: Sweep, tolerance: float) -> Iterator[str]:
     speeds, motion = sweep.speeds, sweep.scene.motion
     yield from warn_of_left_out(sweep.scene)
+    yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))
     if (at := speeds[np.array([s != DONE for s in sweep.status])]).size:
         yield f"{len(at)} of {len(speeds)} cases failed, at {list_range(at)}: see status"
     if not sweep.scene.physics.large_deflection:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from beamdyn.cli import main
+
 ROOT = Path(__file__).parents[2]
 # Any warning fails, except deprecations in other people's code.
 STRICT = ("-W", "error", "-W", "ignore::DeprecationWarning", "-W", "error::DeprecationWarning:__main__")
@@ -30,3 +32,30 @@ def test_table_3_in_a_few_lines():
     peaks = runpy.run_path(str(ROOT / "examples" / "transient.py"))["largest_deflections"]()
     exact = [1.947177e-3, 1.946482e-3, 1.943300e-3, 1.942770e-3, 1.942558e-3, 1.942509e-3]
     assert peaks == pytest.approx(exact, rel=1e-5)
+
+
+HARVESTER = str(ROOT / "examples" / "harvester_45deg.toml")
+
+
+def test_linear_frequencies_of_the_bent_harvester_come_with_their_model_error(capsys):
+    """What the large deflection is worth: 60.66 Hz, of the boundary-value solver, for 55.62 Hz."""
+    assert main(["modes", HARVESTER, "--speed", "100 rad/s"]) == 0
+    printed = capsys.readouterr()
+    said = " ".join(printed.out.split())
+    assert "55.62" in said
+    assert "left out: large deflection +9.1 % (mode 1)" in said
+    assert "the model error, 9.1 %, exceeds 1 %" in " ".join(printed.err.split())
+
+
+def test_chosen_physics_bends_the_harvester(capsys, tmp_path):
+    commented = "# physics = "
+    text = (ROOT / "examples" / "harvester_45deg.toml").read_text()
+    assert commented in text
+    changed = tmp_path / "auto.toml"
+    changed.write_text(text.replace(commented, "physics = "))
+    for arguments in ([HARVESTER, "--physics", "auto"], [str(changed)]):
+        assert main(["modes", *arguments, "--speed", "100 rad/s"]) == 0
+        said = " ".join(capsys.readouterr().out.split())
+        assert "60.657" in said
+        assert "55.62" not in said
+        assert 'physics "auto", for 0.001: large deflection' in said

@@ -1,0 +1,347 @@
+"""Choice of the physics: the effects without which an answer would change by more than a tolerance.
+
+The sizes of the effects are estimated about the plain beam.  The largest is added, and the rest estimated
+again about the beam with it, until the sizes of those left out, summed at each value of the answer, are at
+most half the tolerance: an estimate may be low by a factor of two.  So nothing below a tenth of the tolerance
+is added.  Large deflection excludes shear, stretch and a second plane: where both sides are needed, the set
+that leaves less out is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence, Set
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.left_out import list_left_out
+from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
+from beamdyn.modal.error_estimate import EstimatedModes
+from beamdyn.modal.model import Model
+from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
+from beamdyn.model_error.large_deflection import bends
+from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.model_error.of_modes import left_out_of_modes, vibrate
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
+from beamdyn.scene.scene import Scene
+
+PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
+NOT_HERE = "this analysis is linear about the straight beam"
+_MARGIN = 0.5  # of the tolerance: an estimate may be low by a factor of two
+_SMALL = 0.1  # of the tolerance, below which no effect is added
+_SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
+_MODES = 3  # of which a motion consists
+_SHORT = 0.2  # time [s] below which the shorter of two runs counts
+_ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
+_EXCLUSIVE = "it cannot be combined with large deflection"
+_WITH_LARGE_DEFLECTION = ("rotary inertia of sections",)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Sizes of the effects that a scene leaves out, for one answer.
+
+    Parameters
+    ----------
+    sizes : dict of str to float
+        Largest relative change by each effect; inf where it turns modes into others, nan where it is not
+        known.
+    reasons : dict of str to str
+        Why an effect cannot be added, or its size is not known.
+    """
+
+    sizes: dict[str, float]
+    reasons: dict[str, str]
+
+
+Judge = Callable[[Scene], Judged]
+Solve = Callable[[Scene], int]  # solves the answer, and counts its coordinates
+
+
+# Choices for answers ------------------------------------------------------------------------------
+
+
+def choose_physics(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float],
+    modes: int,
+    tolerance: float | None = None,
+    straight: str = "",
+) -> Scene:
+    """Choose the physics of a scene where it is "auto", by the frequencies at some speeds.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; one with given physics is returned as it is.
+    speeds : sequence of float
+        Speeds [rad/s]; the effects are judged at the slowest, the fastest and the middle one.
+    modes : int
+        Number of modes.
+    tolerance : float, optional
+        Relative change of a frequency that may be left out; 1e-3 if not given.
+    straight : str
+        Why the analysis cannot do with large deflection; empty if it can.
+
+    Returns
+    -------
+    Scene
+        The scene with the physics, and how it was chosen.
+    """
+    if not scene.chooses_physics:
+        return scene
+    tolerance = PHYSICS_TOLERANCE if tolerance is None else tolerance
+    some = np.unique(np.quantile(np.abs(speeds), [0.0, 0.5, 1.0]))
+
+    def solve(candidate: Scene) -> EstimatedModes:
+        target = min(max(_SOLVED * tolerance, TOLERANCES[0]), TOLERANCES[1])
+        return solve_to_tolerance(candidate, "ritz", some, modes, target)
+
+    def judge(candidate: Scene) -> Judged:
+        found = solve(candidate)
+        s = found.eigen.eigenvalue[:, :modes]
+        effects = left_out_of_modes(found.model, some, s)
+        return judged_by(candidate, effects, vibrate(s), _rough_size(found.model, some))
+
+    def count(candidate: Scene) -> int:
+        return solve(candidate).model.solver.size
+
+    undamped = replace(scene, damping_ratio=0.0)  # damped modes take long to find, and change alike
+    chosen = choose_by(undamped, judge, count, tolerance, some, straight)
+    return replace(chosen, damping_ratio=scene.damping_ratio)
+
+
+def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, tolerance: float) -> Scene:
+    """Choose the physics of a scene where it is "auto", for its motion over a range of speeds.
+
+    The frequencies decide: of the modes that are asked for, or of the lowest three.  The tolerance is that of
+    the analysis, but at least 1e-3: the default tolerances of motions are for the numerical errors.  The
+    other parameters and what is returned are those of `choose_physics`.
+    """
+    return choose_physics(scene, speeds, modes or _MODES, max(tolerance, PHYSICS_TOLERANCE), NOT_HERE)
+
+
+def plain_physics(scene: Scene) -> Scene:
+    """The scene as the plain beam where its physics is "auto", for an analysis of the plain beam alone."""
+    return replace(scene, physics=Physics()) if scene.chooses_physics else scene
+
+
+def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> Judged:
+    """Sizes of effects in the values that count; that of large deflection is a rough one where unknown."""
+    sizes = {name: _size(change, counts) for name, change in effects.changes.items()}
+    sizes |= dict.fromkeys(effects.not_known.keys() - sizes.keys(), math.nan)
+    if LARGE_DEFLECTION in sizes and not math.isfinite(sizes[LARGE_DEFLECTION]):
+        sizes[LARGE_DEFLECTION] = rough
+    additions, _, _ = list_effects(scene)
+    assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
+    return Judged(sizes, assumed | effects.not_known)
+
+
+def _size(change: np.ndarray, counts: np.ndarray) -> float:
+    """Largest change of the values that count; inf if one is not known, nan if none counts."""
+    counted = np.abs(change[np.broadcast_to(counts, change.shape)])
+    return float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
+
+
+def _rough_size(model: Model, speeds: np.ndarray) -> float:
+    """A generous size of large deflection, by the static deflection; nan if the straight beam buckles."""
+    if model.scene.physics.large_deflection or not bends(model):
+        return math.nan
+    ratio = np.linalg.norm(model.static_tips(speeds), axis=1) / model.scene.beam.length
+    return float(_ROUGH * np.max(ratio) ** 2)
+
+
+def warn_of_peak(scene: Scene, deflection: float) -> Iterator[str]:
+    """Yield a warning if large deflection, left out of chosen physics, matters at a deflection found [m]."""
+    choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
+    if choice is not None and not choice.physics.large_deflection and size > choice.tolerance:
+        yield (
+            f"physics = auto: the tolerance {choice.tolerance:g} is not met at the largest deflection: large "
+            f"deflection, left out, is worth up to {100 * size:.2g} %, {_ROUGH:g} (deflection/length)^2"
+        )
+
+
+def warn_of_plain(scene: Scene) -> Iterator[str]:
+    """Yield a warning if the physics was to be chosen by an analysis that knows the plain beam alone."""
+    if scene.chooses_physics:
+        yield "physics = auto: nothing is added here, the answer is that of the plain beam"
+
+
+# The choice ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A scene with some effects, and what is known of the others.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene with the effects.
+    included : dict of str to float
+        The effects and their sizes, as when they were added.
+    left_out : dict of str to float
+        Sizes of the other effects.
+    reasons : dict of str to str
+        Why an effect cannot be added, or its size is not known.
+    """
+
+    scene: Scene
+    included: dict[str, float]
+    left_out: dict[str, float]
+    reasons: dict[str, str]
+
+    @property
+    def model_error(self) -> float:
+        """Sum of the known sizes of the effects left out."""
+        return sum(size for size in self.left_out.values() if not math.isnan(size))
+
+    def addable(self) -> dict[str, float]:
+        """Sizes of the effects that can be added."""
+        return {name: size for name, size in self.left_out.items() if name not in self.reasons}
+
+    def without(self, name: str, reason: str) -> _Candidate:
+        """The same, with a reason why an effect cannot be added."""
+        return replace(self, reasons={name: reason} | self.reasons)
+
+    def add(self, name: str, judge: Judge) -> _Candidate:
+        """The scene with one more effect, about which the others are judged again.
+
+        Raises
+        ------
+        InvalidValue
+            If the beam lacks data for it in combination.
+        ArithmeticError
+            If it leaves no answer.
+        """
+        scene = add_effects(self.scene, [name])
+        judged, included = judge(scene), self.included | {name: self.left_out[name]}
+        left_out = {other: self._judged_again(other, judged) for other in self.left_out.keys() - included}
+        return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
+
+    def _judged_again(self, name: str, judged: Judged) -> float:
+        """Size of an effect, as before where it is not known any more."""
+        size = judged.sizes.get(name, math.nan)
+        rough = name == LARGE_DEFLECTION and name in judged.reasons
+        return self.left_out[name] if rough or math.isnan(size) else size
+
+
+def add_effects(scene: Scene, names: Sequence[str]) -> Scene:
+    """The scene with further effects, given by their names."""
+    fields = {effect.name: effect.physics for effect in list_left_out(scene)}
+    switches = {fields[name]: 2 if fields[name] == "planes" else True for name in names}
+    return replace(scene, physics=replace(scene.physics, **switches))
+
+
+def choose_by(
+    scene: Scene, judge: Judge, solve: Solve, tolerance: float, speeds: np.ndarray, straight: str = ""
+) -> Scene:
+    """Choose the physics by any answer.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    judge : callable
+        Sizes of what a scene leaves out.
+    solve : callable
+        Solves the answer for a scene, and counts the coordinates: it is timed.
+    tolerance : float
+        Relative change that may be left out.
+    speeds : ndarray
+        Speeds [rad/s] at which the effects are judged.
+    straight : str
+        Why the analysis cannot do with large deflection; empty if it can.
+
+    Returns
+    -------
+    Scene
+        The scene with the physics, and how it was chosen.
+    """
+    plain = plain_physics(scene)
+    judged = judge(plain)
+    start = _Candidate(plain, {}, judged.sizes, judged.reasons)
+    if straight:
+        start = start.without(LARGE_DEFLECTION, straight)
+    best = _grow(start, judge, tolerance, {LARGE_DEFLECTION})
+    if best.left_out[LARGE_DEFLECTION] > _SMALL * tolerance and best.model_error > _MARGIN * tolerance:
+        best = min([best, *_bent(start, judge, tolerance)], key=lambda candidate: candidate.model_error)
+    return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
+
+
+def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
+    """Add effects, but for the barred, until those that can be added are worth half the tolerance."""
+    while True:
+        sizes = {name: size for name, size in candidate.addable().items() if name not in barred}
+        largest = max(sizes, key=sizes.__getitem__, default="")
+        if sum(sizes.values()) <= _MARGIN * tolerance or sizes[largest] <= _SMALL * tolerance:
+            return candidate
+        try:
+            candidate = candidate.add(largest, judge)
+        except (InvalidValue, ArithmeticError) as error:
+            candidate = candidate.without(largest, str(error))
+
+
+def _bent(start: _Candidate, judge: Judge, tolerance: float) -> Iterator[_Candidate]:
+    """The scene with large deflection and what that is combined with, if there is an answer."""
+    if LARGE_DEFLECTION in start.reasons:
+        return
+    try:
+        bent = start.add(LARGE_DEFLECTION, judge)
+    except (InvalidValue, ArithmeticError):
+        return
+    yield _grow(bent, judge, tolerance, bent.left_out.keys() - {*_WITH_LARGE_DEFLECTION})
+
+
+def _describe(
+    best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
+) -> PhysicsChoice:
+    """What was chosen, in numbers: each effect by its size, and what the choice costs."""
+    without, costs = _cost(plain, solve), {}
+    for name in best.included:
+        costs[name] = _cost(add_effects(plain, [name]), solve) / without
+    together = _cost(best.scene, solve) / without if len(costs) > 1 else [*costs.values(), np.ones(2)][0]
+    included = [JudgedEffect(n, size, True, "", *costs[n].tolist()) for n, size in best.included.items()]
+    left_out = [JudgedEffect(n, s, False, _why(n, best, tolerance)) for n, s in best.left_out.items()]
+    return PhysicsChoice(
+        physics=best.scene.physics,
+        tolerance=tolerance,
+        speeds=tuple(speeds.tolist()),
+        effects=(*_by_size(included), *_by_size(left_out)),
+        model_error=best.model_error,
+        time=float(together[0]),
+        coordinates=float(together[1]),
+        not_modelled=list_effects(plain)[2],
+    )
+
+
+def _by_size(effects: list[JudgedEffect]) -> list[JudgedEffect]:
+    """The largest first, those of unknown size last."""
+    return sorted(effects, key=lambda effect: (math.isnan(effect.size), -effect.size))
+
+
+def _why(name: str, best: _Candidate, tolerance: float) -> str:
+    """Why an effect is left out: empty if its size decides, or it can be added."""
+    if best.left_out[name] <= _SMALL * tolerance:
+        return ""
+    if name in best.reasons:
+        return best.reasons[name]
+    if LARGE_DEFLECTION in best.included and name not in _WITH_LARGE_DEFLECTION:
+        return _EXCLUSIVE
+    others = ", ".join(n for n in best.included if n not in _WITH_LARGE_DEFLECTION)
+    return f"it cannot be combined with {others}" if name == LARGE_DEFLECTION and others else ""
+
+
+def _cost(scene: Scene, solve: Solve) -> np.ndarray:
+    """Time [s] and number of coordinates of the answer for a scene."""
+    start = perf_counter()
+    size = solve(scene)
+    time = perf_counter() - start
+    if time < _SHORT:  # what else the machine did counts
+        solve(scene)
+        time = min(time, perf_counter() - start - time)
+    return np.array([time, size])

@@ -1,0 +1,249 @@
+"""Whether `physics="auto"` adds what matters, and nothing else.
+
+Run: python -m benchmarks.automatic_physics [--scenes N] [--first N] [--save FILE].  Random scenes, in half of
+which an effect matters, solved with chosen physics and with the largest set of effects that can be combined.
+Where large deflection excludes others, what the side that was not chosen would change, solved alone, counts
+as an error, too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+import beamdyn as bd
+from beamdyn.modal.model import Model
+from beamdyn.model_error.choice import add_effects
+from beamdyn.model_error.large_deflection import bends
+from beamdyn.scene.physics_choice import PhysicsChoice
+from benchmarks.cases.random_physics import Section, random_twist
+from benchmarks.cases.scenes import time_unit
+from benchmarks.rows import Row, show, time_text
+from benchmarks.stated_model_errors import solved_change
+
+SEED = 1515
+TOLERANCE = 1e-3
+_MODES = 3
+_WITHIN, _NEEDED = 0.99, 0.8  # shares of the scenes that are aimed at
+_USELESS = 1e-4  # change below which an added effect was not needed
+_STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
+_QUARTER = np.pi / 2
+_ALL = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What was chosen for one scene, and what is so; changes are relative, the largest of all modes.
+
+    `needed` is what the plain beam leaves out, `error` what the chosen physics does, `stated` its own
+    estimate of it; nan where it is not known, inf where modes are others.  `removed` is what leaving each
+    added effect out would change.
+    """
+
+    number: int
+    time: float
+    needed: float = 0.0
+    error: float = 0.0
+    stated: float = 0.0
+    said: bool = False
+    removed: dict[str, float] = field(default_factory=dict)
+    refusal: str = ""
+
+
+def measure(number: int, seed: int) -> Answer:
+    """The answer for the scene with this number: the odd ones need an effect."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of beams that no material has
+        scene, speed, needed = _draw(np.random.default_rng([seed, number]), needing=bool(number % 2))
+        start = perf_counter()
+        try:
+            modes = bd.natural_modes(replace(scene, physics="auto"), speed, _MODES, tolerance=TOLERANCE)
+        except (ValueError, ArithmeticError) as error:
+            return Answer(number, perf_counter() - start, refusal=str(error))
+        time, choice = perf_counter() - start, modes.physics_choice
+        assert choice is not None
+        return Answer(
+            number=number,
+            time=time,
+            needed=needed,
+            error=true_error(bd.natural_modes(modes.scene, speed, _MODES)),
+            stated=choice.model_error,
+            said=not choice.is_met,
+            removed={name: _change_without(name, scene, speed, choice) for name in choice.included},
+        )
+
+
+def _draw(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, float, float]:
+    """A scene, its speed, and what the plain beam leaves out: above the tolerance if effects are needed."""
+    while True:
+        scene, speed = random_scene(rng, needing)
+        needed = true_error(bd.natural_modes(scene, speed, _MODES))
+        if not needing or not needed <= TOLERANCE:
+            return scene, speed, needed
+
+
+def true_error(modes: bd.Modes) -> float:
+    """What all effects that a scene leaves out would change, by solving with them."""
+    physics = modes.scene.physics
+    if physics.large_deflection:
+        within = bd.Physics(rotary_inertia=True, large_deflection=True)
+        straight = bd.natural_modes(replace(modes.scene, physics=bd.Physics()), modes.speed, _MODES)
+        return _direct(modes, within) + _solved(straight, replace(_ALL, rotary_inertia=False))
+    oblique = min(abs(np.cos(modes.scene.mount.bending_angle)), abs(np.sin(modes.scene.mount.bending_angle)))
+    bent = 0.0
+    if oblique < 1e-12 and bends(Model(modes.scene, bd.Ritz(5))):  # else it cannot be modelled, or is nothing
+        alone = replace(modes.scene, physics=bd.Physics(rotary_inertia=physics.rotary_inertia))
+        straight = bd.natural_modes(alone, modes.speed, _MODES)
+        bent = _direct(straight, replace(alone.physics, large_deflection=True))
+    return _solved(modes, _ALL) + bent
+
+
+def _direct(modes: bd.Modes, physics: bd.Physics) -> float:
+    """Largest change of frequencies with other physics in one plane: they keep their order."""
+    try:
+        other = bd.natural_modes(replace(modes.scene, physics=physics), modes.speed, _MODES)
+    except ArithmeticError:  # there is no such equilibrium
+        return float(np.nan)
+    return float(np.abs(other.frequency / modes.frequency - 1).max())
+
+
+def _solved(modes: bd.Modes, physics: bd.Physics) -> float:
+    """Largest change of the modes with more physics; inf where one is lost among others."""
+    change = solved_change(modes, replace(modes.scene, physics=physics))
+    return float(np.nan_to_num(np.abs(change), nan=np.inf).max())
+
+
+def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsChoice) -> float:
+    """What leaving one of the added effects out would change."""
+    others = add_effects(scene, [other for other in choice.included if other != name])
+    without = bd.natural_modes(others, speed, _MODES)
+    if choice.physics.large_deflection:
+        return _direct(without, choice.physics)
+    return _solved(without, choice.physics)
+
+
+# Scenes -------------------------------------------------------------------------------------------
+
+
+def random_scene(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, float]:
+    """A beam of steel with all properties, of the plain physics, and a speed.
+
+    Where none is needed, it is slender, straight and points at the axis or away from it.  Else it is one or
+    two of these: stocky, twisted, oblique in its bending angle, bent by the rotation.
+    """
+    kinds = rng.permutation(["stocky", "twisted", "oblique", "bent"])[: rng.integers(1, 3)] if needing else []
+    low, high = (5, 60) if "stocky" in kinds else (300, 2000)
+    ratio, slenderness = 10 ** rng.uniform(0.3, 2.0), 10 ** rng.uniform(np.log10(low), np.log10(high))
+    length = 10 ** rng.uniform(-2, 1)
+    section = Section(length, slenderness, ratio).properties()
+    axial = section["mass_per_length"] * _STEEL[0] / _STEEL[1]
+    twist = random_twist(rng) if "twisted" in kinds else None
+    beam = bd.Beam.from_stiffness(length, **section, axial_stiffness=axial, twist=twist)
+    bending = rng.uniform(0.1, _QUARTER) if "oblique" in kinds else rng.choice([0.0, _QUARTER])
+    bent = rng.uniform(0.0, np.pi) if "bent" in kinds else rng.choice([0.0, np.pi])
+    mount = bd.Mount(length * rng.uniform(0, 5), float(bent), float(bending))
+    scene = bd.Scene(beam, mount)
+    critical = Model(scene, bd.Ritz(12)).solver.critical_speed
+    gamma = 10 ** rng.uniform(-1.5, 0.4) / time_unit(beam)
+    return scene, float(min(gamma, 0.8 * critical))
+
+
+def measure_all(numbers: Iterable[int], workers: int, seed: int) -> Iterator[Answer]:
+    """All answers, on several processes, as they come."""
+    with ProcessPoolExecutor(workers) as pool:
+        yield from pool.map(partial(measure, seed=seed), numbers, chunksize=2)
+
+
+# Report -------------------------------------------------------------------------------------------
+
+
+def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
+    """The share of scenes within the tolerance or said not to be, and of those with nothing useless."""
+    found = [a for a in answers if not a.refusal]
+    yield "random scenes", str(len(answers)), "200"
+    yield "... refused", str(len(answers) - len(found)), "0"
+    yield (
+        "... in which the plain beam is not within 1e-3",
+        str(sum(not a.needed <= TOLERANCE for a in found)),
+        "",
+    )
+    good = [a.error <= TOLERANCE or a.said for a in found]
+    yield "within 1e-3 of all effects, or said not to be", f"{np.mean(good):.1%}", f"{_WITHIN:.0%}"
+    yield "... of these said not to be", str(sum(a.said for a in found)), ""
+    yield "... said, but within 1e-3", str(sum(a.said and a.error <= TOLERANCE for a in found)), ""
+    lean = [all(change >= _USELESS for change in a.removed.values()) for a in found]
+    yield "no added effect changes less than 1e-4", f"{np.mean(lean):.1%}", f"{_NEEDED:.0%}"
+    yield "effects added, in all", str(sum(len(a.removed) for a in found)), ""
+    for name in sorted({name for a in found for name in a.removed}):
+        yield f"... {name}", str(sum(name in a.removed for a in found)), ""
+    times = np.array([a.time for a in answers])
+    yield "median and longest time", f"{time_text(np.median(times))}, {time_text(times.max())}", ""
+    for a, ok in zip(found, good, strict=True):
+        if not ok:
+            yield f"... scene {a.number}", f"true {a.error:.1e}, stated {a.stated:.1e}, {[*a.removed]}", ""
+    for a, ok in zip(found, lean, strict=True):
+        if not ok:
+            yield f"... not needed in scene {a.number}", f"{min(a.removed, key=a.removed.__getitem__)}", ""
+    for a in (a for a in answers if a.refusal):
+        yield f"... refused: scene {a.number}", a.refusal, ""
+
+
+def measure_sample() -> Iterator[Row]:
+    """The first 24 scenes."""
+    yield from summarize(list(measure_all(range(24), 2, SEED)))
+
+
+PARTS = (measure_sample,)
+
+
+# Answers in a file, so that a long run can go on ----------------------------------------------------
+
+
+def load(path: Path) -> list[Answer]:
+    """Answers that a run has saved."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    return [Answer(**json.loads(line)) for line in lines]
+
+
+def measure_and_save(path: Path, numbers: Iterable[int], **options: Any) -> list[Answer]:
+    """Measure what is not in the file yet, and add it there."""
+    done = {a.number for a in load(path)}
+    with path.open("a", encoding="utf-8") as file:
+        for found in measure_all([n for n in numbers if n not in done], **options):
+            file.write(json.dumps(asdict(found)) + "\n")
+            file.flush()
+    return load(path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenes", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
+    given = parser.parse_args()
+    numbers = range(given.first, given.first + given.scenes)
+    options: dict[str, Any] = {"workers": given.workers, "seed": given.seed}
+    if given.save:
+        answers = measure_and_save(given.save, numbers, **options)
+    else:
+        answers = list(measure_all(numbers, **options))
+    show("automatic physics", lambda: summarize(answers))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,301 @@
+"""Physics "auto": what each analysis adds, what it says of it, and how it is given."""
+
+from __future__ import annotations
+
+import json
+import math
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli.program import main
+from beamdyn.common.checks import InvalidValue
+from beamdyn.config import parse_scene
+from beamdyn.model_error.choice import Judged, choose_by
+from beamdyn.scene.physics_choice import PhysicsChoice
+
+LARGE, SHEAR, ROTARY = "large deflection", "shear deformation", "rotary inertia of sections"
+SECOND, STRETCH = "second plane of bending", "stretch"
+
+STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+STOCKY = bd.Beam.rectangular(0.05, 0.01, 0.002, 200e9, 7850.0, poissons_ratio=0.3)
+TWISTED = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3, twist=0.3)
+INWARD, LEANING = bd.Mount(0.215), bd.Mount(0.215, math.radians(45))
+ROLLING = bd.RollingWheel(0.3, bd.SpinUp(40.0, 1.0), bd.RoadWave(0.3, 0.01))
+
+
+def choice_of(result: object) -> PhysicsChoice:
+    choice = getattr(result, "physics_choice", None)
+    assert isinstance(choice, PhysicsChoice)
+    return choice
+
+
+# What modes add -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("beam", "mount", "included"),
+    [
+        (STRIP, INWARD, set()),
+        (STRIP, LEANING, {LARGE}),
+        (STOCKY, INWARD, {SHEAR, ROTARY}),
+        (TWISTED, INWARD, {"twist"}),
+    ],
+)
+def test_what_matters_is_added_and_nothing_else(beam: bd.Beam, mount: bd.Mount, included: set[str]) -> None:
+    modes = bd.natural_modes(bd.Scene(beam, mount, physics="auto"), 100.0)
+    choice = choice_of(modes)
+    assert {*choice.included} == included
+    assert choice.is_met
+    assert (modes.model_error <= 1e-3).all()
+    assert not modes.warnings
+    assert not modes.scene.chooses_physics
+    assert all(effect.size > 1e-4 for effect in choice.effects if effect.included)
+
+
+def test_the_answer_is_that_of_the_physics_given() -> None:
+    """To the bit: the choice changes nothing but the physics."""
+    scene = bd.Scene(STOCKY, LEANING, damping_ratio=0.01, physics="auto")
+    chosen = bd.natural_modes(scene, 100.0)
+    given = bd.natural_modes(replace(scene, physics=chosen.scene.physics), 100.0)
+    np.testing.assert_array_equal(chosen.eigenvalue, given.eigenvalue)
+    assert given.physics_choice is None
+    assert chosen.scene == given.scene  # how it was chosen is no part of the scene
+
+
+def test_the_tolerance_decides() -> None:
+    scene = bd.Scene(STOCKY, INWARD, physics="auto")
+    loose, tight = (bd.natural_modes(scene, 100.0, tolerance=t) for t in (0.1, 1e-5))
+    assert choice_of(loose).included == ()
+    assert {SHEAR, ROTARY} <= {*choice_of(tight).included}
+    assert (choice_of(loose).tolerance, choice_of(tight).tolerance) == (0.1, 1e-5)
+
+
+def test_a_locus_is_judged_at_its_fastest_speed_too() -> None:
+    """At rest the strip is straight, at 100 rad/s it is bent."""
+    scene = bd.Scene(STRIP, LEANING, physics="auto")
+    assert choice_of(bd.natural_modes(scene, 0.0)).included == ()
+    locus = bd.frequency_locus(scene, [0.0, 10.0, 100.0])
+    assert choice_of(locus).included == (LARGE,)
+    assert choice_of(locus).speeds == (0.0, 10.0, 100.0)
+    np.testing.assert_allclose(  # the sums of two models of different size
+        locus.frequency[-1], bd.natural_modes(scene, 100.0).frequency, rtol=1e-9
+    )
+
+
+def test_what_the_beam_lacks_is_named_and_not_assumed() -> None:
+    silent = bd.Beam.rectangular(0.05, 0.01, 0.002, 200e9, 7850.0)
+    modes = bd.natural_modes(bd.Scene(silent, INWARD, physics="auto"), 100.0)
+    choice = choice_of(modes)
+    assert choice.included == (ROTARY,)
+    assert not choice.is_met
+    assert any("shear deformation, left out, is worth 1.5 %" in text for text in modes.warnings)
+    bare = bd.Beam.from_stiffness(1.0, 1.0, 10.0)
+    modes = bd.natural_modes(bd.Scene(bare, INWARD, physics="auto"), 0.1)
+    assert choice_of(modes).not_known[SHEAR] == "give shear_stiffness"
+    assert any("shear deformation (give shear_stiffness)" in text for text in modes.warnings)
+
+
+def test_where_both_sides_matter_the_smaller_error_is_left_and_said() -> None:
+    """Large deflection and shear exclude each other."""
+    soft = replace(STRIP, shear_stiffness=STRIP.shear_stiffness and STRIP.shear_stiffness.scaled(0.02))
+    scene = bd.Scene(soft, LEANING, physics="auto")
+    fast, slow = (bd.natural_modes(scene, speed) for speed in (100.0, 40.0))
+    for modes, taken, other in ((fast, LARGE, SHEAR), (slow, SHEAR, LARGE)):
+        choice = choice_of(modes)
+        sizes = {effect.name: effect.size for effect in choice.effects}
+        assert taken in choice.included
+        assert other not in choice.included
+        assert 1e-3 < sizes[other] < sizes[taken]
+        assert not choice.is_met
+        assert any("is not met" in text and other in text for text in modes.warnings)
+
+
+def test_an_oblique_direction_excludes_large_deflection_and_says_so() -> None:
+    mount = replace(LEANING, bending_angle=0.3)
+    modes = bd.natural_modes(bd.Scene(STRIP, mount, physics="auto"), 100.0)
+    assert LARGE not in choice_of(modes).included
+    assert any("is not met" in text and "multiple of 90 deg" in text for text in modes.warnings)
+
+
+def test_costs_are_measured() -> None:
+    choice = choice_of(bd.natural_modes(bd.Scene(STOCKY, INWARD, physics="auto"), 100.0))
+    shear, rotary = choice.effects[:2]
+    assert (shear.name, rotary.name) == (SHEAR, ROTARY)
+    assert shear.coordinates == 2.0  # one more field
+    assert rotary.coordinates == 1.0  # one more term
+    assert min(shear.time, rotary.time, choice.time) > 0
+    assert math.isnan(choice.effects[-1].time)
+    assert "times the time" in choice.sentence()
+
+
+# The order of the choice, with given sizes --------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("sizes", "included"),
+    [
+        ({SHEAR: 2e-3, ROTARY: 2e-5}, (SHEAR,)),
+        ({SHEAR: 4e-4, ROTARY: 3e-4}, (SHEAR,)),  # together above half the tolerance
+        ({SHEAR: 3e-4, ROTARY: 1e-4}, ()),
+        ({SHEAR: 9e-5, ROTARY: 9e-5, STRETCH: 9e-5, SECOND: 9e-5}, ()),
+        ({SECOND: math.inf}, (SECOND,)),
+        ({LARGE: 0.1, SHEAR: 1e-4}, (LARGE,)),
+        ({LARGE: 0.1, ROTARY: 0.01}, (LARGE, ROTARY)),
+        ({LARGE: 0.1, SHEAR: 0.2}, (SHEAR,)),
+        ({LARGE: math.nan, SHEAR: 0.2}, (SHEAR,)),
+        ({LARGE: 2e-4, SHEAR: 2e-4}, ()),
+    ],
+)
+def test_the_rule(sizes: dict[str, float], included: tuple[str, ...]) -> None:
+    """The largest first, until those that are left are worth half of 1e-3, and none below 1e-4."""
+    every = {SHEAR: 0.0, ROTARY: 0.0, STRETCH: 0.0, SECOND: 0.0, LARGE: 0.0} | sizes
+
+    def judge(scene: bd.Scene) -> Judged:
+        return Judged(dict(every), {})
+
+    scene = bd.Scene(STRIP, physics="auto")
+    chosen = choose_by(scene, judge, lambda _: 1, 1e-3, np.array([1.0]))
+    assert choice_of(chosen).included == included
+
+
+def test_what_an_effect_brings_up_is_added_after_it() -> None:
+    """With the second plane come modes in which shear matters."""
+
+    def judge(scene: bd.Scene) -> Judged:
+        shear = 0.1 if scene.physics.planes == 2 else 0.0
+        return Judged({SECOND: 0.2, SHEAR: shear, LARGE: 0.0}, {})
+
+    chosen = choose_by(bd.Scene(STRIP, physics="auto"), judge, lambda _: 1, 1e-3, np.array([1.0]))
+    assert chosen.physics == bd.Physics(planes=2, shear=True)
+
+
+# The other analyses -------------------------------------------------------------------------------
+
+
+def test_motions_are_chosen_for_by_their_frequencies() -> None:
+    scene = bd.Scene(STOCKY, INWARD, ROLLING, damping_ratio=0.02, physics="auto")
+    with_shear = bd.Physics(shear=True, rotary_inertia=True)
+    run = bd.simulate(scene, 0.2, modes=2)
+    assert run.scene.physics == with_shear
+    given = bd.simulate(replace(scene, physics=with_shear), 0.2, modes=2)
+    np.testing.assert_array_equal(run.tip, given.tip)
+    assert choice_of(run).tolerance == 1e-3  # 1e-5 is the default of the numerical errors
+    assert bd.steady_response(scene, [30.0], modes=2).scene.physics == with_shear
+    assert bd.resonance_speeds(scene, 150.0, modes=2).scene.physics == with_shear
+
+
+def test_a_sweep_is_stored_under_the_same_keys_each_time(tmp_path: Path) -> None:
+    """The measured times of the choice are no part of the request."""
+    scene = bd.Scene(STOCKY, INWARD, ROLLING, physics="auto")
+    runs, files = [], []
+    for _ in range(2):
+        runs.append(bd.sweep(scene, [20.0, 30.0], (0.1, 0.2), modes=1, store=tmp_path))
+        files.append({*tmp_path.iterdir()})
+    first, again = runs
+    assert files[0] == files[1]
+    np.testing.assert_array_equal(first.peaks, again.peaks)
+    assert SHEAR in choice_of(first).included
+
+
+def test_a_peak_says_what_large_deflection_may_change() -> None:
+    scene = bd.Scene(STRIP, LEANING, ROLLING, physics="auto")
+    run = bd.simulate(scene, 1.0, modes=2)
+    assert any("not met at the largest deflection" in text for text in run.warnings)
+
+
+def test_a_critical_speed_is_chosen_for_by_those_with_each_effect() -> None:
+    thick = bd.critical_point(bd.Scene(STOCKY, INWARD, physics="auto"))
+    assert choice_of(thick).included == (SHEAR,)
+    given = bd.critical_point(bd.Scene(STOCKY, INWARD, physics=bd.Physics(shear=True)))
+    assert thick.speed == given.speed
+    easy, stiff = STRIP.bending_stiffness, STRIP.second_bending_stiffness
+    assert stiff is not None
+    across = replace(STRIP, bending_stiffness=stiff, second_bending_stiffness=easy)
+    lower = bd.Scene(across, INWARD, physics="auto")
+    point = bd.critical_point(lower)
+    assert point.speed == bd.critical_point(replace(lower, physics=point.scene.physics)).speed
+    assert SECOND in choice_of(point).included  # out of the plane it buckles first
+    assert point.speed < 0.5 * bd.critical_speed(replace(lower, physics=bd.Physics()))
+
+
+def test_what_does_not_choose_takes_the_plain_beam_and_says_so() -> None:
+    scene = bd.Scene(STOCKY, INWARD, physics="auto")
+    limits, bounds = bd.setting_angle_limits(scene, 100.0), bd.frequency_bounds(scene, 10.0)
+    plain = replace(scene, physics=bd.Physics())
+    assert limits.first == bd.setting_angle_limits(plain, 100.0).first
+    np.testing.assert_array_equal(bounds.lower, bd.frequency_bounds(plain, 10.0).lower)
+    assert all("that of the plain beam" in result.warnings[0] for result in (limits, bounds))
+
+
+def test_terms_are_those_of_the_plain_beam_and_say_that_analyses_choose() -> None:
+    scene = bd.Scene(STOCKY, INWARD, physics="auto")
+    listed = bd.terms(scene)
+    assert listed.present == bd.terms(replace(scene, physics=bd.Physics())).present
+    reasons = {effect.name: effect.reason for effect in listed.left_out}
+    assert 'physics is "auto"' in reasons[SHEAR]
+    assert "auto" not in reasons["torsion"]
+
+
+# How it is given and kept -------------------------------------------------------------------------
+
+TOML = """
+[beam]
+length = "50 mm"
+width = "10 mm"
+thickness = "0.2 mm"
+youngs_modulus = "200 GPa"
+density = "7850 kg/m3"
+
+[mount]
+radius = "215 mm"
+setting_angle = "45 deg"
+"""
+
+
+def test_the_word_is_read_from_a_file() -> None:
+    for text in ('physics = "auto"\n' + TOML, TOML + "[physics]\nauto = true\n"):
+        assert parse_scene(text).chooses_physics
+    assert not parse_scene(TOML).chooses_physics
+    with pytest.raises(ValueError, match='physics = "automatic": give "auto", or a table'):
+        parse_scene('physics = "automatic"\n' + TOML)
+    with pytest.raises(ValueError, match=r"physics.shear = true: physics is auto"):
+        parse_scene(TOML + "[physics]\nauto = true\nshear = true\n")
+
+
+def test_other_words_are_refused() -> None:
+    with pytest.raises(InvalidValue, match='give "auto", or such as Physics'):
+        bd.Scene(STRIP, physics="all")  # pyright: ignore[reportArgumentType]
+
+
+def test_a_choice_does_not_outlive_its_physics() -> None:
+    scene = bd.natural_modes(bd.Scene(STOCKY, physics="auto")).scene
+    assert scene.physics_choice is not None
+    assert replace(scene, damping_ratio=0.01).physics_choice is scene.physics_choice
+    assert replace(scene, physics=bd.Physics()).physics_choice is None
+    assert replace(scene, physics="auto").chooses_physics
+
+
+def test_results_keep_how_it_was_chosen(tmp_path: Path) -> None:
+    modes = bd.natural_modes(bd.Scene(STOCKY, INWARD, physics="auto"), 100.0)
+    modes.save(tmp_path / "modes.json")
+    for kept in (bd.load(tmp_path / "modes.json"), pickle.loads(pickle.dumps(modes))):
+        assert kept.physics_choice.sentence() == choice_of(modes).sentence()
+    stored = json.loads((tmp_path / "modes.json").read_text())["physics_choice"]
+    assert [e["name"] for e in stored["effects"] if e["included"]] == [SHEAR, ROTARY]
+    assert stored["not_modelled"][0] == "torsion"
+
+
+def test_commands_take_the_word_in_place_of_the_physics_of_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(TOML)
+    assert main(["modes", str(file), "--speed", "100 rad/s", "--physics", "auto"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert 'physics "auto", for 0.001: large deflection (9.1 %;' in printed
+    assert main(["modes", str(file), "--physics", "all"]) == 2
