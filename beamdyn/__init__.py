@@ -37,6 +37,7 @@ _NAMES = {
     "scene.physics": ("Physics",),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
+    "spectrum.backbone": ("Backbone", "backbone"),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
     "spectrum.critical": (
         "CriticalPoint",
@@ -93,6 +94,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.physics import Physics
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
+    from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.spectrum.critical import (
         CriticalPoint,
