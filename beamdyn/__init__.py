@@ -33,8 +33,10 @@ _NAMES = {
         "SteadyRotation",
         "UserMotion",
     ),
+    "modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
+    "scene.physics_choice": ("PhysicsChoice",),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
     "spectrum.backbone": ("Backbone", "backbone"),
@@ -76,6 +78,7 @@ if TYPE_CHECKING:
     from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
+    from beamdyn.modal.equilibrium import NoEquilibrium
     from beamdyn.scene.beam import Beam, TipMass
     from beamdyn.scene.motion import (
         Line,
@@ -92,6 +95,7 @@ if TYPE_CHECKING:
     )
     from beamdyn.scene.mount import Mount
     from beamdyn.scene.physics import Physics
+    from beamdyn.scene.physics_choice import PhysicsChoice
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.backbone import Backbone, backbone

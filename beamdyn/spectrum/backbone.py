@@ -1,9 +1,9 @@
 """Frequency over amplitude, to first order, of a beam of any deflection about its equilibrium.
 
 A free vibration x = eps w + eps^2 z of an undamped beam, w = Re(v exp(i tau)) a mode, has the angular
-frequency omega + eps^2 omega_2 (Lindstedt and Poincare).  The forces that are even in w give the steady part and
-the second harmonic z, the odd ones omega_2 by the condition that they do no work on the mode.  All forces are
-those of the full equations at a small eps, from two of which the limit eps = 0 follows.
+frequency omega + eps^2 omega_2 (Lindstedt and Poincare).  The forces that are even in w give the steady part
+and the second harmonic z, the odd ones omega_2 by the condition that they do no work on the mode.  All forces
+are those of the full equations at a small eps, from two of which the limit eps = 0 follows.
 """
 
 from __future__ import annotations
