@@ -36,7 +36,7 @@ _NAMES = {
     "modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
-    "scene.physics_choice": ("PhysicsChoice",),
+    "scene.physics_choice": ("JudgedEffect", "PhysicsChoice"),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
     "spectrum.backbone": ("Backbone", "backbone"),
@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     )
     from beamdyn.scene.mount import Mount
     from beamdyn.scene.physics import Physics
-    from beamdyn.scene.physics_choice import PhysicsChoice
+    from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.backbone import Backbone, backbone
