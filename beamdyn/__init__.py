@@ -35,6 +35,7 @@ _NAMES = {
     ),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
+    "scene.physics_choice": ("PhysicsChoice",),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
@@ -91,6 +92,7 @@ if TYPE_CHECKING:
     )
     from beamdyn.scene.mount import Mount
     from beamdyn.scene.physics import Physics
+    from beamdyn.scene.physics_choice import PhysicsChoice
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
