@@ -35,9 +35,10 @@ _NAMES = {
     ),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
-    "scene.physics_choice": ("PhysicsChoice",),
+    "scene.physics_choice": ("JudgedEffect", "PhysicsChoice"),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
+    "spectrum.backbone": ("Backbone", "backbone"),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
     "spectrum.critical": (
         "CriticalPoint",
@@ -92,9 +93,10 @@ if TYPE_CHECKING:
     )
     from beamdyn.scene.mount import Mount
     from beamdyn.scene.physics import Physics
-    from beamdyn.scene.physics_choice import PhysicsChoice
+    from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
+    from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.spectrum.critical import (
         CriticalPoint,

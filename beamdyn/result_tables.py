@@ -110,12 +110,12 @@ def locus_table(result: Locus) -> Group:
     return Group(*made, Text(result.left_out_effects.sentence(where=where_worst(result))))
 
 
-def where_worst(result: Locus) -> str:
-    """Where the model error of a locus is largest, "at 100 rad/s"; at which speeds where it is not known."""
+def where_worst(result: Locus | SteadyResponse) -> str:
+    """Where the model error is largest, "at 100 rad/s"; at which speeds where it is not known."""
     total = result.model_error
     if not np.isfinite(total).any():
-        return f"at {list_range(result.left_out_speeds)}"
-    worst = np.nanargmax(total) // total.shape[1]
+        return f"at {list_range(result.left_out_speeds)}" if len(result.left_out_speeds) else ""
+    worst = np.nanargmax(total) // (total.size // len(total))
     return f"at {result.left_out_speeds[worst]:.6g} rad/s"
 
 
@@ -298,7 +298,8 @@ def crossings_table(result: Crossings) -> Group:
     title = f"{number}, by {result.provenance.method}. {result.extent}"
     plane = [f"{', '.join(words)} [%]"] if (words := words_of_directions(result.scene)) else []
     heads = ("speed [rad/s]", "line", "mode", *plane, "frequency [Hz]", "kind")
-    return table(title, heads, rows, (1, len(heads) - 1))
+    shown = table(title, heads, rows, (1, len(heads) - 1))
+    return Group(shown, Text(result.left_out_effects.sentence("resonance" if len(rows) > 1 else "")))
 
 
 def _plane_cells(result: Crossings, crossing: Crossing) -> Iterator[str]:
@@ -321,9 +322,10 @@ def steady_table(result: SteadyResponse) -> Group:
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
     largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in names))
     heads = ("speed [rad/s]", *largest, "sum of the lines [mm]", "status")
-    return table(
+    made = table(
         title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
     )
+    return Group(made, Text(result.left_out_effects.sentence("", where_worst(result))))
 
 
 def _largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:

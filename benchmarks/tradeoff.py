@@ -221,6 +221,7 @@ Written by `python -m benchmarks.tradeoff` on {day} in {time:.0f} s (Python {pyt
 Versions: beamdyn {beamdyn}, numpy {numpy}, scipy {scipy}. Times are processor times of one thread, the
 shortest of several runs.
 `beamdyn tradeoff SCENE` and `bd.tradeoff(scene)` measure the same on a scene of your own.
+With the error of the model included: [the other page](tradeoff_physics.md).
 
 ![Error against time](tradeoff.png)
 

@@ -13,7 +13,7 @@ from beamdyn.app.inputs import DRAGS, TABLES, read
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.result_tables import steady_csv, steady_table
+from beamdyn.result_tables import steady_csv, steady_table, where_worst
 from beamdyn.steady.response import SteadyResponse
 
 _SPEEDS = 242
@@ -42,7 +42,10 @@ STEADY_STATE = Screen(
     solve,
     lambda answer: [steady_table(answer)],
     draw,
-    lambda answer: answer.warnings,
+    lambda answer: [
+        *answer.warnings,
+        *answer.left_out_effects.warnings(where=where_worst(answer)),
+    ],
     steady_csv,
     sweeps=sweeps_of(steady_outputs, "beam.thickness=0.2:0.3:21 mm", "amplitude"),
     drags=DRAGS,

@@ -61,7 +61,8 @@ def resonances(
     question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options, physics=physics)
     result = resonance_speeds(load_with(scene, physics), top, modes, order, discretization)
     tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
-    deliver(result, outputs, question, tables, rows, draw, result.warnings)
+    warnings = *result.warnings, *result.left_out_effects.warnings()
+    deliver(result, outputs, question, tables, rows, draw, warnings)
 
 
 @app.command
@@ -97,7 +98,7 @@ def steady(
     """
     from beamdyn import steady_response
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import steady_csv, steady_table
+    from beamdyn.result_tables import steady_csv, steady_table, where_worst
 
     outputs.check(scene)
     given = parse_speeds(speeds)
@@ -107,4 +108,5 @@ def steady(
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
     refusal = "" if result.stable.any() else none
     tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)
-    deliver(result, outputs, question, tables, rows, draw, result.warnings, refusal)
+    warnings = *result.warnings, *result.left_out_effects.warnings(where=where_worst(result))
+    deliver(result, outputs, question, tables, rows, draw, warnings, refusal)

@@ -27,7 +27,7 @@ def tradeoff(
     budget: Text = "60 s",
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Error against computing time of bases, elements, integrators, numbers of modes and harmonics.
+    """Error against computing time of bases, elements, physics, integrators, numbers of modes and harmonics.
 
     Parameters
     ----------

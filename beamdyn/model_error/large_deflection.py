@@ -14,8 +14,8 @@ from beamdyn.scene.scene import Scene
 
 NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
 _BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch='bent') bends it"
-_TWO_PLANES = "it is solved in one plane of bending"
-_OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
+TWO_PLANES = "it is solved in one plane of bending"
+OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
 _NOT_FOUND = "the equilibrium was not found"
 _EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
 
@@ -49,11 +49,11 @@ def large_deflection_change(
         change = np.where(unstable, np.nan, np.zeros(eigenvalue.shape))
         return change, _BUCKLED if unstable.any() else ""
     if model.scene.physics.planes == 2:
-        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), _TWO_PLANES
+        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), TWO_PLANES
     try:
-        straight, bent = (Model(scene, model.discretization) for scene in _comparable(model.scene))
+        straight, bent = (Model(scene, model.discretization) for scene in comparable(model.scene))
     except InvalidValue:
-        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), _OBLIQUE
+        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), OBLIQUE
     each = [_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
     reasons = dict.fromkeys(reason for _, reason in each if reason)
     return np.array([change for change, _ in each]), next(iter(reasons), "")
@@ -69,7 +69,7 @@ def _transverse(model: Model) -> np.ndarray:
     return model.equations.places(model.equations.deflections)
 
 
-def _comparable(scene: Scene) -> tuple[Scene, Scene]:
+def comparable(scene: Scene) -> tuple[Scene, Scene]:
     """The scene without and with large deflection, both without what that cannot be combined with."""
     kept = Physics(rotary_inertia=scene.physics.rotary_inertia)
     straight = replace(scene, physics=kept)

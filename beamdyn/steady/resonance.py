@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import combinations_with_replacement
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -22,12 +23,13 @@ from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import UncoupledSolver
 from beamdyn.model_error.choice import SLOW, choose_physics
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line, Motion
-from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
 from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, generate_harmonics
+from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,7 +80,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Crossings(OfChosenPhysics, Sequence[Crossing]):
+class Crossings(StatesModelError, Sequence[Crossing]):
     """Sequence of crossings, by ascending speed.
 
     Parameters
@@ -117,6 +119,11 @@ class Crossings(OfChosenPhysics, Sequence[Crossing]):
 
     def __len__(self) -> int:
         return len(self.crossings)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in the speed of each crossing (k,)."""
+        return left_out_of_resonances(self.scene, self.crossings, self.frequency.shape[1])
 
     @property
     def extent(self) -> str:

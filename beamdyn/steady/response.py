@@ -19,8 +19,8 @@ from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
 from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line, Motion
-from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     LARGE_DEFLECTION,
@@ -41,6 +41,7 @@ from beamdyn.steady.harmonic_balance import (
     largest_over_phases,
     solve_harmonic_balance,
 )
+from beamdyn.steady.left_out_of_response import choose_judged, left_out_of_response
 from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
@@ -56,8 +57,11 @@ _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 
 @dataclass(frozen=True)
-class SteadyResponse(OfChosenPhysics):
+class SteadyResponse(StatesModelError):
     """Steady response over speed, after the free vibration from the start has decayed.
+
+    `model_error` (k,) and `left_out`, computed when asked for, are what the physics left out would change in
+    the amplitude at the `left_out_speeds` (k,); `left_out_at` says it of any.
 
     Parameters
     ----------
@@ -144,8 +148,23 @@ class SteadyResponse(OfChosenPhysics):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, `mode_error` included."""
-        return {**super().to_dict(), "mode_error": plain(self.mode_error)}
+        """The result as plain numbers, lists and strings, its errors included."""
+        more = {"mode_error": plain(self.mode_error), "left_out_speeds": self.left_out_speeds.tolist()}
+        return {**super().to_dict(), **more}
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in the amplitude at the `left_out_speeds` (k,)."""
+        return left_out_of_response(self.request, self.left_out_speeds)
+
+    @property
+    def left_out_speeds(self) -> np.ndarray:
+        """Speeds at which the model error is computed: that of the largest amplitude, and a few more."""
+        return self.speeds[choose_judged(self.amplitude)]
+
+    def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
+        """What the effects left out would change in the amplitude at speeds [rad/s] (k,)."""
+        return left_out_of_response(self.request, ascending("speeds", speeds))
 
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
         """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...).
@@ -290,14 +309,14 @@ class ResponseRequest(FieldsOnly):
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""
-        response = replace(self, basis=self._smallest_basis()).run()
+        response = replace(self, basis=self.smallest_basis()).run()
         while (response.mode_error > self.tolerance).any():
             if (response.request.basis.modes or 0) >= _MOST_MODES or response.refined is None:
                 break
             response = response.refined
         return response
 
-    def _smallest_basis(self) -> ModalBasis:
+    def smallest_basis(self) -> ModalBasis:
         """Modes at the slowest and the fastest speed; about equilibria, those at each speed are taken."""
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)

@@ -1,11 +1,13 @@
 """Work-precision diagrams: error against computing time, measured on a scene.
 
 `measurements` has the results, their Pareto front and the cost per digit; `timing` measures settings within a
-budget; `frequencies`, `transients` and `steady` list the settings to choose from; `study` combines them.
+budget; `frequencies`, `physics`, `transients` and `steady` list the settings to choose from; `study` combines
+them.
 """
 
 from beamdyn.tradeoffs.frequencies import frequency_diagram
 from beamdyn.tradeoffs.measurements import Diagram, Digit, Measurement, cost_per_digit, pareto_front
+from beamdyn.tradeoffs.physics import physics_diagram
 from beamdyn.tradeoffs.steady import harmonics_diagram, steady_modes_diagram
 from beamdyn.tradeoffs.study import Tradeoff, tradeoff
 from beamdyn.tradeoffs.transients import integrators_diagram, transient_modes_diagram
@@ -20,6 +22,7 @@ __all__ = [
     "harmonics_diagram",
     "integrators_diagram",
     "pareto_front",
+    "physics_diagram",
     "steady_modes_diagram",
     "tradeoff",
     "transient_modes_diagram",

@@ -57,12 +57,12 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     ArithmeticError
         If the reference is not within the guaranteed bounds.
     """
-    exact = _reference(scene, speeds, modes)
-    true = _sizes(exact.eigen.eigenvalue)
+    exact = solve_reference(scene, speeds, modes)
+    true = sizes_of_eigenvalues(exact.eigen.eigenvalue)
 
     def error(eigenvalues: np.ndarray) -> float:
         with np.errstate(divide="ignore", invalid="ignore"):
-            return float(np.abs(_sizes(eigenvalues) / true - 1).max())
+            return float(np.abs(sizes_of_eigenvalues(eigenvalues) / true - 1).max())
 
     measurements, skipped = measure_families(
         list(_families(scene, speeds, modes)), error, resolved := float(exact.error.max()), budget
@@ -83,12 +83,12 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     )
 
 
-def _sizes(eigenvalues: np.ndarray) -> np.ndarray:
+def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
     """Magnitudes of eigenvalues in ascending order, shape (S, m)."""
     return np.sort(np.abs(eigenvalues), axis=-1)
 
 
-def _reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
+def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Compute reference modes, with as many Ritz functions as resolve them."""
     segments = len(scene.modelled_beam.breakpoints) - 1
     for functions in _REFERENCES[:-1]:

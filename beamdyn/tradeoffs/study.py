@@ -22,6 +22,7 @@ from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.excitation_phases import check_steady_state
 from beamdyn.tradeoffs.frequencies import frequency_diagram
 from beamdyn.tradeoffs.measurements import Diagram
+from beamdyn.tradeoffs.physics import physics_diagram
 from beamdyn.tradeoffs.steady import harmonics_diagram, steady_modes_diagram
 from beamdyn.tradeoffs.transients import integrators_diagram, transient_modes_diagram
 
@@ -32,7 +33,14 @@ LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # [s]
 _DEFAULT_PERIODS = 100  # of the first mode, after the start, in a run whose length is not given
 _LONGEST_START = 900  # periods of the first mode; a longer start is not waited for
 _LOCUS, _STEADY = 101, 50  # numbers of speeds
-_SHARES = {"frequencies": 0.05, "locus": 0.07, "integrators": 0.72, "transient modes": 0.06, "steady": 0.05}
+_SHARES = {
+    "frequencies": 0.05,
+    "locus": 0.07,
+    "physics": 0.06,
+    "integrators": 0.66,
+    "transient modes": 0.06,
+    "steady": 0.05,
+}
 
 
 @dataclass(frozen=True)
@@ -46,7 +54,8 @@ class Tradeoff(Result):
     t_end : float
         End of the transients [s]; nan if the scene has no motion.
     diagrams : tuple of Diagram
-        Diagrams of frequencies, transients and steady response.
+        Diagrams of frequencies, of frequencies with the error of the model included, transients and steady
+        response.
     warnings : tuple of str
         Diagrams that are missing, and why.
     provenance : Provenance
@@ -78,7 +87,7 @@ def tradeoff(
     budget: float = 60.0,
     progress: Callable[[int, int], None] | None = None,
 ) -> Tradeoff:
-    """Measure error against computing time on a scene: bases, elements, integrators, modes, harmonics.
+    """Measure error against computing time on a scene: bases, elements, physics, integrators, modes.
 
     Parameters
     ----------
@@ -168,6 +177,7 @@ def _list_diagrams(
     if speed:
         locus = np.sort(np.linspace(0, speed, _LOCUS))
         yield partial(frequency_diagram, scene, locus, modes, time["locus"])
+    yield partial(physics_diagram, scene, speed, modes, time["physics"])
     if scene.motion is None:
         return
     yield partial(integrators_diagram, scene, t_end, modes, time["integrators"])

@@ -15,6 +15,7 @@ import numpy as np
 from beamdyn.transient.elastica_gauss import StepNotSolved, propagate_elastica
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
+from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.step_size import (
     ROUNDING,
     TOLERANCES,
@@ -38,6 +39,7 @@ _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: round
 _TIMES_COMPARED = 257  # times at which the motion of the root is compared with that at the start
 _SHORTER = 0.5  # of a step that was not solved
 _SHORT = 1.0  # phase angle of steps [rad] below which they resolve one mode more instead
+_MANY = 64  # pieces of a motion, as one given by samples has: their steps are not divided further
 _CHECKED = 48  # steps of a segment at which the interpolation is checked
 
 
@@ -97,7 +99,8 @@ class _Attempt:
     @classmethod
     def of(cls, system: ElasticaSystem, y0: np.ndarray, t_end: float, step_size: StepSize) -> _Attempt:
         """Integrate twice, with equal steps in each segment."""
-        edges = split_at_breakpoints(system.motion, t_end)
+        pieces = smooth_piece_ends(system.motion, t_end)
+        edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)
         steps = [step_size.count_steps(system.straight, a, b) for a, b in pairwise(edges)]
         check_number_of_steps(sum(steps), system.size, t_end)
         coarse = _propagate(system, edges, steps, y0, STAGES)
@@ -122,14 +125,16 @@ class _Attempt:
     def error(self) -> TimeError:
         """Error of the tip deflection: distance of the runs, divided among the coordinates."""
         tip, n = 0.0, self.system.size
-        change, unresolved = np.zeros(n), np.zeros(n, dtype=bool)
+        change = np.zeros(n)
         for coarse, fine in zip(self.coarse, self.fine, strict=True):
             difference = np.abs(coarse.state - fine.state)[:, 1 : n + 1].max(axis=0)
             change = np.maximum(change, difference * np.abs(self.system.equations.tip))
             tip = max(tip, float(np.abs(self._tips(coarse.state) - self._tips(fine.state)).max()))
-            unresolved |= self._phase_errors(fine) > UNRESOLVED_PHASE
         modes = tip * change / max(change.sum(), 1e-300)
-        interpolation = max(map(self._interpolation_error, self.fine))
+        longest = max(self.fine, key=lambda segment: segment.h)
+        unresolved = self._phase_errors(longest) > UNRESOLVED_PHASE
+        some = self.fine[:: 1 + len(self.fine) // _MANY]
+        interpolation = max(map(self._interpolation_error, some))
         return TimeError.of_coordinates(self.system.straight, modes, interpolation, unresolved)
 
     def _tips(self, state: np.ndarray) -> np.ndarray:

@@ -101,6 +101,9 @@ def integrate_by_solve_ivp(
     """
     options = {"rtol": tolerance, "atol": _absolute_tolerance(system, y0, t_end, tolerance), **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
+        if isinstance(system, ElasticaSystem):
+            bound = "it integrates linear equations only, and those of large_deflection are not"
+            raise InvalidValue("method", method.__name__, bound, "give 'auto'")
         options = {"system": system, **options}
     elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from math import inf, isnan
 from pathlib import Path
 
@@ -21,13 +22,17 @@ from beamdyn.tradeoffs import (
     harmonics_diagram,
     integrators_diagram,
     pareto_front,
+    physics,
+    physics_diagram,
     timing,
     transient_modes_diagram,
     transients,
 )
+from beamdyn.tradeoffs.physics import ALL, AS_GIVEN, pick
 from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 from beamdyn.tradeoffs.transients import AT_ENDS, AT_REST
 from benchmarks.cases.scenes import HARVESTER, ROLLING
+from benchmarks.tradeoff_physics import make_scenes
 
 ROOT = Path(__file__).parents[2]
 STILL = str(ROOT / "examples" / "tyre_harvester.toml")
@@ -54,6 +59,7 @@ def once():
         patch.setattr(frequencies, "_EIGENFUNCTIONS", (1, 2, 3, 4, 8, 16, 40))
         patch.setattr(frequencies, "_ELEMENTS", (2, 4, 10, 20))
         patch.setattr(frequencies, "_TOLERANCES", (1e-1, 1e-3, 1e-6, 1e-10))
+        patch.setattr(physics, "_FUNCTIONS", (3, 4, 6, 8, 10, 14))
         patch.setattr(transients, "STOCK", ("Radau", "DOP853"))
         patch.setattr(transients, "_STOCK_TOLERANCES", (1e-3, 1e-6))
         patch.setattr(transients, "_MODES", (1, 2, 4))
@@ -277,6 +283,82 @@ def test_nothing_is_measured_where_nothing_moves():
     assert transient_modes_diagram(still, 0.1, budget=0.5).measurements == ()
 
 
+# Physics ------------------------------------------------------------------------------------------
+
+LEADING = {
+    "harvester at 45 deg": {"large_deflection": True},
+    "stocky blade": {"shear": True},
+    "twisted blade": {"planes": 2},
+}
+FULL = {
+    "harvester at 45 deg": bd.Physics(large_deflection=True, rotary_inertia=True),
+    "stocky blade": bd.Physics(shear=True, rotary_inertia=True),
+    "twisted blade": bd.Physics(planes=2, shear=True, rotary_inertia=True),
+}
+
+
+@pytest.fixture(scope="module", params=list(FULL))
+def chosen(request):
+    scene, speed = make_scenes()[request.param]
+    return request.param, scene, speed, physics_diagram(scene, speed, 3, budget=60.0)
+
+
+def frequencies_of(scene, speed, physics):
+    count = 8 if physics.planes == 2 else 3
+    return bd.natural_modes(replace(scene, physics=physics), speed, count).frequency
+
+
+def test_functions_do_not_help_beyond_the_error_of_the_model(chosen):
+    """It is the difference of `natural_modes` with and without the effects."""
+    name, scene, speed, diagram = chosen
+    given, true = (frequencies_of(scene, speed, p) for p in (bd.Physics(), FULL[name]))
+    expected = np.abs(given / nearest(true, given) - 1).max()
+    found = errors(diagram, AS_GIVEN)
+    assert expected > 0.05
+    assert found[14] == pytest.approx(expected, rel=1e-6)
+    assert found[14] == pytest.approx(found[10], rel=1e-3)
+    assert errors(diagram, ALL)[14] < 1e-9
+
+
+def test_one_effect_leads(chosen):
+    """It is worth more than any other, and still leaves what the others are worth."""
+    name, scene, speed, diagram = chosen
+    led, true = (frequencies_of(scene, speed, p) for p in (bd.Physics(**LEADING[name]), FULL[name]))
+    given = frequencies_of(scene, speed, bd.Physics())
+    wanted = nearest(true, given)
+    expected = np.abs(nearest(led, wanted) / wanted - 1).max()
+    least = {m.family: min(errors(diagram, m.family).values()) for m in diagram.measurements}
+    single = {family: error for family, error in least.items() if family not in (AS_GIVEN, ALL)}
+    assert min(single.values()) == pytest.approx(expected, rel=1e-5)
+    assert least[ALL] < min(single.values()) < 0.3 * least[AS_GIVEN]
+
+
+def nearest(found, wanted):
+    """For each wanted frequency the nearest: none is so far away that two would be mistaken."""
+    order = np.abs(np.log(found[None, :] / wanted[:, None])).argmin(axis=1)
+    assert len(set(order.tolist())) == len(wanted)
+    return found[order]
+
+
+def test_modes_of_a_second_plane_are_not_taken_for_those_wanted():
+    found = np.array([1.01, 1.7, 2.02, 3.1, 3.9])
+    assert pick(found, np.array([1.0, 2.0, 3.0])).tolist() == [1.01, 2.02, 3.1]
+
+
+def test_what_cannot_be_combined_is_named():
+    scene, speed = make_scenes()["harvester at 45 deg"]
+    diagram = physics_diagram(scene, speed, 1, budget=60.0)
+    assert "shear deformation: it cannot be combined with the others" in diagram.skipped
+    assert "large deflection and rotary inertia" in diagram.reference
+
+
+def test_what_the_beam_has_no_data_for_is_named():
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.5, np.pi))
+    diagram = physics_diagram(scene, 1.0, 2, budget=1.0)
+    assert not diagram.measurements
+    assert any(sentence.startswith("rotary inertia of sections: give") for sentence in diagram.skipped)
+
+
 # The whole ----------------------------------------------------------------------------------------
 
 
@@ -289,6 +371,7 @@ def test_a_scene_without_motion_has_frequencies_only(still):
     assert [d.title for d in still.diagrams] == [
         "3 frequencies at 100 rad/s",
         "3 frequencies at 101 speeds to 100 rad/s",
+        "physics: 3 frequencies at 100 rad/s",
     ]
     assert "no motion" in still.warnings[0]
     assert isnan(still.t_end)
@@ -299,7 +382,7 @@ def test_a_scene_without_motion_has_frequencies_only(still):
 def test_diagrams_of_a_beam_that_does_not_move_are_missing_with_a_reason():
     spun = bd.Scene(HARVESTER.beam, bd.Mount(0.2, bending_angle=np.pi / 2), bd.SteadyRotation(50.0))
     found = bd.tradeoff(spun, t_end=0.1, budget=5.0)  # the load lies in the plane, the deflection out of it
-    assert [d.title.split()[1] for d in found.diagrams] == ["frequencies", "frequencies"]
+    assert [d.title.split()[1] for d in found.diagrams] == ["frequencies", "frequencies", "3"]
     assert len(found.warnings) == 4
     assert "nothing moves the beam" in found.warnings[0]
 
@@ -327,7 +410,7 @@ def test_summary_names_the_front(still):
 def test_plot_has_a_panel_a_diagram_and_a_line_a_family(still):
     ax = Figure().subplots()
     assert still.plot(ax) is ax
-    _, first, second = ax.figure.axes
+    _, first, second, _ = ax.figure.axes
     assert first.get_title() == "3 frequencies at 100 rad/s"
     families = {m.family for m in still.diagrams[1].measurements}
     drawn = {line.get_label() for line in second.lines}

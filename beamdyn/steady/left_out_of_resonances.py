@@ -1,0 +1,55 @@
+"""What the effects left out would change in speeds of resonance, from the natural frequencies there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.modal.choice import choose_model
+from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.model_error.of_modes import left_out_of_modes, nothing_known
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from beamdyn.steady.resonance import Crossing
+
+_STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
+_FURTHER_MODES = 2  # with which those that are sought may exchange their order
+
+
+def left_out_of_resonances(scene: Scene, crossings: Sequence[Crossing], modes: int) -> LeftOutEffects:
+    """Estimate what each effect changes in the speeds (k,) of some crossings, to first order.
+
+    A speed of resonance moves by the relative change of the frequency, over 1 - (speed/frequency) times the
+    slope of the frequency over speed.
+    """
+    if not crossings:
+        return nothing_known(scene)
+    speeds = np.array([c.speed for c in crossings])
+    model = choose_model(scene, "ritz", speeds, modes + _FURTHER_MODES, 1e-6)
+    at = np.concatenate([speeds, speeds * (1 + _STEP), speeds * (1 - _STEP)])
+    here, above, below = model.solver.solve(at, modes + _FURTHER_MODES).eigenvalue.reshape(3, len(speeds), -1)
+    effects = left_out_of_modes(model, speeds, here)
+    nearest = _nearest(here, np.array([_pair(c) for c in crossings]))
+    size = np.take_along_axis(np.imag(here), nearest, axis=1)
+    rise, fall = (np.take_along_axis(np.imag(s), _nearest(s, size), axis=1) for s in (above, below))
+    detuning = size.sum(axis=1) - ((rise - fall) / (2 * _STEP)).sum(axis=1)
+
+    def of_speeds(change: np.ndarray) -> np.ndarray:
+        return (size * np.take_along_axis(change, nearest, axis=1)).sum(axis=1) / detuning
+
+    return replace(effects, changes={name: of_speeds(change) for name, change in effects.changes.items()})
+
+
+def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
+    """Indices (k, 2) of the eigenvalues (k, m) nearest to angular frequencies (k, 2)."""
+    return np.abs(np.imag(eigenvalue)[:, None, :] - frequency[:, :, None]).argmin(axis=2)
+
+
+def _pair(crossing: Crossing) -> tuple[float, float]:
+    """Angular frequencies of the two modes of a crossing [rad/s]; the same twice where it has one."""
+    first = 2 * np.pi * crossing.frequency
+    return first, first if crossing.second_mode is None else crossing.line.multiple * crossing.speed - first

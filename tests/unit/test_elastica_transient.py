@@ -1,0 +1,106 @@
+"""`simulate` and `sweep` with large deflection: results, starts, sweeps, refusals and files."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.common.checks import InvalidValue
+from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
+
+ELASTICA = bd.Physics(large_deflection=True)
+TILTED = replace(HARVESTER, physics=ELASTICA, mount=bd.Mount(0.215, math.radians(88.35985)))
+STEADY = replace(TILTED, motion=bd.SteadyRotation(100.0))
+
+
+@pytest.fixture(scope="module")
+def run() -> bd.Transient:
+    return bd.simulate(STEADY, 0.02, 3)
+
+
+def test_result_has_the_outputs_of_a_linear_run(run: bd.Transient) -> None:
+    assert run.tip.shape == run.tip_across.shape == run.t.shape
+    assert not run.tip_across.any()
+    assert run.peak(0.0, 0.02) == run.peak(0.0, 0.02, direction=0) == pytest.approx(run.largest)
+    assert run.peak(0.0, 0.02, direction=1) == 0
+    assert run.deflection(run.t) == pytest.approx(run.tip, abs=1e-14)
+    assert run.coordinates.shape == run.velocities.shape == (len(run.t), 3)
+
+
+def test_shape_bends_without_stretching(run: bd.Transient) -> None:
+    """No point lies further off the axis than along the beam from the root; the root stays."""
+    x = np.linspace(0, 0.05, 11)
+    shape = run.shape(x, [0.01, 0.02])
+    assert shape.shape == (2, 11)
+    assert not shape[:, 0].any()
+    assert (np.abs(np.diff(shape, axis=1)) <= 0.005).all()
+    assert not run.shape(x, [0.01], direction=1).any()
+
+
+def test_no_warning_of_linear_theory_past_a_tenth_of_the_length(run: bd.Transient) -> None:
+    assert run.largest > 0.3 * 0.05
+    assert run.warnings == ()
+
+
+def test_a_stored_run_reads_the_same(run: bd.Transient, tmp_path: Path) -> None:
+    run.save(tmp_path / "run.zip")
+    loaded = bd.load(tmp_path / "run.zip")
+    assert isinstance(loaded, bd.Transient)
+    assert (loaded.tip == run.tip).all()
+
+
+def test_more_modes_change_the_tip_by_no_more_than_the_mode_error(run: bd.Transient) -> None:
+    assert run.refined is not None
+    assert run.distance_from(bd.simulate(STEADY, 0.02, 8)) <= run.mode_error < 0.1 * run.largest
+
+
+def test_start_in_equilibrium_stays_there() -> None:
+    """Printed to ten digits: tip at -0.3546564296 L; five modes at rest show four of them."""
+    still = bd.simulate(STEADY, 0.1, 5, initial="equilibrium")
+    assert still.tip == pytest.approx(-0.3546564296 * 0.05, rel=1e-4)
+    assert still.time_error == 0
+
+
+def test_equilibrium_holds_gravity_too() -> None:
+    """A soft cantilever sags: 0.1 s later it is where it was, as nothing else acts on it."""
+    scene = replace(HARVESTER, gravity=981.0, motion=bd.SteadyRotation(0.0), physics=ELASTICA)
+    still = bd.simulate(scene, 0.1, 3, initial="equilibrium")
+    assert abs(still.tip[0]) > 0.003 * 0.05
+    assert still.tip == pytest.approx(still.tip[0], rel=1e-10)
+
+
+def test_bends_on_past_the_critical_speed_of_the_straight_beam() -> None:
+    scene = replace(HARVESTER, mount=bd.Mount(0.215, 0.05), motion=bd.SpinUp(180.0, duration=0.05))
+    with pytest.raises(ValueError, match="critical speed"):
+        bd.simulate(scene, 0.06, 2)
+    run = bd.simulate(replace(scene, physics=ELASTICA), 0.06, 2)
+    assert 0 < run.largest < 0.05
+
+
+def test_methods_of_solve_ivp_integrate_it_as_well(run: bd.Transient) -> None:
+    other = bd.simulate(STEADY, 0.02, 3, method="Radau", tolerance=1e-6)
+    assert run.distance_from(other) < 1e-4 * run.largest
+
+
+def test_sweep_gives_the_peaks_of_transients() -> None:
+    scene = replace(SHORT_SPIN_UP, physics=ELASTICA)
+    swept = bd.sweep(scene, [40.0, 50.0], window=(0.2, 0.25), modes=2)
+    assert swept.status == ("done", "done")
+    assert scene.motion is not None
+    single = bd.simulate(replace(scene, motion=scene.motion.with_speed(50.0)), 0.25, 2)
+    assert swept.peaks[1] == single.peak(0.2, 0.25)
+
+
+def test_refuses_the_root_strain(run: bd.Transient) -> None:
+    with pytest.raises(InvalidValue, match="large_deflection"):
+        run.root_strain([0.01])
+
+
+def test_refuses_an_integrator_of_linear_equations() -> None:
+    with pytest.raises(InvalidValue, match="method"):
+        bd.simulate(STEADY, 0.02, 3, method=bd.GaussCollocation)

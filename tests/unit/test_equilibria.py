@@ -1,0 +1,129 @@
+"""Equilibria, their branches, and what is refused with large deflection."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import DONE, NO_ANSWER, main
+from benchmarks.cases.elastica import harvester_at
+
+BENT = bd.Physics(large_deflection=True)
+SPRING = bd.Mount(0.2, 1.0, root_stiffness=0.0)
+
+
+def harvester(degrees: float, physics: bd.Physics = BENT) -> bd.Scene:
+    scene = harvester_at(degrees)
+    return bd.Scene(scene.beam, scene.mount, physics=physics)
+
+
+def test_shape_ends_at_the_tip_and_keeps_the_length() -> None:
+    found = bd.equilibrium(harvester(45.0), 100.0)
+    x = np.linspace(0, found.scene.beam.length, 2001)
+    path = found.shape(x)
+    np.testing.assert_allclose(path[-1], found.tip, rtol=0, atol=1e-14)  # rounding of 0.05 m
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
+    assert steps == pytest.approx(found.scene.beam.length, rel=1e-6)  # of chords, which are shorter
+
+
+def test_out_of_the_plane_the_tip_leaves_it() -> None:
+    scene = bd.Scene(harvester(0.0).beam, bd.Mount(0.215, 0.0, math.pi / 2), physics=BENT)
+    tip = bd.equilibrium(scene, 200.0, "bent").tip
+    assert tip[1] == 0.0
+    assert abs(tip[2]) > 0.5 * scene.beam.length
+
+
+def test_error_covers_a_finer_model() -> None:
+    scene = harvester(5.0)
+    coarse, fine = (bd.equilibrium(scene, 200.0, discretization=bd.Ritz(n)) for n in (8, 24))
+    true = np.abs(coarse.tip - fine.tip).max()
+    assert 0 < true <= coarse.error
+
+
+def test_an_unstable_equilibrium_says_so() -> None:
+    found = bd.equilibrium(harvester(0.0), 200.0)
+    assert not found.stable
+    assert found.growth_rate > 100
+    assert "unstable at 200 rad/s" in found.warnings[0]
+    assert bd.equilibrium(harvester(0.0), 200.0, "bent").stable
+
+
+def test_branches_of_the_inward_harvester_meet_at_the_critical_speed() -> None:
+    found = bd.equilibrium_branches(harvester(0.0), 200.0)
+    straight, bent = found.branches
+    np.testing.assert_allclose(bent.turning_speeds, found.critical_speed, rtol=1e-8)
+    assert (straight.stable == (straight.speeds < found.critical_speed)).all()
+    assert bent.tip[:, 1].min() < -0.02 < 0.02 < bent.tip[:, 1].max()  # to both sides
+
+
+def test_branches_end_at_the_top_speed() -> None:
+    for branch in bd.equilibrium_branches(harvester(5.0), 200.0).branches:
+        assert branch.speeds.max() == pytest.approx(200.0, rel=1e-12)  # rounding of a square root
+
+
+def test_a_speed_below_the_fold_has_one_branch() -> None:
+    found = bd.equilibrium_branches(harvester(5.0), 150.0)
+    assert [branch.name for branch in found.branches] == ["straight"]
+    assert "no equilibrium beside" in found.warnings[0]
+
+
+def test_a_locus_does_not_depend_on_its_speeds() -> None:
+    """The equilibrium at a speed is the same wherever the continuation came from."""
+    speeds = np.array([20.0, 90.0, 160.0])
+    together = bd.frequency_locus(harvester(30.0), speeds).frequency
+    apart = [bd.natural_modes(harvester(30.0), v).frequency for v in speeds]
+    np.testing.assert_allclose(together, apart, rtol=1e-10)  # both stated errors
+
+
+def test_critical_speed_is_that_of_a_straight_beam() -> None:
+    assert bd.critical_speed(harvester(0.0)) == bd.critical_speed(harvester(0.0, bd.Physics()))
+    assert bd.critical_speed(harvester(5.0)) == math.inf
+    assert "bends the beam from rest on" in bd.critical_point(harvester(5.0)).reason
+
+
+@pytest.mark.parametrize(
+    ("call", "named"),
+    [
+        (lambda: bd.Physics(large_deflection=True, shear=True), "physics.shear"),
+        (lambda: bd.Physics(large_deflection=True, stretch=True), "physics.stretch"),
+        (lambda: bd.Physics(large_deflection=True, planes=2), "physics.planes"),
+        (lambda: bd.Physics(branch="up"), "physics.branch"),  # pyright: ignore[reportArgumentType]
+        (lambda: bd.Scene(harvester(0.0).beam, bd.Mount(0.2, 0.0, 0.3), physics=BENT), "mount.bending_angle"),
+        (lambda: bd.Scene(harvester(0.0).beam, SPRING, physics=BENT), "mount.root_stiffness"),
+        (lambda: bd.setting_angle_limits(harvester(0.0), 400.0), "physics.large_deflection"),
+        (lambda: bd.frequency_bounds(harvester(0.0), 10.0), "physics.large_deflection"),
+        (lambda: bd.equilibrium(harvester(0.0), 10.0, "up"), "branch"),
+        (lambda: bd.equilibrium(harvester(0.0), math.nan), "speed"),
+        (lambda: bd.equilibrium(harvester(0.0), 10.0).shape([0.06]), "x"),
+    ],
+)
+def test_refused_by_name(call: Callable[[], object], named: str) -> None:
+    with pytest.raises(ValueError, match=f"^{named}"):
+        call()
+
+
+def test_terms_say_that_slopes_have_any_size() -> None:
+    listed = bd.terms(harvester(45.0))
+    assert listed["large deflection"].present
+    assert "large deflection" not in [effect.name for effect in listed.left_out]
+
+
+def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(
+        '[beam]\nlength = "50 mm"\nwidth = "10 mm"\nthickness = "0.2 mm"\nyoungs_modulus = "200 GPa"\n'
+        'density = "7850 kg/m3"\n[mount]\nradius = "215 mm"\nsetting_angle = "5 deg"\n'
+    )
+    picture = tmp_path / "branches.png"
+    assert main(["branches", str(file), "--top-speed", "200 rad/s", "--plot", str(picture)]) == DONE
+    assert "178.70093" in capsys.readouterr().out
+    assert picture.stat().st_size > 5000
+    assert main(["equilibrium", str(file), "--speed", "200 rad/s", "--branch", "bent"]) == DONE
+    assert "0.8503" in capsys.readouterr().out
+    assert main(["equilibrium", str(file), "--speed", "100 rad/s", "--branch", "bent"]) == NO_ANSWER
+    assert "no equilibrium beside" in capsys.readouterr().err
