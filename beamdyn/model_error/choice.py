@@ -30,7 +30,7 @@ from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-NOT_HERE = "this analysis is linear about the straight beam"
+SLOW = "Physics(large_deflection=True) includes it, which takes minutes here"
 _MARGIN = 0.5  # of the tolerance: an estimate may be low by a factor of two
 _SMALL = 0.1  # of the tolerance, below which no effect is added
 _SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
@@ -122,7 +122,7 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
     the analysis, but at least 1e-3: the default tolerances of motions are for the numerical errors.  The
     other parameters and what is returned are those of `choose_physics`.
     """
-    return choose_physics(scene, speeds, modes or _MODES, max(tolerance, PHYSICS_TOLERANCE), NOT_HERE)
+    return choose_physics(scene, speeds, modes or _MODES, max(tolerance, PHYSICS_TOLERANCE))
 
 
 def plain_physics(scene: Scene) -> Scene:
@@ -163,6 +163,37 @@ def warn_of_peak(scene: Scene, deflection: float) -> Iterator[str]:
             f"physics = auto: the tolerance {choice.tolerance:g} is not met at the largest deflection: large "
             f"deflection, left out, is worth up to {100 * size:.2g} %, {_ROUGH:g} (deflection/length)^2"
         )
+
+
+def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
+    """Add large deflection to chosen physics if it matters at a deflection that was found [m].
+
+    It takes the place of the effects that it excludes, if these are worth less.  None if it is not added.
+    """
+    choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
+    if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
+        return None
+    sizes = {
+        effect.name: size if effect.name == LARGE_DEFLECTION else effect.size for effect in choice.effects
+    }
+    kept = (LARGE_DEFLECTION, *(name for name in choice.included if name in _WITH_LARGE_DEFLECTION))
+    lost = sum(sizes[name] for name in choice.included if name not in kept)
+    try:
+        bent = add_effects(replace(scene, physics=Physics()), kept)
+    except InvalidValue:  # an oblique direction
+        return None
+    if lost >= size:
+        return None
+    effects = [replace(e, size=sizes[e.name], included=e.name in kept) for e in choice.effects]
+    effects = [
+        replace(e, reason=_EXCLUSIVE) if e.name in choice.included and not e.included else e for e in effects
+    ]
+    left_out = sum(e.size for e in effects if not e.included and not math.isnan(e.size))
+    chosen = replace(
+        choice, physics=bent.physics, effects=tuple(sorted(effects, key=lambda e: not e.included)),
+        model_error=left_out, time=math.nan, coordinates=math.nan,
+    )  # fmt: skip
+    return replace(bent, physics_choice=chosen)
 
 
 def warn_of_plain(scene: Scene) -> Iterator[str]:

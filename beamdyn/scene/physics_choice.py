@@ -28,7 +28,7 @@ class JudgedEffect:
         Why it is left out, or its size not known; empty if its size alone decided.
     time, coordinates : float
         Time of the eigenproblem and number of coordinates with this effect alone, relative to the plain
-        beam; nan where it is left out.
+        beam; nan where it is left out, or was added for a deflection that was found.
     """
 
     name: str
@@ -89,7 +89,8 @@ class PhysicsChoice:
     def sentence(self) -> str:
         """One line: what was included, its size and cost, and what was not."""
         included = [_say_included(effect) for effect in self.effects if effect.included]
-        cost = f"; in all {self.time:.2g} times the time of the plain beam" if len(included) > 1 else ""
+        several = len(included) > 1 and not math.isnan(self.time)
+        cost = f"; in all {self.time:.2g} times the time of the plain beam" if several else ""
         return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or "the plain beam"}{cost}'
 
     def warnings(self) -> Iterator[str]:
@@ -108,8 +109,8 @@ class PhysicsChoice:
 
 
 def _say_included(effect: JudgedEffect) -> str:
-    cost = f"{effect.time:.2g} times the time, {effect.coordinates:.2g} times the coordinates"
-    return f"{effect.name} ({_percent(effect.size)}; {cost})"
+    cost = f"; {effect.time:.2g} times the time, {effect.coordinates:.2g} times the coordinates"
+    return f"{effect.name} ({_percent(effect.size)}{'' if math.isnan(effect.time) else cost})"
 
 
 def _percent(size: float) -> str:

@@ -22,7 +22,7 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import UncoupledSolver
-from beamdyn.model_error.choice import NOT_HERE, choose_physics
+from beamdyn.model_error.choice import SLOW, choose_physics
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
@@ -190,7 +190,7 @@ def resonance_speeds(
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
-    scene = choose_physics(replace(scene, damping_ratio=0.0), [0.0, top], modes, straight=NOT_HERE)
+    scene = choose_physics(replace(scene, damping_ratio=0.0), [0.0, top], modes, straight=SLOW)
     model = _choose_resolved(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)

@@ -27,7 +27,7 @@ from beamdyn.modal.modal_basis import (
     given_basis,
 )
 from beamdyn.modal.model import Model
-from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.model_error.choice import bend_for_peak, choose_for_motion, warn_of_peak
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
@@ -363,6 +363,10 @@ def simulate(
     request = TransientRequest(
         scene, t_end, tolerance, method, discretization, initial, times, options, smallest
     )
+    run = request.run() if basis else request.run_smallest_basis()
+    if (bent := bend_for_peak(scene, run.largest)) is None:
+        return run
+    request = replace(request, scene=bent)
     return request.run() if basis else request.run_smallest_basis()
 
 

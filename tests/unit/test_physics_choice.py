@@ -202,10 +202,29 @@ def test_a_sweep_is_stored_under_the_same_keys_each_time(tmp_path: Path) -> None
     assert SHEAR in choice_of(first).included
 
 
-def test_a_peak_says_what_large_deflection_may_change() -> None:
-    scene = bd.Scene(STRIP, LEANING, ROLLING, physics="auto")
-    run = bd.simulate(scene, 1.0, modes=2)
-    assert any("not met at the largest deflection" in text for text in run.warnings)
+ROUGH = bd.RollingWheel(
+    0.3, bd.SpinUp(40.0, 0.1), bd.RoadWave(0.3, 0.4)
+)  # the road shakes the strip by a twentieth of its length
+
+
+def test_a_run_that_bends_the_beam_is_repeated_with_large_deflection() -> None:
+    """Rotation does not bend the strip that points at the axis, the road does."""
+    scene = bd.Scene(STRIP, INWARD, ROUGH, damping_ratio=0.05, physics="auto")
+    run = bd.simulate(scene, 0.3, modes=1)
+    assert choice_of(run).included == (LARGE,)
+    straight, bent = (
+        bd.simulate(replace(scene, physics=physics), 0.3, modes=1)
+        for physics in (bd.Physics(), bd.Physics(large_deflection=True))
+    )
+    assert (straight.largest / 0.05) ** 2 > 5e-4
+    np.testing.assert_array_equal(run.tip, bent.tip)
+
+
+def test_a_sweep_says_what_large_deflection_may_change() -> None:
+    scene = bd.Scene(STRIP, INWARD, ROUGH, damping_ratio=0.05, physics="auto")
+    swept = bd.sweep(scene, [40.0], (0.0, 0.3), modes=1)
+    assert choice_of(swept).included == ()
+    assert any("not met at the largest deflection" in text for text in swept.warnings)
 
 
 def test_a_critical_speed_is_chosen_for_by_those_with_each_effect() -> None:
