@@ -110,7 +110,7 @@ def locus_table(result: Locus) -> Group:
     return Group(*made, Text(result.left_out_effects.sentence(where=where_worst(result))))
 
 
-def where_worst(result: Locus | SteadyResponse) -> str:
+def where_worst(result: Locus | SteadyResponse | Sweep) -> str:
     """Where the model error is largest, "at 100 rad/s"; at which speeds where it is not known."""
     total = result.model_error
     if not np.isfinite(total).any():
@@ -234,7 +234,9 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
         ("", "tip deflection [mm]", "over the length", "at [s]"),
         rows,
     )
-    return Group(shown, Text(_describe_errors(run)), *(Text(f"warning: {w}") for w in run.warnings))
+    left_out = Text(run.left_out_effects.sentence("", "of the largest deflection"))
+    warnings = *run.warnings, *run.left_out_effects.warnings()
+    return Group(shown, Text(_describe_errors(run)), left_out, *(Text(f"warning: {w}") for w in warnings))
 
 
 def _directions(scene: Scene) -> list[tuple[str, int | None]]:
@@ -344,7 +346,8 @@ def sweep_table(result: Sweep) -> Group:
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
     heads = ("speed [rad/s]", *(f"{name} [mm]" for name in ("largest tip deflection", *words)), "status")
     rows = _rows(columns, shown)
-    return table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
+    made = table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
+    return Group(made, Text(result.left_out_effects.sentence("", where_worst(result))))
 
 
 def sweep_lines(result: Sweep) -> dict[str, np.ndarray]:

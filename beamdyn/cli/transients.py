@@ -139,7 +139,7 @@ def sweep(
         Output files.
     """
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import sweep_csv, sweep_table
+    from beamdyn.result_tables import sweep_csv, sweep_table, where_worst
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
@@ -158,7 +158,8 @@ def sweep(
         means: dict[str, Any] = {"workers": workers, "executor": executor, "store": store}
         result = sweep(loaded, given, span, modes=modes, tolerance=tolerance, **means, progress=progress)
     tables, rows, draw = [sweep_table(result)], sweep_csv(result), on_axes(result.plot)
-    deliver(result, outputs, question, tables, rows, draw, result.warnings)
+    warnings = *result.warnings, *result.left_out_effects.warnings(where=where_worst(result))
+    deliver(result, outputs, question, tables, rows, draw, warnings)
 
 
 # Close-up -----------------------------------------------------------------------------------------

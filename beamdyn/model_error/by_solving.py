@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -15,12 +15,21 @@ from beamdyn.model_error.large_deflection import OBLIQUE, TWO_PLANES, comparable
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.scene import Scene
 
-Solve: TypeAlias = Callable[[Scene], tuple[np.ndarray, str]]  # values, nan where there is none, and why
-
 STRAIGHT = "as of the straight beam"
 
 
-def left_out_by_solving(scene: Scene, solve: Solve, about_large: str = "") -> LeftOutEffects:
+class Answer(NamedTuple):
+    """Values that an effect may change, nan where there is none; why there is none; what they rest on."""
+
+    values: np.ndarray
+    reason: str = ""
+    assumed: str = ""
+
+
+Solve: TypeAlias = Callable[[Scene, str], Answer]  # of a scene with the effect of a name more, or with ""
+
+
+def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
     """Find what each effect that a scene leaves out changes in values, by solving with it.
 
     Effects that large deflection is not combined with are judged on the straight beam where the scene has it.
@@ -30,49 +39,49 @@ def left_out_by_solving(scene: Scene, solve: Solve, about_large: str = "") -> Le
     scene : Scene
         The scene.
     solve : callable
-        Solves a scene: its values, nan where there is none, and why there is none.
-    about_large : str
-        What the values with large deflection rest on; empty if on nothing.
+        Solves a scene.
 
     Returns
     -------
     LeftOutEffects
         Relative changes, of the shape of the values.
     """
-    bent = scene.physics.large_deflection
-    base = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+    straight = replace(scene.physics, large_deflection=False, branch="straight")
+    base = replace(scene, physics=straight)
     additions, not_known, not_modelled = list_effects(base)
-    assumed = {added.name: added.assumed for added in additions if added.assumed}
-    changes, without = {}, solve(base)
-    if bent:
-        assumed = {a.name: ", ".join(filter(None, [a.assumed, STRAIGHT])) for a in additions}
-    else:
-        changes[LARGE_DEFLECTION], reason = _change_by_large_deflection(base, without, solve)
-        not_known |= {LARGE_DEFLECTION: reason} if reason else {}
-        assumed |= {LARGE_DEFLECTION: about_large} if about_large and not reason else {}
+    without, found, assumed = solve(base, ""), {}, {}
+    if not scene.physics.large_deflection:
+        found[LARGE_DEFLECTION] = _with_large_deflection(base, without, solve)
     for added in additions:
-        changes[added.name], reason = _change(without, solve(added.scene))
-        not_known |= {added.name: reason} if reason else {}
-    reasons = {effect.name: effect.reason for effect in list_left_out(base)}
-    return LeftOutEffects(changes, not_known, assumed, not_modelled, reasons)
+        found[added.name] = _change(without, solve(added.scene, added.name))
+        judged_on = STRAIGHT if scene.physics.large_deflection else ""
+        assumed[added.name] = ", ".join(filter(None, [added.assumed, judged_on]))
+    notes = {n: ", ".join(filter(None, [assumed.get(n), each.assumed])) for n, each in found.items()}
+    return LeftOutEffects(
+        changes={name: each.values for name, each in found.items()},
+        not_known=not_known | {name: each.reason for name, each in found.items() if each.reason},
+        assumed={name: note for name, note in notes.items() if note},
+        not_modelled=not_modelled,
+        reasons={effect.name: effect.reason for effect in list_left_out(base)},
+    )
 
 
-def _change(without: tuple[np.ndarray, str], within: tuple[np.ndarray, str]) -> tuple[np.ndarray, str]:
-    """Relative change of values, nan where it is not known, and why."""
+def _change(without: Answer, within: Answer) -> Answer:
+    """Relative change of values, nan where it is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        change = np.where(within[0] == without[0], 0.0, within[0] / without[0] - 1)
-    change = np.where(np.isfinite(change), change, np.nan)
-    return change, (without[1] or within[1]) if np.isnan(change).any() else ""
+        change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
+    unknown = ~np.isfinite(change)
+    reason = (without.reason or within.reason or "there is nothing to compare") if unknown.any() else ""
+    return Answer(np.where(unknown, np.nan, change), reason, within.assumed)
 
 
-def _change_by_large_deflection(
-    scene: Scene, without: tuple[np.ndarray, str], solve: Solve
-) -> tuple[np.ndarray, str]:
-    unknown = np.full(np.shape(without[0]), np.nan)
+def _with_large_deflection(scene: Scene, without: Answer, solve: Solve) -> Answer:
+    unknown = np.full(np.shape(without.values), np.nan)
     if scene.physics.planes == 2:
-        return unknown, TWO_PLANES
+        return Answer(unknown, TWO_PLANES)
     try:
         straight, bent = comparable(scene)
     except InvalidValue as error:
-        return unknown, OBLIQUE if "bending_angle" in str(error) else str(error)
-    return _change(without if straight.physics == scene.physics else solve(straight), solve(bent))
+        return Answer(unknown, OBLIQUE if str(error).startswith("mount.bending_angle") else str(error))
+    without = without if straight.physics == scene.physics else solve(straight, "")
+    return _change(without, solve(bent, LARGE_DEFLECTION))

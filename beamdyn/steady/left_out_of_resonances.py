@@ -4,23 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.of_modes import left_out_of_modes, nothing_known
+from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from beamdyn.steady.resonance import Crossing
 
 _STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
 _FURTHER_MODES = 2  # with which those that are sought may exchange their order
 
 
-def left_out_of_resonances(scene: Scene, crossings: Sequence[Crossing], modes: int) -> LeftOutEffects:
+class Resonance(Protocol):
+    """A crossing of a line with one mode or two."""
+
+    @property
+    def line(self) -> Line:
+        """Line of the excitation."""
+        ...
+
+    @property
+    def speed(self) -> float:
+        """Speed [rad/s]."""
+        ...
+
+    @property
+    def frequency(self) -> float:
+        """Natural frequency of the first mode [Hz]."""
+        ...
+
+    @property
+    def second_mode(self) -> int | None:
+        """Number of the other mode, if there is one."""
+        ...
+
+
+def left_out_of_resonances(scene: Scene, crossings: Sequence[Resonance], modes: int) -> LeftOutEffects:
     """Estimate what each effect changes in the speeds (k,) of some crossings, to first order.
 
     A speed of resonance moves by the relative change of the frequency, over 1 - (speed/frequency) times the
@@ -49,7 +71,7 @@ def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
     return np.abs(np.imag(eigenvalue)[:, None, :] - frequency[:, :, None]).argmin(axis=2)
 
 
-def _pair(crossing: Crossing) -> tuple[float, float]:
+def _pair(crossing: Resonance) -> tuple[float, float]:
     """Angular frequencies of the two modes of a crossing [rad/s]; the same twice where it has one."""
     first = 2 * np.pi * crossing.frequency
     return first, first if crossing.second_mode is None else crossing.line.multiple * crossing.speed - first

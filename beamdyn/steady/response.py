@@ -18,8 +18,10 @@ from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
+from beamdyn.model_error.by_solving import Answer, left_out_by_solving
 from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -41,7 +43,6 @@ from beamdyn.steady.harmonic_balance import (
     largest_over_phases,
     solve_harmonic_balance,
 )
-from beamdyn.steady.left_out_of_response import choose_judged, left_out_of_response
 from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
@@ -53,6 +54,8 @@ _MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
 _FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
+_MOST_JUDGED = 4  # speeds of the model error, beside that of the largest amplitude
+_LINEAR = "vibration about the equilibrium being linear"
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 
@@ -155,16 +158,23 @@ class SteadyResponse(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects left out would change in the amplitude at the `left_out_speeds` (k,)."""
-        return left_out_of_response(self.request, self.left_out_speeds)
+        return self.left_out_at(self.left_out_speeds)
 
     @property
     def left_out_speeds(self) -> np.ndarray:
         """Speeds at which the model error is computed: that of the largest amplitude, and a few more."""
-        return self.speeds[choose_judged(self.amplitude)]
+        known = np.flatnonzero(np.isfinite(self.amplitude))
+        if not len(known):
+            return np.empty(0)
+        spread = np.linspace(0, len(known) - 1, min(len(known), _MOST_JUDGED)).round().astype(int)
+        return self.speeds[np.union1d(known[spread], known[np.argmax(self.amplitude[known])])]
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
         """What the effects left out would change in the amplitude at speeds [rad/s] (k,)."""
-        return left_out_of_response(self.request, ascending("speeds", speeds))
+        request = replace(self.request, speeds=np.asarray(speeds, dtype=float))
+        return (
+            left_out_by_solving(self.scene, request.solve_with) if len(speeds) else nothing_known(self.scene)
+        )
 
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
         """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...).
@@ -298,6 +308,18 @@ class ResponseRequest(FieldsOnly):
         method = f"{self.model.discretization}, {self.basis}{about}, {harmonics} harmonics"
         estimated = "without the harmonics of the last interaction"
         return Provenance(__version__, method, estimated, perf_counter() - start)
+
+    def solve_with(self, scene: Scene, _: str = "") -> Answer:
+        """Amplitudes of another scene, with as many modes, or where it is of another kind at least those."""
+        modes = self.basis.modes or 1
+        other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
+        if scene.physics.large_deflection != self.scene.physics.large_deflection:
+            basis = other.smallest_basis()
+            other = replace(other, basis=replace(basis, modes=max(modes, basis.modes or 1)))
+        response = other.run()
+        lost = [status for status in response.status.tolist() if status != "stable"]
+        note = _LINEAR if scene.physics.large_deflection else ""
+        return Answer(response.amplitude, lost[0] if lost else "", note)
 
     def run_refined(self) -> SteadyResponse | None:
         """Solve with more modes; None if there is no larger model."""

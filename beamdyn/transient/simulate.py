@@ -28,13 +28,14 @@ from beamdyn.modal.modal_basis import (
 )
 from beamdyn.modal.model import Model
 from beamdyn.model_error.choice import bend_for_peak, choose_for_motion, warn_of_peak
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Motion
-from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.initial_state import initial_state
 from beamdyn.transient.integration import integrate
+from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.limits import check_growth, check_motion
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
 from beamdyn.transient.model_of_basis import choose_for_basis
@@ -57,7 +58,7 @@ _TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried 
 
 
 @dataclass(frozen=True)
-class Transient(OfChosenPhysics):
+class Transient(StatesModelError):
     """Motion of a beam in time, as `simulate` computes it.
 
     Parameters
@@ -121,6 +122,11 @@ class Transient(OfChosenPhysics):
             return np.inf
         difference = self.distance_from(self.refined)
         return np.inf if difference > _LIMIT_DIFFERENCE * self.largest else 2 * difference
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in the largest deflection: changes of shape ()."""
+        return left_out_of_transient(self)
 
     @property
     def relative_mode_error(self) -> float:

@@ -6,6 +6,7 @@ import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from time import perf_counter
@@ -28,14 +29,16 @@ from beamdyn.modal.modal_basis import (
     given_basis,
 )
 from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable
-from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
+from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
-from beamdyn.transient.simulate import Transient, TransientRequest
+from beamdyn.transient.simulate import Transient, TransientRequest, simulate
 from beamdyn.transient.step_size import TOLERANCES
 
 if TYPE_CHECKING:
@@ -45,7 +48,7 @@ _KIND = "beamdyn sweep"
 
 
 @dataclass(frozen=True)
-class Sweep(OfChosenPhysics):
+class Sweep(StatesModelError):
     """Peaks of transients over speed.
 
     Parameters
@@ -88,6 +91,21 @@ class Sweep(OfChosenPhysics):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    @property
+    def left_out_speeds(self) -> np.ndarray:
+        """Speed of the largest peak [rad/s], at which the model error is computed: (1,), or (0,)."""
+        known = np.isfinite(self.peaks).any()
+        return self.speeds[[np.nanargmax(self.peaks)]] if known else np.empty(0)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in the largest peak (1,), by running its case again."""
+        if not len(self.left_out_speeds) or self.scene.motion is None:
+            return nothing_known(self.scene)
+        motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
+        run = simulate(replace(self.scene, motion=motion), self.t_end)
+        return left_out_of_transient(run, self.window).at(np.newaxis)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""

@@ -1,0 +1,122 @@
+"""What the effects left out would change in the largest deflection of a transient.
+
+An effect that changes the lowest natural frequencies by so little that neither their phase at the end of the
+run nor the deflection changes visibly is judged by the first frequency; any other by running again with it.
+With large deflection a run takes far longer: it is done where the run is short, else the change is estimated
+from the static deflection and the backbone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.modal.choice import ensure_size
+from beamdyn.modal.finite_amplitude import SMALL, FreeVibration
+from beamdyn.modal.modal_basis import find_speed_range
+from beamdyn.modal.model import Model
+from beamdyn.model_error.by_solving import Answer, left_out_by_solving
+from beamdyn.model_error.effects import LARGE_DEFLECTION
+from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.model_error.of_modes import left_out_of_modes, without_large_deflection
+from beamdyn.scene.scene import Scene
+from beamdyn.transient.trajectory import Path
+
+_MODES = 2  # lowest modes, whose frequencies tell whether an effect matters
+_SHIFT, _PHASE = 1e-4, 1e-2  # of a frequency, relative, and of its phase at the end [rad], that matter
+_SHORT_RUN = 2000  # samples up to which a run is done with large deflection
+_BY_FREQUENCY = "by the first frequency"
+_BY_BACKBONE = "estimated by the static deflection and the backbone"
+
+
+class Run(Protocol):
+    """A transient, with the request of which it is the answer."""
+
+    @property
+    def request(self) -> Any:
+        """What was asked for."""
+        ...
+
+    @property
+    def largest(self) -> float:
+        """Largest deflection of the tip [m]."""
+        ...
+
+    @property
+    def path(self) -> Path:
+        """The motion of the coordinates."""
+        ...
+
+    def peak(self, start: float, end: float) -> float:
+        """Largest deflection of the tip within a window [m]."""
+        ...
+
+
+def left_out_of_transient(run: Run, window: tuple[float, float] | None = None) -> LeftOutEffects:
+    """Find what each effect changes in the largest deflection of a run, or in a window [s]: of shape ()."""
+    request, largest = run.request, _peak(run, window)
+    speed = find_speed_range(request.motion, request.t_end)[-1]
+    shifts = _shifts_of_frequencies(without_large_deflection(request.model), speed, request.t_end)
+
+    def solve(scene: Scene, name: str) -> Answer:
+        if scene.physics == request.scene.physics:
+            return Answer(np.array(largest))
+        if (shift := shifts.get(name)) is not None:
+            return Answer(np.array(largest * (1 + shift) ** -2), "", _BY_FREQUENCY)
+        if name == LARGE_DEFLECTION and len(run.path.samples[0]) > _SHORT_RUN:
+            return _estimate_bent(run, largest, scene, speed)
+        return _run_again(request, scene, window)
+
+    return left_out_by_solving(request.scene, solve)
+
+
+def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str, float]:
+    """Relative change of the first frequency by each effect that changes the frequencies hardly at all."""
+    s = model.solver.solve(np.array([speed]), min(_MODES, model.solver.size)).eigenvalue
+    omega, changes = np.abs(s).max(), left_out_of_modes(model, np.array([speed]), s).changes
+    largest = {name: np.abs(change).max() for name, change in changes.items() if name != LARGE_DEFLECTION}
+    small = (n for n, size in largest.items() if size <= _SHIFT and size * omega * t_end <= _PHASE)
+    return {name: float(changes[name][0, 0]) for name in small}
+
+
+def _peak(run: Run, window: tuple[float, float] | None) -> float:
+    return run.largest if window is None else run.peak(*window)
+
+
+def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> Answer:
+    """Largest deflection by what large deflection changes at rest in rotating axes, and over amplitude.
+
+    The part that does not vary is that of the equilibrium at the largest speed; the rest changes as the
+    compliance of the first mode does, which is -2 times its frequency.
+    """
+    bent, straight = (Model(each, run.request.model.discretization) for each in (scene, run.request.scene))
+    try:
+        k = FreeVibration.of(bent, speed, 1).coefficient(SMALL)
+        static = float(np.abs(bent.static_tips(np.array([speed]))).max())
+    except (ArithmeticError, InvalidValue) as error:
+        return Answer(np.array(np.nan), str(error))
+    linear = float(np.abs(straight.static_tips(np.array([speed]))).max())
+    varying = max(largest - linear, 0.0)
+    amplitude = largest if linear < varying else varying
+    stiffer = 2 * k * (amplitude / scene.beam.length) ** 2
+    share = min(linear / largest, 1.0) if largest else 0.0
+    ratio = share * (static / linear if linear else 1.0) + (1 - share) * (1 - stiffer)
+    return Answer(np.array(largest * ratio), "", _BY_BACKBONE)
+
+
+def _run_again(request: Any, scene: Scene, window: tuple[float, float] | None) -> Answer:
+    """Largest deflection by a run of another scene in as many modes."""
+    if not isinstance(request.initial, str):
+        return Answer(np.array(np.nan), "the initial coordinates are those of this model")
+    modes = request.basis.modes
+    discretization = (
+        request.discretization if modes is None else ensure_size(scene, request.discretization, modes)
+    )
+    again = replace(request, scene=scene, discretization=discretization, method="auto", t_eval=None)
+    try:
+        return Answer(np.array(_peak(again.run(), window)))
+    except (ArithmeticError, InvalidValue, np.linalg.LinAlgError) as error:
+        return Answer(np.array(np.nan), str(error))
