@@ -88,7 +88,8 @@ def answer(
     time = perf_counter() - start
     with np.errstate(divide="ignore", invalid="ignore"):
         true = np.abs(modes.eigenvalue / known.eigenvalue - 1)
-    true = np.where(known.eigenvalue == 0, np.where(modes.eigenvalue == 0, 0.0, np.inf), true)
+    is_zero = np.abs(modes.eigenvalue) < known.zero
+    true = np.where(known.eigenvalue == 0, np.where(is_zero, 0.0, np.inf), true)
     return Answer(
         number, tolerance, time, *(tuple(v.tolist()) for v in (modes.error, true, known.uncertainty))
     )

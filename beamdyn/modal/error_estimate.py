@@ -10,6 +10,10 @@ from beamdyn.modal.eigensolver import Eigen
 from beamdyn.modal.model import Model
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
+_MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
+_MARGIN_OF_MORE = (
+    12.0  # the same of two planes, shear or springs: a mode may lack functions of one field only
+)
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
 
 
@@ -125,4 +129,5 @@ def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.n
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), model.solver.lowest_at_rest)
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size
-    return np.where(largest > _SLOW, np.maximum(3 * relative, 0.3 * largest), relative)
+    margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_MORE
+    return np.where(largest > _SLOW, margin * np.maximum(relative, 0.1 * largest), relative)

@@ -18,6 +18,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigen import (
     LEAST_STIFFNESS,
+    TWO_PLANES,
     Solver,
     cancelled,
     explained,
@@ -124,7 +125,8 @@ class LargeSolver(Eigensolver):
         rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
         if self.pencil.planes == 1:
             return rounding
-        return rounding + cancelled(self.pencil, np.array([speed]), squared, size[None])[0]
+        by_entries = cancelled(self.pencil, np.array([speed]), squared, size[None])[0]
+        return TWO_PLANES * (rounding + by_entries)
 
     @cached_property
     def _absolute_spin(self) -> np.ndarray:

@@ -22,12 +22,13 @@ _QUOTIENT = 1.0  # distance from the quotient that the extrapolation of both may
 class Known:
     """Eigenvalues [1/s], that of the lowest squared frequency first, and their relative uncertainties.
 
-    They are imaginary for modes that vibrate and positive for those that diverge.  An eigenvalue of 0 has
-    the uncertainty 0.
+    They are imaginary for modes that vibrate and positive for those that diverge.  One whose size is below
+    `zero` [1/s] is not told from 0: it is given as 0, with the uncertainty 0.
     """
 
     eigenvalue: np.ndarray
     uncertainty: np.ndarray
+    zero: float
 
 
 def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
@@ -49,7 +50,8 @@ def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
             break
     still = np.abs(squares) < _REST * (1 + gamma**2)
     error = np.where(still, 0.0, error / np.where(still, 1.0, np.abs(squares)))
-    return Known(np.sqrt(-np.where(still, 0.0, squares) + 0j) / unit, error)
+    zero = float(np.sqrt(_REST * (1 + gamma**2))) / unit
+    return Known(np.sqrt(-np.where(still, 0.0, squares) + 0j) / unit, error, zero)
 
 
 def _solve(blade: Blade, gamma: float, count: int, pieces: int) -> tuple[np.ndarray, np.ndarray]:
