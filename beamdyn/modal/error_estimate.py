@@ -130,4 +130,4 @@ def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.n
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size
     margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_MORE
-    return np.where(largest > _SLOW, margin * np.maximum(relative, 0.1 * largest), relative)
+    return np.where(largest > _SLOW, np.maximum(margin * relative, margin / 10 * largest), relative)
