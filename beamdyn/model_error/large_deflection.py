@@ -15,6 +15,7 @@ from beamdyn.scene.scene import Scene
 NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
 _BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch='bent') bends it"
 TWO_PLANES = "it is solved in one plane of bending"
+HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
 _NOT_FOUND = "the equilibrium was not found"
 _EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
@@ -52,8 +53,9 @@ def large_deflection_change(
         return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), TWO_PLANES
     try:
         straight, bent = (Model(scene, model.discretization) for scene in comparable(model.scene))
-    except InvalidValue:
-        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), OBLIQUE
+    except InvalidValue as refusal:
+        reason = OBLIQUE if refusal.field == "mount.bending_angle" else HINGED
+        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), reason
     each = [_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
     reasons = dict.fromkeys(reason for _, reason in each if reason)
     return np.array([change for change, _ in each]), next(iter(reasons), "")
