@@ -68,10 +68,11 @@ def propagate_elastica(
     acceleration = np.empty((steps, stages, n))
     known = None if like is None else at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
-    for k, drive in enumerate(_drives(system, t0, h, steps, step.table)):
-        guess = None if like is None or known is None else known @ like.acceleration[k]
-        q, v, a = step.advance(drive, q, v, guess)
-        acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
+    with np.errstate(over="ignore", invalid="ignore"):  # of a step that is too long, which is refused
+        for k, drive in enumerate(_drives(system, t0, h, steps, step.table)):
+            guess = None if like is None or known is None else known @ like.acceleration[k]
+            q, v, a = step.advance(drive, q, v, guess)
+            acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
     return Segment(t0, h, state, acceleration)
 
 

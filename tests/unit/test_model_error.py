@@ -128,7 +128,7 @@ def test_large_deflection_that_cannot_be_solved_makes_the_model_error_unknown() 
     cases = {
         "multiple of 90 deg": (bd.Scene(HARVESTER, replace(mount, bending_angle=0.3)), 100.0),
         "one plane": (bd.Scene(HARVESTER, mount, physics=bd.Physics(planes=2)), 100.0),
-        "not found": (bd.Scene(HARVESTER, replace(mount, root_stiffness=0.0)), 10.0),
+        "hinge": (bd.Scene(HARVESTER, replace(mount, root_stiffness=0.0)), 10.0),
         "unstable": (buckled, 1.2 * bd.critical_speed(buckled)),
     }
     for reason, (scene, speed) in cases.items():
