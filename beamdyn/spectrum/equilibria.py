@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, one_of, positive, real
+from beamdyn.common.checks import InvalidValue, one_of, positive, real, within
 from beamdyn.common.results import Provenance, Result
-from beamdyn.modal.choice import DiscretizationChoice, choose_model, solve_to_tolerance
+from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, choose_model, solve_to_tolerance
 from beamdyn.modal.continuation import (
     NotConverged,
     Point,
@@ -129,6 +129,7 @@ def equilibrium(
     scene = _with_large_deflection(scene, branch)
     speeds = np.array([real("speed", speed, "rad/s")])
     check_speeds(speeds, "speed")
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
     solver, coarse = _solver(solution.model), _solver(solution.coarse)
     q = solver.equilibria(speeds)[0]

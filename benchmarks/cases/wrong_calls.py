@@ -214,6 +214,25 @@ def right_calls() -> list[Call]:
             "critical_speed", bd.critical_speed, {"scene": scene, "discretization": "ritz", "tolerance": 1e-3}
         ),
         Call("critical_point", bd.critical_point, {"scene": scene, "discretization": bd.Ritz(8)}),
+        Call(
+            "equilibrium",
+            bd.equilibrium,
+            {
+                "scene": scene,
+                "speed": 20.0,
+                "branch": "straight",
+                "discretization": "ritz",
+                "tolerance": 1e-3,
+            },
+        ),
+        Call(
+            "equilibrium_branches",
+            bd.equilibrium_branches,
+            {"scene": scene, "top_speed": 20.0, "discretization": bd.Ritz(8)},
+        ),
+        Call(
+            "backbone", bd.backbone, {"scene": scene, "speed": 20.0, "mode": 1, "discretization": bd.Ritz(8)}
+        ),
         Call("setting_angle_limits", bd.setting_angle_limits, {"scene": scene, "top_speed": 300.0}),
         Call(
             "resonance_speeds",

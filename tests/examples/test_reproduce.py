@@ -38,7 +38,7 @@ def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept):
         "70.46541",
         "177.8582",
         "3.617",
-        "1.94874",
+        "1.9488",
         "1.94718",
         "1.94256",
         "1.96",
