@@ -48,6 +48,10 @@ def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept):
         "at 8.22",
     ):
         assert number in out
+    bent = [line.split() for line in out.splitlines() if "bent beam" in line and "independent" in line]
+    assert [(line[0], line[6], line[-1]) for line in bent] == [
+        (modes, value, "agrees") for modes, value in (("2", "1.94974"), ("3", "1.94883"), ("5", "1.94876"))
+    ]
     for words in (
         "Modeling and Vibration",
         "agrees",

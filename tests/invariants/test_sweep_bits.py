@@ -144,7 +144,7 @@ def test_ctrl_c_keeps_what_is_finished(undisturbed, tmp_path):
     start, others = time.monotonic(), children(os.getpid())
     with pytest.raises(KeyboardInterrupt):
         run(workers=2, store=tmp_path / "s", progress=interrupt)
-    assert time.monotonic() - start < 60  # it does not wait for the work that is left
+    assert time.monotonic() - start < 10
     before = chunks(tmp_path / "s")
     assert 2 <= len(before) < 6
     assert children(os.getpid()) == others  # no process is left
