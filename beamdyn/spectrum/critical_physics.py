@@ -20,7 +20,7 @@ from beamdyn.scene.validity import warn_of_left_out
 _FUNCTIONS = 5  # of a model of which only the loads are read
 
 
-class _Point(Protocol):
+class _CriticalAnswer(Protocol):
     """What is read of a critical point."""
 
     @property
@@ -36,10 +36,10 @@ class _Point(Protocol):
     def warnings(self) -> tuple[str, ...]: ...
 
 
-Point = TypeVar("Point", bound=_Point)
+Found = TypeVar("Found", bound=_CriticalAnswer)
 
 
-def find_with_chosen_physics(scene: Scene, find: Callable[[Scene], Point], tolerance: float | None) -> Point:
+def find_with_chosen_physics(scene: Scene, find: Callable[[Scene], Found], tolerance: float | None) -> Found:
     """Find a critical point with the effects that change it by more than the tolerance.
 
     Each effect is judged by the critical speed that is found with it: a second plane may buckle where the
@@ -64,7 +64,7 @@ def find_with_chosen_physics(scene: Scene, find: Callable[[Scene], Point], toler
     return replace(point, scene=chosen, warnings=(*point.warnings, *warn_of_left_out(chosen)))
 
 
-def _choose(scene: Scene, find: Callable[[Scene], _Point], tolerance: float) -> Scene:
+def _choose(scene: Scene, find: Callable[[Scene], _CriticalAnswer], tolerance: float) -> Scene:
     """The scene with the effects that change the critical speed."""
 
     def judge(candidate: Scene) -> Judged:
@@ -83,7 +83,7 @@ def _choose(scene: Scene, find: Callable[[Scene], _Point], tolerance: float) -> 
     return choose_by(scene, judge, count, tolerance, np.array([]))
 
 
-def _change(without: _Point, within: _Point) -> float:
+def _change(without: _CriticalAnswer, within: _CriticalAnswer) -> float:
     """Relative change of a critical speed; inf if one of the two is there, nan if that was not resolved."""
     if math.isinf(without.error) or math.isinf(within.error):
         return math.nan

@@ -18,7 +18,7 @@ _STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
 _FURTHER_MODES = 2  # with which those that are sought may exchange their order
 
 
-class Resonance(Protocol):
+class CrossingOfLine(Protocol):
     """A crossing of a line with one mode or two."""
 
     @property
@@ -42,7 +42,7 @@ class Resonance(Protocol):
         ...
 
 
-def left_out_of_resonances(scene: Scene, crossings: Sequence[Resonance], modes: int) -> LeftOutEffects:
+def left_out_of_resonances(scene: Scene, crossings: Sequence[CrossingOfLine], modes: int) -> LeftOutEffects:
     """Estimate what each effect changes in the speeds (k,) of some crossings, to first order.
 
     A speed of resonance moves by the relative change of the frequency, over 1 - (speed/frequency) times the
@@ -71,7 +71,7 @@ def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
     return np.abs(np.imag(eigenvalue)[:, None, :] - frequency[:, :, None]).argmin(axis=2)
 
 
-def _pair(crossing: Resonance) -> tuple[float, float]:
+def _pair(crossing: CrossingOfLine) -> tuple[float, float]:
     """Angular frequencies of the two modes of a crossing [rad/s]; the same twice where it has one."""
     first = 2 * np.pi * crossing.frequency
     return first, first if crossing.second_mode is None else crossing.line.multiple * crossing.speed - first
