@@ -11,10 +11,9 @@ from beamdyn.modal.model import Model
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
-_MARGIN_OF_MORE = (
-    12.0  # the same of two planes, shear or springs: a mode may lack functions of one field only
-)
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
+_MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
+_FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
 
 @dataclass(frozen=True)
@@ -129,5 +128,6 @@ def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.n
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), model.solver.lowest_at_rest)
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size
-    margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_MORE
+    may_lack = (largest > _FEW) & (not model.scene.is_slender_beam_in_one_plane)
+    margin = np.where(may_lack, _MARGIN_OF_FIELDS, _MARGIN)
     return np.where(largest > _SLOW, np.maximum(margin * relative, margin / 10 * largest), relative)
