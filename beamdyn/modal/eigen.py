@@ -32,7 +32,7 @@ from beamdyn.modal.springs import (
 
 _EPS = np.finfo(float).eps
 # Rounding errors beyond those of `beamdyn.equations.rounding`.
-TWO_PLANES = 2.5  # rounding of two planes over that of one: measured on random scenes
+_TWO_PLANES, _ON_SPRINGS = 3.0, 2.0  # their rounding over that of one clamped plane, on random scenes
 _CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
 LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
@@ -156,9 +156,7 @@ class Solver(Eigensolver):
         modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
         growth = max(1.0, self.size / ROUNDING_SIZE)  # rounding adds up over the functions
         rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
-        if self.pencil.planes == 1:
-            return rounding
-        return TWO_PLANES * (rounding + cancelled(self.pencil, speeds, squared, vector))
+        return rounding_of_scene(self.pencil, speeds, squared, vector, rounding)
 
     # Gyroscopic and damped equations ----------------------------------------------------------------
 
@@ -196,14 +194,20 @@ class Solver(Eigensolver):
         return find_free_turns(self.pencil, conservative.eigenvalue[0], conservative.vector[0])
 
 
-def cancelled(pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Relative error (S, k) of frequencies by rounding of large entries of the stiffness of a stiff plane.
+def rounding_of_scene(
+    pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray, rounding: np.ndarray
+) -> np.ndarray:
+    """Relative error (S, k) of frequencies by rounding, from that of a clamped beam in one plane.
 
-    The absolute values `size` of the modes have shape (S, n, k).
+    Two planes add what cancels of large entries of the stiffness of a stiff plane.  The absolute values
+    `size` of the modes have shape (S, n, k).
     """
+    if pencil.planes == 1:
+        return _ON_SPRINGS * rounding if pencil.shift else rounding
     K = np.abs(pencil.K0) + speeds[:, None, None] ** 2 * np.abs(pencil.K2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return _CANCELLED * (size * (K @ size)).sum(axis=1) / np.abs(squared)
+        cancelled = _CANCELLED * (size * (K @ size)).sum(axis=1) / np.abs(squared)
+    return _TWO_PLANES * (rounding + cancelled)
 
 
 @contextmanager

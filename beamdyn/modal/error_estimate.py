@@ -130,4 +130,5 @@ def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.n
     relative = half / size
     may_lack = (largest > _FEW) & (not model.scene.is_slender_beam_in_one_plane)
     margin = np.where(may_lack, _MARGIN_OF_FIELDS, _MARGIN)
-    return np.where(largest > _SLOW, np.maximum(margin * relative, margin / 10 * largest), relative)
+    is_slow = largest > _SLOW
+    return np.maximum(np.where(is_slow, margin, 1) * relative, np.where(is_slow, margin / 10, 0.01) * largest)

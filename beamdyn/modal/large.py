@@ -18,11 +18,10 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigen import (
     LEAST_STIFFNESS,
-    TWO_PLANES,
     Solver,
-    cancelled,
     explained,
     forward_error,
+    rounding_of_scene,
     select_lowest,
 )
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
@@ -123,10 +122,7 @@ class LargeSolver(Eigensolver):
         by_terms = terms / squared
         growth = max(1.0, self.size / ROUNDING_SIZE)
         rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
-        if self.pencil.planes == 1:
-            return rounding
-        by_entries = cancelled(self.pencil, np.array([speed]), squared, size[None])[0]
-        return TWO_PLANES * (rounding + by_entries)
+        return rounding_of_scene(self.pencil, np.array([speed]), squared, size[None], rounding)[0]
 
     @cached_property
     def _absolute_spin(self) -> np.ndarray:
