@@ -279,10 +279,10 @@ def test_a_table_of_speeds_that_ends_early_is_refused(run, tmp_path):
     table = '[motion.rotation]\nkind = "sampled"\ntimes = ["0 s", "1 s"]\nspeeds = ["0 rad/s", "9 rad/s"]\n\n'
     path = tmp_path / "sampled.toml"
     path.write_text(text[:i] + table + text[j:])
-    code, out, err = run("simulate", path, "--t-end", "2 s")
+    code, out, err = run("simulate", path, "--t-end", "2 s", "--modes", "2")
     assert (code, out) == (BAD_INPUT, "")
     assert "1 s" in err
-    assert run("simulate", path, "--t-end", "1 s")[0] == DONE
+    assert run("simulate", path, "--t-end", "1 s", "--modes", "2")[0] == DONE
 
 
 @pytest.mark.parametrize(

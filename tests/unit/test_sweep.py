@@ -107,7 +107,7 @@ def test_result_is_saved_and_drawn(found, tmp_path):
 
 def test_limits_of_the_model_are_named():
     rough = replace(SCENE, motion=replace(MOTION, road=bd.RoadWave(0.3, velocity_amplitude=3.0)))
-    warnings = " ".join(bd.sweep(rough, SPEEDS, WINDOW).warnings)
+    warnings = " ".join(bd.sweep(rough, SPEEDS, WINDOW, modes=2).warnings)
     assert "outside linear theory" in warnings
     assert "leaves the road" in warnings
 
@@ -193,7 +193,7 @@ def of_lambdas():
 
 
 def test_lambdas_work_in_memory():
-    assert bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW).status == ("done", "done")
+    assert bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW, modes=2).status == ("done", "done")
 
 
 @pytest.mark.parametrize("where", ["store", "workers", "executor"])
