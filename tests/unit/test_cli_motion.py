@@ -159,7 +159,7 @@ def test_sweep_is_stored_and_resumed(run, tmp_path):
 
 def test_interrupted_sweep_says_how_to_go_on(tmp_path):
     store = tmp_path / "store"
-    speeds = ("--speeds", "0:150:151 rad/s", "--window", "1:2 s", "--modes", "2")
+    speeds = ("--speeds", "0:150:1501 rad/s", "--window", "0.1:0.3 s", "--modes", "2")  # many short chunks
     command = [sys.executable, "-m", "beamdyn", "sweep", SCENE, *speeds, "--store", str(store)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as process:
@@ -169,7 +169,7 @@ def test_interrupted_sweep_says_how_to_go_on(tmp_path):
         process.send_signal(signal.SIGINT)
         err = process.communicate(timeout=60)[1]
     assert process.returncode == INTERRUPTED
-    assert "of 151 speeds are stored in" in err and "the same command goes on" in err
+    assert "of 1501 speeds are stored in" in err and "the same command goes on" in err
     assert "Traceback" not in err
 
 
