@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -162,7 +163,12 @@ def test_interrupted_sweep_says_how_to_go_on(tmp_path):
     speeds = ("--speeds", "0:150:1501 rad/s", "--window", "0.1:0.3 s", "--modes", "2")  # many short chunks
     command = [sys.executable, "-m", "beamdyn", "sweep", SCENE, *speeds, "--store", str(store)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as process:
+    heed = partial(
+        signal.signal, signal.SIGINT, signal.SIG_DFL
+    )  # also where these tests run in the background
+    with subprocess.Popen(
+        command, env=environment, stderr=subprocess.PIPE, text=True, preexec_fn=heed
+    ) as process:
         deadline = time.monotonic() + 60
         while len(list(store.glob("*.json"))) < 2 and time.monotonic() < deadline:
             time.sleep(0.01)
