@@ -165,7 +165,7 @@ def test_interrupted_sweep_says_how_to_go_on(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     heed = partial(
         signal.signal, signal.SIGINT, signal.SIG_DFL
-    )  # also where these tests run in the background
+    )  # in the background, too
     with subprocess.Popen(
         command, env=environment, stderr=subprocess.PIPE, text=True, preexec_fn=heed
     ) as process:
