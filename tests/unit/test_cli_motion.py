@@ -163,9 +163,7 @@ def test_interrupted_sweep_says_how_to_go_on(tmp_path):
     speeds = ("--speeds", "0:150:1501 rad/s", "--window", "0.1:0.3 s", "--modes", "2")  # many short chunks
     command = [sys.executable, "-m", "beamdyn", "sweep", SCENE, *speeds, "--store", str(store)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    heed = partial(
-        signal.signal, signal.SIGINT, signal.SIG_DFL
-    )  # in the background, too
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # in the background, too
     with subprocess.Popen(
         command, env=environment, stderr=subprocess.PIPE, text=True, preexec_fn=heed
     ) as process:
