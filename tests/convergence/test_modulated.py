@@ -74,16 +74,16 @@ def test_a_term_on_any_varying_quantity_is_treated() -> None:
     """Two varying stiffnesses: the series agrees with DOP853, in as few steps as one of them takes."""
     system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(3), replace(ROLLING.motion, speed=55.0))
     both, y0 = with_transverse_stiffness(system, 0.003), np.array([1e-6, 0, 0, 0, 0, 0])
-    assert len(both.modulated(0.0, 0.5).G) == 2
-    path, error, method = integrate(both, y0, 0.5, 1e-5)
-    exact = integrate_by_solve_ivp(both, y0, 0.5, "DOP853", 1e-11, {})
-    t = np.linspace(0, 0.5, 1001)
+    assert len(both.modulated(0.0, 0.2).G) == 2
+    path, error, method = integrate(both, y0, 0.2, 1e-5)
+    exact = integrate_by_solve_ivp(both, y0, 0.2, "DOP853", 1e-11, {})
+    t = np.linspace(0, 0.2, 1001)
     tip = exact.at(t)[0] @ both.tip
     assert np.abs(path.at(t)[0] @ both.tip - tip).max() <= error <= 1e-5 * np.abs(tip).max()
-    _, _, method_of_one = integrate(system, y0, 0.5, 1e-5)
+    _, _, method_of_one = integrate(system, y0, 0.2, 1e-5)
     steps, steps_of_one = (int(words.split()[-2]) for words in (method, method_of_one))
     assert steps <= 1.1 * steps_of_one
-    unchanged = integrate(system, y0, 0.5, 1e-5)[0].at(t)[0] @ system.tip
+    unchanged = integrate(system, y0, 0.2, 1e-5)[0].at(t)[0] @ system.tip
     assert np.abs(unchanged - tip).max() > 500 * error  # the term matters
 
 

@@ -14,6 +14,8 @@ from beamdyn.common.edge.tables import comparison_table, console
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, large_deflection, motion, others
 
+pytestmark = pytest.mark.xdist_group("beamdyn reproduce")  # all is computed once, by one worker
+
 
 @pytest.fixture(scope="module")
 def swept():
@@ -21,12 +23,20 @@ def swept():
 
 
 @pytest.fixture(scope="module")
-def rows(swept):
-    return [row for section in reproduce.sections(swept).values() for row in section]
+def sections(swept):
+    return reproduce.sections(swept)
 
 
-def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept):
+@pytest.fixture(scope="module")
+def rows(sections):
+    return [row for section in sections.values() for row in section]
+
+
+def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept, sections):
     monkeypatch.setattr(motion, "run_sweep", lambda progress: swept)
+    monkeypatch.setattr(
+        reproduce, "sections", lambda of: {id(swept): sections}[id(of)]
+    )  # once, of that sweep
     assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
     out, err = capsys.readouterr()
     assert err == ""

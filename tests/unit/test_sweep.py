@@ -33,13 +33,16 @@ def test_peaks_are_those_of_single_transients(found):
 
 
 @pytest.mark.parametrize(
+    "speeds", [(1.0, 90.0), pytest.param((1.0, 20.0, 60.0, 90.0), marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize(
     ("law", "tolerance", "two_speeds"),
     [("smooth", 1e-3, True), ("linear", 2e-4, True), ("linear", 1e-4, False)],
 )
-def test_chosen_modes_leave_out_no_more_than_is_stated(law, tolerance, two_speeds):
+def test_chosen_modes_leave_out_no_more_than_is_stated(law, tolerance, two_speeds, speeds):
     """Modes at two speeds or, of an abrupt start at tight tolerances, at rest; all cases keep the same."""
     spun = replace(SCENE, motion=bd.SpinUp(55.0, 0.2, law=law), mount=bd.Mount(0.215, 1.0))
-    found = bd.sweep(spun, [1.0, 20.0, 60.0, 90.0], WINDOW, tolerance=tolerance)
+    found = bd.sweep(spun, speeds, WINDOW, tolerance=tolerance)
     assert ("rad/s" in found.provenance.method) == two_speeds
     for speed, peak, largest, error in zip(
         found.speeds, found.peaks, found.largest, found.time_error, strict=True
@@ -107,7 +110,7 @@ def test_result_is_saved_and_drawn(found, tmp_path):
 
 def test_limits_of_the_model_are_named():
     rough = replace(SCENE, motion=replace(MOTION, road=bd.RoadWave(0.3, velocity_amplitude=3.0)))
-    warnings = " ".join(bd.sweep(rough, SPEEDS, WINDOW).warnings)
+    warnings = " ".join(bd.sweep(rough, SPEEDS, WINDOW, modes=2).warnings)
     assert "outside linear theory" in warnings
     assert "leaves the road" in warnings
 
@@ -193,7 +196,7 @@ def of_lambdas():
 
 
 def test_lambdas_work_in_memory():
-    assert bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW).status == ("done", "done")
+    assert bd.sweep(of_lambdas(), [10.0, 20.0], WINDOW, modes=2).status == ("done", "done")
 
 
 @pytest.mark.parametrize("where", ["store", "workers", "executor"])
