@@ -24,9 +24,7 @@ from beamdyn.spectrum.modes import Locus
 from beamdyn.steady.resonance import Crossings
 
 _SPEEDS = 121
-_NOT_MARKED = "the resonance speeds listed are of other physics than the frequencies, and not marked in the drawing"
-    "the resonance speeds listed are of other physics than the frequencies, and are not marked in the drawing"
-)
+_NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
 
 
 @dataclass(frozen=True)
