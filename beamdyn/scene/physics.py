@@ -35,8 +35,8 @@ class Physics:
     Raises
     ------
     ValueError
-        If `planes` is neither 1 nor 2, another value is no truth value, large deflection cannot be
-        combined with another effect, or a bent branch is given without it.
+        If `planes` is neither 1 nor 2, another value is no truth value, or large deflection cannot be
+        combined with another effect.
     """
 
     planes: Annotated[
@@ -59,9 +59,6 @@ class Physics:
         one_of("physics.branch", self.branch, ("straight", "bent"))
         if self.large_deflection:
             self._check_combination()
-        elif self.branch != "straight":
-            bound = "a beam has branches only with large_deflection, which is off"
-            raise InvalidValue("physics.branch", self.branch, bound, "switch large_deflection on, too")
 
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""

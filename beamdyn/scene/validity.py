@@ -28,6 +28,11 @@ def warn_of_left_out(scene: Scene) -> Iterator[str]:
     if scene.physics_choice is not None:
         yield from scene.physics_choice.warnings()
         return
+    if scene.physics.branch != "straight" and not scene.physics.large_deflection:
+        yield (
+            f"physics.branch is {scene.physics.branch}, but physics.large_deflection is off: the beam is taken as "
+            f"straight; Physics(large_deflection=True, branch='{scene.physics.branch}') bends it"
+        )
     given = {
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
