@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.announced import OUTSIDE
-from beamdyn.common.edge.wording import as_in_files
+from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
 from beamdyn.result_tables import where_worst
 

@@ -12,8 +12,8 @@ from rich.text import Text
 
 from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.digits import supported
+from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import set_apart, table
-from beamdyn.common.edge.wording import as_in_files
 from beamdyn.equations.directions import (
     first_drawn,
     modelled_directions,

@@ -249,8 +249,8 @@ def terms(
     force
         Overwrite a file that exists.
     """
+    from beamdyn.common.edge.file_words import as_in_files
     from beamdyn.common.edge.tables import console, table
-    from beamdyn.common.edge.wording import as_in_files
     from beamdyn.equations.terms import terms
 
     outputs = Outputs(json=json, force=force)

@@ -30,8 +30,8 @@ def warn_of_left_out(scene: Scene) -> Iterator[str]:
         return
     if scene.physics.branch != "straight" and not scene.physics.large_deflection:
         yield (
-            f"physics.branch is {scene.physics.branch}, but physics.large_deflection is off: the beam is taken as "
-            f"straight; Physics(large_deflection=True, branch='{scene.physics.branch}') bends it"
+            f"physics.branch is {scene.physics.branch}, but physics.large_deflection is off: the beam is taken "
+            f"as straight; Physics(large_deflection=True, branch='{scene.physics.branch}') bends it"
         )
     given = {
         "twist": scene.beam.twist is not None,

@@ -13,8 +13,8 @@ import beamdyn as bd
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.cautions import critical_label, labels_of, notes_of, warnings_of
 from beamdyn.common.announced import OutsideLinearTheory
+from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
-from beamdyn.common.edge.wording import as_in_files
 from beamdyn.result_rows import modes_csv
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "harvester_45deg.toml")

@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args, get_origin
 from cyclopts import App, CycloptsError, UnknownOptionError
 
 from beamdyn.common.announced import OutsideLinearTheory
-from beamdyn.common.edge.wording import as_in_files
+from beamdyn.common.edge.file_words import as_in_files
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
