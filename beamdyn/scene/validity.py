@@ -29,9 +29,10 @@ def warn_of_left_out(scene: Scene) -> Iterator[str]:
         yield from scene.physics_choice.warnings()
         return
     if scene.physics.branch != "straight" and not scene.physics.large_deflection:
+        branch = scene.physics.branch
         yield (
-            f"physics.branch is {scene.physics.branch}, but physics.large_deflection is off: the beam is taken "
-            f"as straight; Physics(large_deflection=True, branch='{scene.physics.branch}') bends it"
+            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is taken as straight; "
+            f"Physics(large_deflection=True, branch='{branch}') bends it"
         )
     given = {
         "twist": scene.beam.twist is not None,
