@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-_LETTERS = 13.0  # of a note, in an inch
+_LETTERS = 15.0  # of a note, in an inch
 _COLOUR = "#5a4200"
 
 

@@ -31,7 +31,7 @@ def warn_of_left_out(scene: Scene) -> Iterator[str]:
     if scene.physics.branch != "straight" and not scene.physics.large_deflection:
         branch = scene.physics.branch
         yield (
-            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is taken as straight; "
+            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; "
             f"Physics(large_deflection=True, branch='{branch}') bends it"
         )
     given = {
