@@ -188,7 +188,7 @@ class _ChoosablePhysics(MadeSection):
 
 def _auto_as_table(given: Any) -> Any:
     """The word "auto" as the table that says the same."""
-    if not isinstance(given, str):
+    if isinstance(given, Mapping):
         return given
     if given != AUTO_NAME:
         raise InvalidInput("", given, f'give "{AUTO_NAME}", or a table [physics]')

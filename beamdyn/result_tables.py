@@ -10,7 +10,9 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.digits import supported
+from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.equations.directions import (
     first_drawn,
@@ -61,7 +63,12 @@ def modes_table(result: Modes) -> Group:
         "status",
     )
     shown = table(title, heads, rows, (len(heads) - 1,))
-    return Group(shown, Text(result.left_out_effects.sentence()))
+    return Group(shown, _model_line(result.left_out_effects.sentence()))
+
+
+def _model_line(sentence: str) -> Text:
+    """The line on the model below a table."""
+    return Text(as_in_files(sentence))
 
 
 def _model_error_cell(effects: LeftOutEffects, mode: int) -> str:
@@ -87,7 +94,7 @@ def locus_table(result: Locus) -> Group:
     Below it stands what the model leaves out; digits beyond the model error are dimmed.
     """
     size, shown = np.abs(result.eigenvalue) * result.error, _select_speeds(result)
-    beyond = _model_error_at(result, shown) * np.abs(result.frequency[shown])
+    beyond = model_error_at(result, shown) * np.abs(result.frequency[shown])
     modes = {
         f"mode {mode + 1} [Hz]": [
             _locus_cell(result, size, s, mode, error) for s, error in zip(shown, beyond[:, mode], strict=True)
@@ -107,7 +114,7 @@ def locus_table(result: Locus) -> Group:
     tables = (zip(*block.values(), strict=True) for block in blocks)
     titles = (title, *["The same speeds, further columns"] * (len(blocks) - 1))
     made = (table(t, [*b], rows, ()) for t, b, rows in zip(titles, blocks, tables, strict=True))
-    return Group(*made, Text(result.left_out_effects.sentence(where=where_worst(result))))
+    return Group(*made, _model_line(result.left_out_effects.sentence(where=where_worst(result))))
 
 
 def where_worst(result: Locus | SteadyResponse | Sweep) -> str:
@@ -119,11 +126,16 @@ def where_worst(result: Locus | SteadyResponse | Sweep) -> str:
     return f"at {result.left_out_speeds[worst]:.6g} rad/s"
 
 
-def _model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
+def model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
     """Model error (k, m) at speeds of some indices, linear between those where it is computed."""
-    known = result.left_out_speeds
-    each = (np.interp(result.speeds[indices], known, error) for error in result.model_error.T)
+    each = (between_speeds(result, error)[indices] for error in result.model_error.T)
     return np.stack([*each], axis=1)
+
+
+def between_speeds(result: Locus | SteadyResponse | Sweep, error: np.ndarray) -> np.ndarray:
+    """Model errors (S,) at all speeds, from those (k,) where they are computed; the nearest outside these."""
+    known = result.left_out_speeds
+    return np.interp(result.speeds, known, error) if len(known) else np.full(len(result.speeds), np.nan)
 
 
 def _blocks(columns: Mapping[str, Sequence[Cell]], width: int) -> list[dict[str, Sequence[Cell]]]:
@@ -194,7 +206,7 @@ def limits_table(result: SettingAngleLimits) -> Group:
 
 def critical_answer(result: CriticalPoint) -> Group:
     """The sentence on the critical speed, or how far it was looked where none was found, and on the model."""
-    return Group(_describe_critical(result), Text(result.left_out_effects.sentence("")))
+    return Group(_describe_critical(result), _model_line(result.left_out_effects.sentence("")))
 
 
 def _describe_critical(result: CriticalPoint) -> Text:
@@ -203,9 +215,11 @@ def _describe_critical(result: CriticalPoint) -> Text:
             return Text(f"critical speed: 0 rad/s; the beam is unstable at every speed: {result.reason}")
         value = supported(result.speed, result.error * result.speed, _CRITICAL_DIGITS)
         shown = set_apart(value, float(result.model_error) * result.speed)
-        return Text.assemble("critical speed: ", shown, f" rad/s; above it the beam buckles: {result.reason}")
+        straight = any(OUTSIDE in warning for warning in result.warnings)
+        which = "a straight beam would buckle" if straight else "the beam buckles"
+        return Text.assemble("critical speed: ", shown, f" rad/s; above it {which}: {result.reason}")
     if math.isinf(result.none_below):
-        return Text(f"no critical speed: {result.reason}")
+        return Text(f"no critical speed: {as_in_files(result.reason)}")
     bound = f"{result.none_below:.4g} rad/s"
     if not result.error:
         return Text(f"no critical speed below {bound}: {result.reason}")
@@ -234,8 +248,8 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
         ("", "tip deflection [mm]", "over the length", "at [s]"),
         rows,
     )
-    left_out = Text(run.left_out_effects.sentence("", "of the largest deflection"))
-    warnings = *run.warnings, *run.left_out_effects.warnings()
+    left_out = _model_line(run.left_out_effects.sentence("", "of the largest deflection"))
+    warnings = (as_in_files(w) for w in (*run.warnings, *run.left_out_effects.warnings()))
     return Group(shown, Text(_describe_errors(run)), left_out, *(Text(f"warning: {w}") for w in warnings))
 
 
@@ -260,12 +274,15 @@ def time_of_peak(
     return float(run.t[index]), float(np.diff(run.t[inside]).max())
 
 
-def _peak_cells(run: Transient, start: float, end: float, direction: int | None) -> tuple[str, str, str]:
+def _peak_cells(run: Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
     """Largest tip deflection in a window [mm], over the length, and its time [s]."""
     size, length = run.peak(start, end, direction), run.scene.beam.length
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error if math.isfinite(run.mode_error) else 0.0
-    deflection, ratio = (supported(size * f, error * f, _MODEL_DIGITS) for f in (1e3, 1 / length))
+    beyond = float(run.model_error) * size
+    deflection, ratio = (
+        set_apart(supported(size * f, error * f, _MODEL_DIGITS), beyond * f) for f in (1e3, 1 / length)
+    )
     return deflection, ratio, supported(*time_of_peak(run, start, end, direction)) if size else "-"
 
 
@@ -287,21 +304,21 @@ def crossings_table(result: Crossings) -> Group:
     """Table of resonance speeds, with the plane of each mode where two are modelled."""
     rows = [
         (
-            supported(c.speed, c.error * c.speed),
+            set_apart(supported(c.speed, c.error * c.speed), beyond * c.speed),
             f"{c.line.name}: {c.line.multiple:.6g} times the speed",
             str(c.mode) if c.second_mode is None else f"{c.mode} and {c.second_mode}",
             *_plane_cells(result, c),
-            supported(c.frequency, c.error * c.frequency),
+            set_apart(supported(c.frequency, c.error * c.frequency), beyond * c.frequency),
             c.kind,
         )
-        for c in result
+        for c, beyond in zip(result, np.atleast_1d(result.model_error).tolist(), strict=False)
     ]
     number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
     title = f"{number}, by {result.provenance.method}. {result.extent}"
     plane = [f"{', '.join(words)} [%]"] if (words := words_of_directions(result.scene)) else []
     heads = ("speed [rad/s]", "line", "mode", *plane, "frequency [Hz]", "kind")
     shown = table(title, heads, rows, (1, len(heads) - 1))
-    return Group(shown, Text(result.left_out_effects.sentence("resonance" if len(rows) > 1 else "")))
+    return Group(shown, _model_line(result.left_out_effects.sentence("resonance" if len(rows) > 1 else "")))
 
 
 def _plane_cells(result: Crossings, crossing: Crossing) -> Iterator[str]:
@@ -317,9 +334,10 @@ def steady_table(result: SteadyResponse) -> Group:
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
     shown = _select_response_speeds(result.status, peaks_at)
     error = result.error * result.bound
-    names, by_direction = words_of_directions(result.scene), _largest_by_direction(result)
+    names, by_direction = words_of_directions(result.scene), largest_by_direction(result)
     sizes = result.amplitude, *by_direction, result.bound
-    cells = [_millimetres(values, error) for values in sizes]
+    beyond = between_speeds(result, result.model_error)
+    cells = [_millimetres(values, error, beyond) for values in sizes]
     columns = [_speed_cells(result.speeds), *cells, _status_cells(result.status, peaks_at)]
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
     largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in names))
@@ -327,10 +345,10 @@ def steady_table(result: SteadyResponse) -> Group:
     made = table(
         title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
     )
-    return Group(made, Text(result.left_out_effects.sentence("", where_worst(result))))
+    return Group(made, _model_line(result.left_out_effects.sentence("", where_worst(result))))
 
 
-def _largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
+def largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
     """Largest tip deflection in the direction of bending and across, where both are modelled."""
     return [result.largest_tip(direction) for direction in range(len(words_of_directions(result.scene)))]
 
@@ -340,14 +358,15 @@ def sweep_table(result: Sweep) -> Group:
     peaks_at = sweep_peaks(result)
     shown = _select_response_speeds(np.array(result.status), peaks_at)
     words, drawn = words_of_directions(result.scene), sweep_lines(result)
-    sizes = [_millimetres(values, result.time_error) for values in drawn.values()]
+    beyond = between_speeds(result, result.model_error)
+    sizes = [_millimetres(values, result.time_error, beyond) for values in drawn.values()]
     columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
     start, end = result.window
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
     heads = ("speed [rad/s]", *(f"{name} [mm]" for name in ("largest tip deflection", *words)), "status")
     rows = _rows(columns, shown)
     made = table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
-    return Group(made, Text(result.left_out_effects.sentence("", where_worst(result))))
+    return Group(made, _model_line(result.left_out_effects.sentence("", where_worst(result))))
 
 
 def sweep_lines(result: Sweep) -> dict[str, np.ndarray]:
@@ -366,9 +385,10 @@ def _speed_cells(speeds: np.ndarray) -> list[str]:
     return [f"{speed:.8g}" for speed in speeds]
 
 
-def _millimetres(values: np.ndarray, error: np.ndarray) -> list[str]:
-    pairs = zip(1e3 * values, 1e3 * error, strict=True)
-    return [supported(float(v), float(e), _MODEL_DIGITS) for v, e in pairs]
+def _millimetres(values: np.ndarray, error: np.ndarray, model_error: np.ndarray) -> list[Text]:
+    """Deflections [m], digits beyond the model error (relative) dimmed."""
+    each = zip((1e3 * values).tolist(), (1e3 * error).tolist(), model_error.tolist(), strict=True)
+    return [set_apart(supported(v, e, _MODEL_DIGITS), beyond * abs(v)) for v, e, beyond in each]
 
 
 def _status_cells(status: Iterable[str], peaks_at: np.ndarray) -> list[str]:
@@ -376,7 +396,7 @@ def _status_cells(status: Iterable[str], peaks_at: np.ndarray) -> list[str]:
     return [f"{s}, peak" if i in high else str(s) for i, s in enumerate(status)]
 
 
-def _rows(columns: Sequence[list[str]], shown: np.ndarray) -> Iterator[list[str]]:
+def _rows(columns: Sequence[Sequence[Cell]], shown: np.ndarray) -> Iterator[list[Cell]]:
     return ([column[s] for column in columns] for s in shown)
 
 
@@ -399,80 +419,3 @@ def _selection_note(shown: np.ndarray, all_: np.ndarray) -> str:
     if len(shown) == len(all_):
         return ""
     return f" ({len(shown)} of {len(all_)} speeds; CSV and JSON have all)"
-
-
-# Rows of CSV files, with their heads ----------------------------------------------------------------
-
-
-def _directions_of_csv(scene: Scene) -> tuple[str, ...]:
-    """What heads say of the two directions, at any bending angle; nothing where one plane is modelled."""
-    return ("bending", "across") if scene.physics.planes == 2 else ()
-
-
-def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate and status of each mode; of two planes the share of each."""
-    names, shares = _share_columns(result)
-    yield "mode", "speed_rad_per_s", "frequency_Hz", "relative_error", "growth_rate_per_s", "status", *names
-    columns = result.frequency, result.error, result.growth_rate, result.status, *shares
-    for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
-        yield mode, result.speed, *row
-
-
-def _share_columns(result: Modes | Locus) -> tuple[list[str], list[np.ndarray]]:
-    """Names and values of the shares of the two directions of bending; none where one plane is modelled."""
-    names = [f"share_{direction}" for direction in _directions_of_csv(result.scene)]
-    return names, [result.plane_share[..., direction] for direction in range(len(names))]
-
-
-def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
-    """Frequency, error, growth rate, status, confidence, shares of planes of each mode, one row per speed."""
-    names = ("frequency_Hz", "relative_error", "growth_rate_per_s", "status", "confidence")
-    columns = [result.frequency, result.error, result.growth_rate, result.status, result.confidence]
-    further, shares = _share_columns(result)
-    names, columns = (*names, *further), [*columns, *shares]
-    numbers = range(1, result.frequency.shape[1] + 1)
-    yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
-    for speed, *rows in zip(result.speeds.tolist(), *(column.tolist() for column in columns), strict=True):
-        yield speed, *(value for row in rows for value in row)
-
-
-def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
-    """Tip deflection over time, in both directions where two are modelled."""
-    names = [f"tip_deflection_{direction}_m" for direction in _directions_of_csv(run.scene)]
-    yield "time_s", *(names or ["tip_deflection_m"])
-    columns = run.t, *(run.tip, run.tip_across)[: run.scene.physics.planes]
-    yield from zip(*(column.tolist() for column in columns), strict=True)
-
-
-def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
-    """Largest deflection, where two directions are modelled also in each, and error of time integration."""
-    names = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
-    yield "speed_rad_per_s", "largest_deflection_m", *names, "time_error_m"
-    each = result.peaks_by_direction.T if names else ()
-    columns = result.speeds, result.peaks, *each, result.time_error
-    yield from zip(*(column.tolist() for column in columns), strict=True)
-
-
-def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
-    """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
-    first = "speed_rad_per_s", "relative_error", "frequency_Hz"
-    directions = _directions_of_csv(result.scene)
-    shares = [f"{mode}share_{direction}" for mode in ("", "second_") for direction in directions]
-    yield *first, "line", "multiple", "mode", "second_mode", "kind", *shares
-    for c in result:
-        second = "" if c.second_mode is None else c.second_mode
-        values = *c.plane_share, *(c.second_plane_share or ("", ""))
-        row = c.speed, c.error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
-        yield *row, *values[: len(shares)]
-
-
-def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
-    """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
-    growth = "growth_rate_per_s", "growth_rate_error_per_s"
-    by_direction = _largest_by_direction(result)
-    largest = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
-    heads = "amplitude_m", *largest, "sum_of_lines_m"
-    yield "speed_rad_per_s", *heads, "relative_error", *growth, "status"
-    sizes = result.speeds, result.amplitude, *by_direction, result.bound, result.error
-    columns = *sizes, result.growth_rate, result.growth_rate_error, result.status
-    yield from zip(*(column.tolist() for column in columns), strict=True)

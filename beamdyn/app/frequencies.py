@@ -13,13 +13,18 @@ from rich.console import RenderableType
 from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.app.inputs import DRAGS, TABLES, read
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
+from beamdyn.cautions import critical_label, describe_choice, notes_of, warnings_of
 from beamdyn.common.app.screens import Screen
-from beamdyn.output.plots import mark_critical
-from beamdyn.result_tables import crossings_table, locus_csv, locus_table, where_worst
+from beamdyn.output.notes import note_below
+from beamdyn.output.plots import mark_critical, plot_campbell
+from beamdyn.result_rows import locus_csv
+from beamdyn.result_tables import crossings_table, locus_table
+from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.modes import Locus
 from beamdyn.steady.resonance import Crossings
 
 _SPEEDS = 121
+_NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
 
 
 @dataclass(frozen=True)
@@ -32,16 +37,21 @@ class Frequencies:
         Frequencies over speed.
     crossings : Crossings, optional
         Speeds at which the motion excites them; None without a motion, or where that is not known.
-    critical : float
-        Critical speed [rad/s].
+    critical : CriticalPoint
+        Critical speed.
     refused : str
         Why there are no crossings, if the motion has none that are known.
     """
 
     locus: Locus
     crossings: Crossings | None
-    critical: float
+    critical: CriticalPoint
     refused: str
+
+    @property
+    def have_same_physics(self) -> bool:
+        """Whether the crossings are those of the frequencies."""
+        return self.crossings is None or self.crossings.scene.physics == self.locus.scene.physics
 
 
 def solve(tables: Mapping[str, Any]) -> Frequencies:
@@ -54,30 +64,42 @@ def solve(tables: Mapping[str, Any]) -> Frequencies:
             crossings = resonance_speeds(scene, top, modes)
         except ValueError as error:
             refused = f"no excitation lines: {error}"
-    return Frequencies(locus, crossings, critical_point(scene).speed, refused)
+    return Frequencies(locus, crossings, critical_point(scene), refused)
 
 
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
-    """Crossings and frequencies."""
-    crossings = [] if answer.crossings is None else [crossings_table(answer.crossings)]
-    return [*crossings, locus_table(answer.locus)]
+    """Crossings and frequencies, each with the physics that was chosen for it."""
+    parts: list[RenderableType] = [locus_table(answer.locus), *describe_choice(answer.locus)]
+    if answer.crossings is not None:
+        parts = [crossings_table(answer.crossings), *describe_choice(answer.crossings), *parts]
+    return parts
 
 
 def draw(answer: Frequencies, _: float = 0.0) -> Figure:
     """Campbell's diagram; without motion the locus alone."""
     figure = Figure(figsize=(9.0, 5.4), layout="constrained")
     ax = figure.subplots()
-    (answer.locus if answer.crossings is None else answer.crossings).plot(ax)
-    mark_critical(ax, answer.critical)
-    return figure
+    if answer.crossings is None:
+        answer.locus.plot(ax)
+    elif answer.have_same_physics:
+        answer.crossings.plot(ax)
+    else:  # crossings of other frequencies than these
+        lines = {line.name: line.multiple for line in answer.crossings.lines}
+        plot_campbell(answer.locus.speeds, answer.locus.frequency, lines, {}, ax)
+    mark_critical(ax, answer.critical.speed, critical_label(answer.critical))
+    return note_below(figure, notes_of(answer.locus))
 
 
 def warnings(answer: Frequencies) -> Sequence[str]:
-    """Warnings of both, and why there are no crossings."""
-    crossings = () if answer.crossings is None else answer.crossings.warnings
-    left_out = answer.locus.left_out_effects.warnings(where=where_worst(answer.locus))
+    """Warnings of all, and why there are no crossings."""
     refused = [answer.refused] if answer.refused else []
-    return [*refused, *answer.locus.warnings, *left_out, *crossings]
+    found = [*refused, *warnings_of(answer.locus)]
+    if answer.crossings is not None:
+        found += [f"resonance speeds: {said}" for said in warnings_of(answer.crossings)]
+        found += [] if answer.have_same_physics else [_NOT_MARKED]
+    if answer.critical.speed <= answer.locus.speeds[-1]:
+        found += [f"critical speed: {said}" for said in warnings_of(answer.critical)]
+    return found
 
 
 def rows(answer: Frequencies) -> Iterable[Sequence[object]]:

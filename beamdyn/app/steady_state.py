@@ -11,9 +11,12 @@ from matplotlib.figure import Figure
 from beamdyn import steady_response
 from beamdyn.app.inputs import DRAGS, TABLES, read
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
+from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.result_tables import steady_csv, steady_table, where_worst
+from beamdyn.output.notes import note_below
+from beamdyn.result_rows import steady_csv
+from beamdyn.result_tables import steady_table
 from beamdyn.steady.response import SteadyResponse
 
 _SPEEDS = 242
@@ -31,7 +34,7 @@ def draw(answer: SteadyResponse, _: float = 0.0) -> Figure:
     """The resonance curve."""
     figure = Figure(figsize=(9.0, 5.4), layout="constrained")
     answer.plot(figure.subplots())
-    return figure
+    return note_below(figure, notes_of(answer))
 
 
 STEADY_STATE = Screen(
@@ -40,12 +43,9 @@ STEADY_STATE = Screen(
     TABLES,
     TABLES,
     solve,
-    lambda answer: [steady_table(answer)],
+    lambda answer: [steady_table(answer), *describe_choice(answer)],
     draw,
-    lambda answer: [
-        *answer.warnings,
-        *answer.left_out_effects.warnings(where=where_worst(answer)),
-    ],
+    warnings_of,
     steady_csv,
     sweeps=sweeps_of(steady_outputs, "beam.thickness=0.2:0.3:21 mm", "amplitude"),
     drags=DRAGS,

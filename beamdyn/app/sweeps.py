@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
+from beamdyn.cautions import warnings_of
 from beamdyn.common.app.form_entries import entries_of
 from beamdyn.common.app.screens import Sweeps
 from beamdyn.common.checks import InvalidValue
@@ -25,8 +26,12 @@ from beamdyn.common.edge.input_sweep import (
     one_by_one,
     parse_axis,
 )
+from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR
 from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.critical import CriticalPoint
+from beamdyn.spectrum.modes import Modes
 
+Kept = TypeVar("Kept")
 _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the largest, how often these close in
 
 
@@ -47,13 +52,34 @@ class SweepCase:
     scene: Scene
     top: float
     modes: int
+    answers: list[Any] = field(default_factory=list, compare=False)
+
+    def _keep(self, answer: Kept) -> Kept:
+        self.answers.append(answer)
+        return answer
+
+    @cached_property
+    def at_rest(self) -> Modes:
+        """The modes at rest."""
+        return self._keep(natural_modes(self.scene, 0.0, self.modes))
+
+    @cached_property
+    def at_top(self) -> Modes:
+        """The modes at the top speed."""
+        return self._keep(natural_modes(self.scene, self.top, self.modes))
+
+    @cached_property
+    def critical(self) -> CriticalPoint:
+        """The critical speed."""
+        return self._keep(critical_point(self.scene))
 
     @cached_property
     def crossings(self) -> np.ndarray:
         """Speeds at which the motion excites a mode [rad/s]."""
         if self.scene.motion is None:
             return np.array([])
-        return np.array([crossing.speed for crossing in resonance_speeds(self.scene, self.top, self.modes)])
+        found = self._keep(resonance_speeds(self.scene, self.top, self.modes))
+        return np.array([crossing.speed for crossing in found])
 
     @property
     def first_resonance(self) -> float:
@@ -63,8 +89,19 @@ class SweepCase:
     def amplitudes(self, speeds: np.ndarray) -> np.ndarray:
         """Steady amplitudes [m]; nan where there is none."""
         if self.scene.motion is None:
-            raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
+            raise _no_motion()
         return steady_response(self.scene, speeds, self.modes).amplitude
+
+    @cached_property
+    def amplitude(self) -> float:
+        """Steady amplitude at the top speed [m]."""
+        return self._amplitude_at(self.top)
+
+    def _amplitude_at(self, speed: float) -> float:
+        if self.scene.motion is None:
+            raise _no_motion()
+        found = self._keep(steady_response(self.scene, np.array([speed]), self.modes))
+        return float(found.amplitude[0])
 
     @cached_property
     def peak(self) -> tuple[float, float]:
@@ -84,15 +121,24 @@ class SweepCase:
             best = self._largest(speeds)
             low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, len(speeds) - 1)]
             speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
-        amplitudes = self.amplitudes(speeds)
-        best = int(np.nanargmax(amplitudes))
-        return float(speeds[best]), float(amplitudes[best])
+        best = self._largest(speeds)
+        return float(speeds[best]), self._amplitude_at(float(speeds[best]))
 
     def _largest(self, speeds: np.ndarray) -> int:
         amplitudes = self.amplitudes(speeds)
         if np.isnan(amplitudes).all():
             raise ValueError("at no speed up to the top speed is there a steady response")
         return int(np.nanargmax(amplitudes))
+
+    @cached_property
+    def model_error(self) -> float:
+        """Largest model error of the answers that were asked for; nan where it is not known."""
+        errors = [float(np.max(answer.model_error, initial=0.0)) for answer in self.answers]
+        return float(np.max(errors, initial=0.0))
+
+
+def _no_motion() -> MissingValue:
+    return MissingValue("motion.kind", None, "choose the motion that excites the beam")
 
 
 def frequency_outputs(modes: int) -> list[Output]:
@@ -104,14 +150,14 @@ def frequency_outputs(modes: int) -> list[Output]:
     ]
     return [
         *frequencies,
-        Output("critical_speed", "critical speed", lambda case: critical_point(case.scene).speed, "rad/s"),
+        Output("critical_speed", "critical speed", lambda case: case.critical.speed, "rad/s"),
         Output("first_resonance", "lowest speed of resonance", lambda case: case.first_resonance, "rad/s"),
     ]
 
 
 def _frequency(mode: int, share: float, case: SweepCase) -> float:
     """A natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
-    return float(natural_modes(case.scene, share * case.top, case.modes).frequency[mode])
+    return float((case.at_top if share else case.at_rest).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
@@ -120,7 +166,7 @@ def steady_outputs(_: int) -> list[Output]:
         Output(
             "amplitude",
             "amplitude at top speed",
-            lambda case: case.amplitudes(np.array([case.top]))[0],
+            lambda case: case.amplitude,
             "mm",
             1e-3,
         ),
@@ -136,9 +182,37 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
         check_cases([axis], MOST_ONE_BY_ONE, "sweep")
         wanted = chosen(outputs(_modes(tables)), names, "results")
-        return one_by_one(tables, [axis], wanted, lambda design: SweepCase(*read(design)))
+        cases: list[SweepCase] = []
+
+        def case_of(design: Mapping[str, Any]) -> SweepCase:
+            cases.append(SweepCase(*read(design)))
+            return cases[-1]
+
+        swept = one_by_one(tables, [axis], [*wanted, _MODEL_ERROR], case_of)
+        return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases)))
 
     return Sweeps(partial(_names, outputs), example, results, run)
+
+
+_MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.model_error, "%", 0.01)
+
+
+def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
+    """Yield the warnings of the case with the largest model error, and of the first where it is not known."""
+    errors = [case.model_error for case in cases]
+    large = [case for case, error in zip(cases, errors, strict=True) if error > LARGE_MODEL_ERROR]
+    unknown = [case for case, error in zip(cases, errors, strict=True) if np.isnan(error)]
+    if large:
+        where = f"at {len(large)} of {len(cases)} values the model error exceeds 1 %; where it is largest: "
+        yield from _warnings_of_case(max(large, key=lambda case: case.model_error), where)
+    if unknown:
+        where = f"at {len(unknown)} of {len(cases)} values the model error is not known; at the first: "
+        yield from _warnings_of_case(unknown[0], where)
+
+
+def _warnings_of_case(case: SweepCase, where: str) -> Iterator[str]:
+    said = "; ".join(dict.fromkeys(said for answer in case.answers for said in warnings_of(answer)))
+    yield f"{where}{said or 'of a mode that does not vibrate, for instance'}."
 
 
 def _names(outputs: Any, tables: Mapping[str, Any]) -> Sequence[str]:

@@ -7,7 +7,7 @@ from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.program import app, deliver, describe_choice, warn
+from beamdyn.cli.program import app, deliver, warn
 from beamdyn.cli.values import (
     Discretization,
     ModeCount,
@@ -64,8 +64,10 @@ def modes(
         Output files.
     """
     from beamdyn import natural_modes
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import modes_csv, modes_table
+    from beamdyn.result_rows import modes_csv
+    from beamdyn.result_tables import modes_table
 
     outputs.check(scene, shapes=shapes)
     loaded = load_with(scene, physics)
@@ -81,8 +83,8 @@ def modes(
     result = natural_modes(loaded, speed_or_final(loaded, speed), modes, discretization, tolerance)
     if shapes is not None:
         _write_shapes(result, shapes, outputs.force)
-    warnings, refusal = [w for w in result.warnings if not w.startswith("unstable")], _unstable(result)
-    warnings += result.left_out_effects.warnings(tolerance)
+    warnings = [w for w in warnings_of(result, tolerance) if not w.startswith("unstable")]
+    refusal = _unstable(result)
     tables, rows, draw = [modes_table(result)], modes_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
 
@@ -119,8 +121,10 @@ def locus(
         Output files.
     """
     from beamdyn import frequency_locus
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import locus_csv, locus_table, where_worst
+    from beamdyn.result_rows import locus_csv
+    from beamdyn.result_tables import locus_table
 
     outputs.check(scene)
     given = parse_speeds(speeds)
@@ -135,8 +139,7 @@ def locus(
     )
     result = frequency_locus(load_with(scene, physics), given, modes, discretization, tolerance)
     tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
-    warnings = *result.warnings, *result.left_out_effects.warnings(tolerance, where_worst(result))
-    deliver(result, outputs, question, tables, rows, draw, warnings)
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result, tolerance))
 
 
 @app.command
@@ -165,6 +168,7 @@ def critical(
         Overwrite a file that exists.
     """
     from beamdyn import critical_point
+    from beamdyn.cautions import describe_choice, warnings_of
     from beamdyn.common.edge.tables import console
     from beamdyn.result_tables import critical_answer
 
@@ -175,7 +179,7 @@ def critical(
     console().print(critical_answer(result), *describe_choice(result), sep="\n")
     if isinf(result.error):  # there is one, perhaps, but it was not found or not resolved
         raise NoAnswer("; ".join(result.warnings))
-    warn([*result.warnings, *result.left_out_effects.warnings()])
+    warn(warnings_of(result))
 
 
 @app.command
@@ -200,7 +204,7 @@ def limits(
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     physics
-        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
+        auto: the plain beam; the limits belong to linear theory, and nothing is added.
     json
         Write the result with its error estimate and provenance into this file.
     force
@@ -245,6 +249,7 @@ def terms(
     force
         Overwrite a file that exists.
     """
+    from beamdyn.common.edge.file_words import as_in_files
     from beamdyn.common.edge.tables import console, table
     from beamdyn.equations.terms import terms
 
@@ -256,23 +261,26 @@ def terms(
     console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
     console().print(result.excited())
     for effect in result.left_out:
-        console().print(f"Left out: {effect.name}: {effect.reason}.")
+        console().print(as_in_files(f"Left out: {effect.name}: {effect.reason}."))
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:
     from beamdyn import critical_point
+    from beamdyn.cautions import critical_label
     from beamdyn.output.plots import mark_critical
 
-    mark_critical(result.plot(ax), critical_point(result.scene).speed)
+    critical = critical_point(result.scene)
+    mark_critical(result.plot(ax), critical.speed, critical_label(critical))
 
 
 def _write_shapes(result: Modes, path: Path, force: bool) -> None:
     import numpy as np
 
+    from beamdyn.cautions import labels_of
     from beamdyn.output.export import write_shapes
 
     x = np.linspace(0, result.scene.beam.length, 101)
-    write_shapes(path, x, np.real(result.shape(x)), result.labels(), force=force)
+    write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)
 
 
 def _unstable(result: Modes) -> str:

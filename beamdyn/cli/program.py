@@ -40,12 +40,6 @@ def warn(warnings: Iterable[str]) -> None:
     program.warn("beamdyn", warnings)
 
 
-def describe_choice(result: Result) -> list[str]:
-    """The line on the physics of a result, where that was chosen."""
-    choice = getattr(result, "physics_choice", None)
-    return [] if choice is None else [choice.sentence()]
-
-
 def deliver(
     result: Result,
     outputs: Outputs,
@@ -76,9 +70,11 @@ def deliver(
     NoAnswer
         With the refusal, after everything has been written.
     """
+    from beamdyn.cautions import describe_choice, noted
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
 
+    draw = noted(draw, result)
     refusals = [refusal] if refusal else []
     tables = [*tables, *describe_choice(result)]
     # The files of a long computation do not depend on who reads the tables.

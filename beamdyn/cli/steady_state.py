@@ -52,8 +52,10 @@ def resonances(
         Output files.
     """
     from beamdyn import resonance_speeds
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import crossings_csv, crossings_table
+    from beamdyn.result_rows import crossings_csv
+    from beamdyn.result_tables import crossings_table
 
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
@@ -61,8 +63,7 @@ def resonances(
     question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options, physics=physics)
     result = resonance_speeds(load_with(scene, physics), top, modes, order, discretization)
     tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
-    warnings = *result.warnings, *result.left_out_effects.warnings()
-    deliver(result, outputs, question, tables, rows, draw, warnings)
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result))
 
 
 @app.command
@@ -97,8 +98,10 @@ def steady(
         Output files.
     """
     from beamdyn import steady_response
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import steady_csv, steady_table, where_worst
+    from beamdyn.result_rows import steady_csv
+    from beamdyn.result_tables import steady_table
 
     outputs.check(scene)
     given = parse_speeds(speeds)
@@ -108,5 +111,4 @@ def steady(
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
     refusal = "" if result.stable.any() else none
     tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)
-    warnings = *result.warnings, *result.left_out_effects.warnings(where=where_worst(result))
-    deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result), refusal)

@@ -81,7 +81,8 @@ def simulate(
         Output files.
     """
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import transient_csv, transient_table
+    from beamdyn.result_rows import transient_csv
+    from beamdyn.result_tables import transient_table
     from beamdyn.transient.simulate import simulate
 
     outputs.check(scene, series=series, animation=animation)
@@ -138,8 +139,10 @@ def sweep(
     outputs
         Output files.
     """
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import sweep_csv, sweep_table, where_worst
+    from beamdyn.result_rows import sweep_csv
+    from beamdyn.result_tables import sweep_table
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
@@ -158,8 +161,7 @@ def sweep(
         means: dict[str, Any] = {"workers": workers, "executor": executor, "store": store}
         result = sweep(loaded, given, span, modes=modes, tolerance=tolerance, **means, progress=progress)
     tables, rows, draw = [sweep_table(result)], sweep_csv(result), on_axes(result.plot)
-    warnings = *result.warnings, *result.left_out_effects.warnings(where=where_worst(result))
-    deliver(result, outputs, question, tables, rows, draw, warnings)
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result))
 
 
 # Close-up -----------------------------------------------------------------------------------------
@@ -168,6 +170,7 @@ def sweep(
 def _write_close_up(
     run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
+    from beamdyn.cautions import notes_of
     from beamdyn.output.export import animate, write_series
 
     if series is None and animation is None:
@@ -176,7 +179,7 @@ def _write_close_up(
     if series is not None:
         write_series(series, x, t, deflection, force=force)
     if animation is not None:
-        animate(x, t, deflection, animation, force=force)
+        animate(x, t, deflection, animation, force=force, notes=notes_of(run))
 
 
 def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

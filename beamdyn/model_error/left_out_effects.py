@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.results import plain
+from beamdyn.model_error.effects import LARGE_DEFLECTION
 from beamdyn.scene.physics_choice import OfChosenPhysics
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
@@ -98,6 +99,12 @@ class LeftOutEffects:
             yield (
                 f"{where and where + ' '}the model error, {size}, exceeds {say_size(limit)}: "
                 f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
+            )
+        elif LARGE_DEFLECTION in self.not_known and not np.isfinite(self.changes[LARGE_DEFLECTION]).all():
+            why = self.not_known[LARGE_DEFLECTION]
+            yield (
+                f"{where and where + ' '}the model error may exceed {say_size(limit)}: what "
+                f"{LARGE_DEFLECTION}, left out, changes is not known: {why}"
             )
 
 

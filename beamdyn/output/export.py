@@ -135,6 +135,7 @@ def animate(
     path: str | Path,
     force: bool = False,
     rate: float = 20.0,
+    notes: Sequence[str] = (),
 ) -> None:
     """Write an animation of the beam, one frame for each time.
 
@@ -152,6 +153,8 @@ def animate(
         Overwrite a file that exists.
     rate : float
         Frames per second.
+    notes : sequence of str
+        Sentences below the picture.
 
     Raises
     ------
@@ -164,8 +167,10 @@ def animate(
     """
     from matplotlib.figure import Figure
 
+    from beamdyn.output.notes import note_below
+
     x, t, deflection = _check_history(x, t, deflection)
-    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    figure = note_below(Figure(figsize=(6.4, 3.6), layout="constrained"), notes)
     line, title = _draw_axes(figure.subplots(), x, np.abs(deflection).max())
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once, not for each frame

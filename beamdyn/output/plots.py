@@ -363,7 +363,7 @@ def mark_points(
     return add_legend(ax)
 
 
-def mark_critical(ax: Axes, speed: float) -> Axes:
+def mark_critical(ax: Axes, speed: float, label: str = "critical speed") -> Axes:
     """Mark a critical speed by a line, and shade what lies past it.
 
     Parameters
@@ -372,6 +372,8 @@ def mark_critical(ax: Axes, speed: float) -> Axes:
         With angular speed [rad/s] on x; its limits stay.
     speed : float
         Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
+    label : str
+        What to call it.
 
     Returns
     -------
@@ -379,7 +381,7 @@ def mark_critical(ax: Axes, speed: float) -> Axes:
     """
     left, right = ax.get_xlim()
     if left <= speed < right:
-        ax.axvline(speed, color="0.3", linestyle="--", linewidth=1, label=f"critical speed {speed:.5g} rad/s")
+        ax.axvline(speed, color="0.3", linestyle="--", linewidth=1, label=f"{label} {speed:.5g} rad/s")
         ax.axvspan(speed, right, color="0.93", zorder=0)
         ax.set_xlim(left, right)
     return add_legend(ax)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.checks import MOST, refuse
 from beamdyn.scene.scene import Scene
 
@@ -27,6 +28,12 @@ def warn_of_left_out(scene: Scene) -> Iterator[str]:
     if scene.physics_choice is not None:
         yield from scene.physics_choice.warnings()
         return
+    if scene.physics.branch != "straight" and not scene.physics.large_deflection:
+        branch = scene.physics.branch
+        yield (
+            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; "
+            f"Physics(large_deflection=True, branch='{branch}') bends it"
+        )
     given = {
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
@@ -49,7 +56,7 @@ def warn_of_static_deflection(deflection: np.ndarray, length: float, speeds: np.
         yield (
             f"at {speeds[bent][0]:.6g} rad/s the rotation bends the tip by "
             f"{abs(deflection[bent][0]) / length:.2g} of the length: past {LARGE_DEFLECTION:g} the answer is "
-            "outside linear theory"
+            f"{OUTSIDE}"
         )
 
 
@@ -61,7 +68,7 @@ def warn_of_deflection(
     if large.any():
         yield (
             f"the tip moves by {deflection[large].max() / length:.2g} of the length"
-            f"{_at_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} it is outside linear theory"
+            f"{_at_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} it is {OUTSIDE}"
         )
 
 

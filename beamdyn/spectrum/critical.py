@@ -13,6 +13,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import OUTSIDE, announce, announced
 from beamdyn.common.checks import InvalidValue, positive, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import SteadyPencil
@@ -100,8 +101,9 @@ def critical_speed(
 ) -> float:
     """Compute the critical speed [rad/s], at which the first frequency vanishes; inf if there is none.
 
-    A warning is issued if there may be one where none was found, or if its error is large.  `critical_point`
-    gives the same with its error and its model error.
+    A warning is issued if there may be one where none was found, if its error is large, or if rotation bends
+    the beam at every speed, so that it does not buckle as a straight one does.  `critical_point` gives the
+    same with its error and its model error.
 
     Parameters
     ----------
@@ -117,8 +119,10 @@ def critical_speed(
     float
     """
     point = critical_point(scene, discretization, tolerance)
+    announce(point.warnings)
     for text in point.warnings:
-        warnings.warn(text, stacklevel=2)
+        if OUTSIDE not in text:
+            warnings.warn(text, stacklevel=2)
     return point.speed
 
 
@@ -174,7 +178,10 @@ def critical_point(
         error=found.error,
         none_below=none_below,
         reason=reason,
-        warnings=tuple(_critical_warnings(found, buckling, none_below, discretization, tolerance)),
+        warnings=(
+            *_critical_warnings(found, buckling, none_below, discretization, tolerance),
+            *_warn_of_bending(scene, found.speed),
+        ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
         model=found.model,
@@ -183,8 +190,13 @@ def critical_point(
 
 def _bends_from_rest(scene: Scene) -> bool:
     """Whether large deflection is modelled, and rotation bends the beam at every speed."""
-    across = exact_cos_sin(scene.mount.setting_angle)[1] * exact_cos_sin(scene.mount.bending_angle)[0]
-    return scene.physics.large_deflection and bool(scene.mount.radius * across)
+    return scene.physics.large_deflection and _is_loaded_across(scene)
+
+
+def _is_loaded_across(scene: Scene) -> bool:
+    """Whether rotation bends the beam at every speed, in a direction that is modelled."""
+    in_plane = 1.0 if scene.physics.planes == 2 else exact_cos_sin(scene.mount.bending_angle)[0]
+    return bool(scene.mount.radius * exact_cos_sin(scene.mount.setting_angle)[1] * in_plane)
 
 
 def _about_straight_beam(scene: Scene) -> Scene:
@@ -336,6 +348,15 @@ def _critical_warnings(
         yield f"the estimated relative error of the critical speed is {found.error:.1g}"
 
 
+def _warn_of_bending(scene: Scene, critical: float) -> Iterator[str]:
+    """Yield a warning for a critical speed of a beam that has bent long before."""
+    if np.isfinite(critical) and _is_loaded_across(scene):
+        yield (
+            "rotation bends the beam at every speed, so that it does not buckle as a straight one does: "
+            f"{critical:.6g} rad/s is {OUTSIDE}"
+        )
+
+
 # Setting angles at which the locus changes its character -----------------------------------------
 
 
@@ -374,6 +395,7 @@ class SettingAngleLimits(Result):
         return iter((self.first, self.second))
 
 
+@announced
 def setting_angle_limits(
     scene: Scene, top_speed: float, discretization: DiscretizationChoice = "ritz"
 ) -> SettingAngleLimits:
@@ -503,4 +525,4 @@ def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text
-        yield "at such angles the rotation bends the beam past linear theory" + known
+        yield f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
@@ -162,6 +163,7 @@ def _label(i: int, frequency: float, growth: float) -> str:
     return f"mode {i}: {growth:.4g} 1/s" if np.isnan(frequency) else f"mode {i}: {frequency:.5g} Hz"
 
 
+@announced
 def natural_modes(
     scene: Scene,
     speed: float = 0.0,
@@ -390,6 +392,7 @@ class Locus(StatesModelError):
         return plot_locus(self.speeds, self.frequency, ax)
 
 
+@announced
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def frequency_locus(
     scene: Scene,

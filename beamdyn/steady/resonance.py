@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, count, positive
 from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
@@ -26,7 +27,7 @@ from beamdyn.model_error.choice import SLOW, choose_physics
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, warn_of_left_out
+from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
 from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
 from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, generate_harmonics
 from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
@@ -146,6 +147,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
         return plot_campbell(self.speeds, self.frequency, lines, marked, ax)
 
 
+@announced
 def resonance_speeds(
     scene: Scene,
     top_speed: float,
@@ -210,6 +212,7 @@ def resonance_speeds(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
             *_warn_of_replacement(discretization, model),
             *_warnings(scene, (forced, parametric), len(crossings), order, top, critical),
+            *_warn_of_bending(model, crossings),
         ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
@@ -342,6 +345,14 @@ def _warnings(
         )
     elif not found:
         yield f"no mode meets a line of order {order} up to {min(top, critical):.6g} rad/s; lines: {names}"
+
+
+def _warn_of_bending(model: Model, crossings: Sequence[Crossing]) -> Iterator[str]:
+    """Yield a warning if rotation bends a linear beam too far at a speed of resonance."""
+    if crossings and not model.scene.physics.large_deflection:
+        speeds = np.array(sorted(c.speed for c in crossings))
+        deflection = np.linalg.norm(model.static_tips(speeds), axis=1)
+        yield from warn_of_static_deflection(deflection, model.scene.beam.length, speeds)
 
 
 def _distinct(lines: Iterable[Line]) -> list[Line]:

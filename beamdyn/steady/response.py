@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, plain
@@ -204,6 +205,7 @@ class SteadyResponse(StatesModelError):
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction)
 
 
+@announced
 def steady_response(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.ritz import MOST_FUNCTIONS
@@ -79,6 +80,7 @@ class Tradeoff(Result):
         return ax
 
 
+@announced
 def tradeoff(
     scene: Scene,
     speed: float | None = None,

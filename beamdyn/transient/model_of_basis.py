@@ -34,7 +34,7 @@ def choose_for_basis(
     """
     speeds, modes = np.array(basis.speeds), basis.modes or 1
     if scene.physics.large_deflection:  # the modes are those of the straight beam
-        straight = replace(scene, physics=replace(scene.physics, large_deflection=False))
+        straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
         return Model(scene, choose_for_basis(straight, discretization, basis, target).discretization)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.damping_ratio:

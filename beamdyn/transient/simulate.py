@@ -13,6 +13,7 @@ import numpy as np
 from scipy.integrate import OdeSolver
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, ascending, positive, real, real_array, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
@@ -291,6 +292,7 @@ def _check_window(start: float, end: float, path: Path) -> None:
 # Simulation ---------------------------------------------------------------------------------------
 
 
+@announced
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def simulate(
     scene: Scene,

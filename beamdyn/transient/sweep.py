@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced, unannounced
 from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, function, positive, real, within
 from beamdyn.common.parallel.store import Store
 from beamdyn.common.parallel.workers import one_blas_thread
@@ -104,7 +105,8 @@ class Sweep(StatesModelError):
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
-        run = simulate(replace(self.scene, motion=motion), self.t_end)
+        with unannounced():  # of a run that `warnings` speaks of
+            run = simulate(replace(self.scene, motion=motion), self.t_end)
         return left_out_of_transient(run, self.window).at(np.newaxis)
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -118,6 +120,7 @@ class Sweep(StatesModelError):
         return plot_sweep(self.speeds, rows, ax, ("magnitude", *names))
 
 
+@announced
 def sweep(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],

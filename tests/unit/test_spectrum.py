@@ -16,7 +16,8 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.common.checks import InvalidValue
-from beamdyn.result_tables import locus_csv, locus_table, modes_csv, modes_table
+from beamdyn.result_rows import locus_csv, modes_csv
+from beamdyn.result_tables import locus_table, modes_table
 from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(

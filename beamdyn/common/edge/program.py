@@ -11,6 +11,9 @@ from typing import Any, Literal, get_args, get_origin
 
 from cyclopts import App, CycloptsError, UnknownOptionError
 
+from beamdyn.common.announced import OutsideLinearTheory
+from beamdyn.common.edge.file_words import as_in_files
+
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 EXIT_CODES = (
@@ -100,6 +103,7 @@ def _as_sentences(name: str) -> Iterator[None]:
 
     with warnings.catch_warnings():
         warnings.simplefilter("default", UserWarning)  # whatever filters are set outside
+        warnings.simplefilter("ignore", OutsideLinearTheory)  # a command prints the warnings of its result
         warnings.showwarning = show
         yield
 
@@ -128,4 +132,4 @@ def _say(sentence: str) -> None:
     """Print on standard error, if it can be written."""
     if sys.stderr is not None:
         with suppress(OSError):
-            print(sentence, file=sys.stderr, flush=True)
+            print(as_in_files(sentence), file=sys.stderr, flush=True)

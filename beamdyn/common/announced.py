@@ -1,0 +1,55 @@
+"""Warnings of Python by analyses whose answer lies outside the range of their theory."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import ParamSpec, TypeVar
+
+OUTSIDE = "outside linear theory"  # in each sentence that says so
+_REMEDY = 'Scene(..., physics="auto") adds what matters'
+
+Arguments = ParamSpec("Arguments")
+Answer = TypeVar("Answer")
+_within_another: ContextVar[bool] = ContextVar("within_another", default=False)
+
+
+class OutsideLinearTheory(UserWarning):
+    """A number of linear theory about a beam that bends further than this theory allows."""
+
+
+def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
+    """Make an analysis warn, as Python does, where its result says that it lies outside linear theory.
+
+    So a script that reads one number of the result is told, too.  An analysis that calls another warns once.
+    """
+
+    @functools.wraps(analysis)
+    def announcing(*given: Arguments.args, **named: Arguments.kwargs) -> Answer:
+        with unannounced():
+            result = analysis(*given, **named)
+        announce(getattr(result, "warnings", ()))
+        return result
+
+    return announcing
+
+
+def announce(sentences: tuple[str, ...]) -> None:
+    """Issue what a result says of lying outside linear theory, as warnings for the caller of the caller."""
+    if not _within_another.get():
+        for sentence in sentences:
+            if OUTSIDE in sentence:
+                warnings.warn(f"{sentence}; {_REMEDY}", OutsideLinearTheory, stacklevel=3)
+
+
+@contextmanager
+def unannounced() -> Iterator[None]:
+    """Within it, analyses issue no such warnings: their results are parts of another."""
+    before = _within_another.set(True)
+    try:
+        yield
+    finally:
+        _within_another.reset(before)

@@ -1,0 +1,104 @@
+"""A number of linear theory about a beam that rotation bends is never without a word on it."""
+
+import csv
+import io
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.app.frequencies import FREQUENCIES
+from beamdyn.cautions import critical_label, labels_of, notes_of, warnings_of
+from beamdyn.common.announced import OutsideLinearTheory
+from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.rendering import csv_text, html
+from beamdyn.result_rows import modes_csv
+
+SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "harvester_45deg.toml")
+BENT = replace(SCENE, physics=bd.Physics(large_deflection=True))
+INWARD = replace(SCENE, mount=replace(SCENE.mount, setting_angle=0.0))
+ANALYSES = {
+    "modes": lambda scene: bd.natural_modes(scene, 100.0, 1),
+    "locus": lambda scene: bd.frequency_locus(scene, [0.0, 100.0], 1),
+    "critical speed": bd.critical_speed,
+    "resonances": lambda scene: bd.resonance_speeds(replace(scene, gravity=9.81, motion=WHEEL), 100.0, 1),
+    "steady": lambda scene: bd.steady_response(replace(scene, motion=WHEEL), [100.0], 1),
+}
+WHEEL = bd.RollingWheel(
+    rolling_radius=0.3,
+    speed=bd.SpinUp(100.0, duration=1.0),
+    road=bd.RoadWave(wavelength=0.3, velocity_amplitude=0.001),
+)
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_python_warns_once_where_the_number_is_asked_for(name):
+    with pytest.warns(OutsideLinearTheory, match="outside linear theory.*auto") as said:
+        ANALYSES[name](SCENE)
+    (one,) = [w for w in said if w.category is OutsideLinearTheory]
+    assert one.filename == __file__
+
+
+@pytest.mark.parametrize("scene", [BENT, INWARD], ids=["bent", "inward"])
+@pytest.mark.parametrize("name", ["modes", "locus", "critical speed"])
+def test_python_is_silent_within_the_theory(name, scene):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", OutsideLinearTheory)
+        ANALYSES[name](scene)
+
+
+def test_picture_names_and_rows_state_the_model_error():
+    modes, bent = bd.natural_modes(SCENE, 100.0, 1), bd.natural_modes(BENT, 100.0, 1)
+    said = " ".join(notes_of(modes))
+    assert "outside linear theory" in said and "+9.1 %" in said
+    assert notes_of(bent) == ["with large deflection"]
+    assert labels_of(modes) == ["mode 1: 55.62 Hz, model error 9.1 %"]
+    assert labels_of(bent) == bent.labels()
+    (row,) = csv.DictReader(io.StringIO(csv_text(modes_csv(modes))))
+    assert float(row["model_error"]) == modes.model_error[0]
+    assert "Physics(" not in " ".join(warnings_of(modes))
+
+
+def test_python_terms_become_keys_of_files():
+    said = as_in_files("Physics(shear=True, branch='bent') bends; equilibrium_branches finds")
+    assert said == '[physics] shear = true, branch = "bent" bends; beamdyn branches finds'
+
+
+def test_critical_speed_of_a_bent_beam_is_called_what_it_is():
+    point = bd.critical_point(SCENE)
+    assert "were the beam straight" in critical_label(point)
+    assert critical_label(bd.critical_point(INWARD)) == "critical speed"
+    assert any("is not known" in said for said in warnings_of(point))
+
+
+def test_branch_without_large_deflection_is_said_to_be_left_out():
+    modes = bd.natural_modes(replace(SCENE, physics=bd.Physics(branch="bent")), 1.0, 1)
+    assert any("large_deflection is off" in said for said in modes.warnings)
+
+
+def test_screen_of_frequencies_warns_dims_and_notes():
+    tables = {
+        "beam": {
+            "length": "50 mm", "width": "10 mm", "thickness": "0.2 mm",
+            "youngs_modulus": "200 GPa", "density": "7850 kg/m3",
+        },
+        "mount": {"radius": "215 mm", "setting_angle": "45 deg"},
+        "options": {"top_speed": "100 rad/s", "modes": 1.0},
+    }  # fmt: skip
+    answer = FREQUENCIES.solve(tables)
+    page = html(FREQUENCIES.tables(answer))
+    assert "left out at 100 rad/s: large deflection +9.1 %" in page
+    assert 'class="beyond"' in page
+    assert any("+9.1 %" in said for said in FREQUENCIES.notes(answer))
+    assert "+9.1 %" in FREQUENCIES.draw(answer, 0.0).get_supxlabel().replace("\n", " ")
+    chosen = FREQUENCIES.solve(tables | {"physics": {"auto": True}})
+    assert "large deflection (9" in html(FREQUENCIES.tables(chosen))
+    assert FREQUENCIES.draw(chosen, 0.0).get_supxlabel() == "with large deflection"
+    rows = FREQUENCIES.sweeps.run(tables, "mount.setting_angle=0:45:2 deg", "frequency_1")
+    assert rows.results == ("frequency_1", "model_error")
+    assert rows.found[1][1] == pytest.approx(9.05, abs=0.1)
+    assert "+9.1 %" in rows.warnings[0]
+    assert np.isfinite(rows.found[0]).all()
