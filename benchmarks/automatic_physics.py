@@ -9,14 +9,11 @@ as an error, too.
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -31,6 +28,7 @@ from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.physics_choice import PhysicsChoice
 from benchmarks.cases.random_physics import Section, random_twist
 from benchmarks.cases.scenes import time_unit
+from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show, time_text
 from benchmarks.stated_model_errors import solved_change
 
@@ -63,7 +61,7 @@ class Answer:
     refusal: str = ""
 
 
-def measure(number: int, seed: int) -> Answer:
+def measure(number: int, seed: int) -> list[Answer]:
     """The answer for the scene with this number: the odd ones need an effect."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of beams that no material has
@@ -72,10 +70,10 @@ def measure(number: int, seed: int) -> Answer:
         try:
             modes = bd.natural_modes(replace(scene, physics="auto"), speed, _MODES, tolerance=TOLERANCE)
         except (ValueError, ArithmeticError) as error:
-            return Answer(number, perf_counter() - start, refusal=str(error))
+            return [Answer(number, perf_counter() - start, refusal=str(error))]
         time, choice = perf_counter() - start, modes.physics_choice
         assert choice is not None
-        return Answer(
+        answer = Answer(
             number=number,
             time=time,
             needed=needed,
@@ -84,6 +82,7 @@ def measure(number: int, seed: int) -> Answer:
             said=not choice.is_met,
             removed={name: _change_without(name, scene, speed, choice) for name in choice.included},
         )
+        return [answer]
 
 
 def _draw(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, float, float]:
@@ -161,10 +160,9 @@ def random_scene(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, flo
     return scene, float(min(gamma, 0.8 * critical))
 
 
-def measure_all(numbers: Iterable[int], workers: int, seed: int) -> Iterator[Answer]:
-    """All answers, on several processes, as they come."""
-    with ProcessPoolExecutor(workers) as pool:
-        yield from pool.map(partial(measure, seed=seed), numbers, chunksize=2)
+def cases(seed: int = SEED) -> Cases[Answer]:
+    """The random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Answer)
 
 
 # Report -------------------------------------------------------------------------------------------
@@ -203,45 +201,17 @@ def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
 
 def measure_sample() -> Iterator[Row]:
     """The first 24 scenes."""
-    yield from summarize(list(measure_all(range(24), 2, SEED)))
+    yield from summarize(cases().measure_all(range(24)))
 
 
 PARTS = (measure_sample,)
 
 
-# Answers in a file, so that a long run can go on ----------------------------------------------------
-
-
-def load(path: Path) -> list[Answer]:
-    """Answers that a run has saved."""
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    return [Answer(**json.loads(line)) for line in lines]
-
-
-def measure_and_save(path: Path, numbers: Iterable[int], **options: Any) -> list[Answer]:
-    """Measure what is not in the file yet, and add it there."""
-    done = {a.number for a in load(path)}
-    with path.open("a", encoding="utf-8") as file:
-        for found in measure_all([n for n in numbers if n not in done], **options):
-            file.write(json.dumps(asdict(found)) + "\n")
-            file.flush()
-    return load(path)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
+    add_options(parser, scenes=200, seed=SEED)
     given = parser.parse_args()
-    numbers = range(given.first, given.first + given.scenes)
-    options: dict[str, Any] = {"workers": given.workers, "seed": given.seed}
-    if given.save:
-        answers = measure_and_save(given.save, numbers, **options)
-    else:
-        answers = list(measure_all(numbers, **options))
+    answers = cases(given.seed).run(given)
     show("automatic physics", lambda: summarize(answers))
 
 

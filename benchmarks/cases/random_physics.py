@@ -182,6 +182,19 @@ def random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
     return float(min(gamma / time_unit(scene.beam), share * min(critical, fastest)))
 
 
+def speed_of_deflection(scene: bd.Scene, ratio: float) -> float:
+    """The least speed at which the tip bends by a share of the length in linear theory, or the largest.
+
+    The largest is 0.95 critical, gamma = 50, or that with a tension of `MOST_TENSION`.
+    """
+    model = Model(scene, bd.Ritz(max(6, _FUNCTIONS // (len(scene.beam.breakpoints) - 1))))
+    fastest = np.sqrt(MOST_TENSION / largest_tension(scene))
+    top = min(50 / time_unit(scene.beam), fastest, 0.95 * model.solver.critical_speed)
+    speeds = top * np.geomspace(1e-4, 1, 400)
+    deflection = np.linalg.norm(model.static_tips(speeds), axis=1) / scene.beam.length
+    return float(np.interp(ratio, np.maximum.accumulate(deflection), speeds))
+
+
 def largest_tension(scene: bd.Scene) -> float:
     """Largest tension over the smaller EI / L^2 at unit speed [s^2]."""
     beam, mount, xi = scene.modelled_beam, scene.mount, np.linspace(0, 1, 101)
