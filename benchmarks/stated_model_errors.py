@@ -47,6 +47,8 @@ _FIFTH = 0.2
 _STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
 _BENT = 3  # of so many scenes, one is for large deflection
 _DEFLECTION = 0.02, 0.4  # least and most of the linear static deflection of those over the length
+_SLENDEREST = 100.0  # length over thickness of the stockier plane
+_STRAIGHT = 0.8  # share of scenes without twist that bend obliquely, but for those of large deflection
 _KEPT = 0.2  # share of scenes that model an effect already
 _OVERLAP = 0.5  # of the squared mass product, above which a mode is the same
 
@@ -102,10 +104,10 @@ def _bent_answer(number: int, modes: bd.Modes, time: float) -> Answer:
 def random_left_out_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     """A scene and a speed, as of `random_physics_scene`, with all properties and much physics left out.
 
-    Three of five beams are twisted, the others bend obliquely: else a second plane would change nothing.
+    One beam of five may be twisted, the others bend obliquely: else a second plane would change nothing.
     """
     beam = _random_beam(rng)
-    mount, straight = random_mount(rng, beam), rng.random() < 0.4
+    mount, straight = random_mount(rng, beam), rng.random() < _STRAIGHT
     if straight:
         beam = replace(beam, twist=None)
         mount = replace(mount, bending_angle=rng.uniform(-np.pi, np.pi))
@@ -133,7 +135,7 @@ def random_bent_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 def _random_beam(rng: np.random.Generator) -> bd.Beam:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of beams that no material has
-        beam = random_physics_beam(rng, stocky=True)
+        beam = random_physics_beam(rng, stocky=True, slenderest=_SLENDEREST)
     return replace(beam, axial_stiffness=beam.mass_per_length.scaled(_STEEL[0] / _STEEL[1]))
 
 

@@ -76,11 +76,12 @@ def random_still_scene(rng: np.random.Generator) -> bd.Scene:
     return bd.Scene(beam, mount, physics=bd.Physics(planes, shear=shear, rotary_inertia=rotary))
 
 
-def random_physics_beam(rng: np.random.Generator, stocky: bool) -> bd.Beam:
+def random_physics_beam(rng: np.random.Generator, stocky: bool, slenderest: float = 1000.0) -> bd.Beam:
     """Uniform, tapered or by stations; half with a tip body; two of three twisted."""
     length = 10 ** rng.uniform(-2, 1)
     ratio = 10 ** rng.uniform(np.log10(0.05), 4)
-    slenderness = 10 ** rng.uniform(np.log10(5), 3) * (max(1.0, np.sqrt(ratio)) if stocky else 1.0)
+    slenderness = 10 ** rng.uniform(np.log10(5), np.log10(slenderest))
+    slenderness *= max(1.0, np.sqrt(ratio)) if stocky else 1.0
     section = Section(length, slenderness, ratio).properties()
     vary = (_keep, _taper, _stations)[rng.integers(3)]
     tip = _random_tip(rng, section["mass_per_length"] * length, length) if rng.integers(2) else None
