@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -34,13 +34,15 @@ class Cases(Generic[Answer]):
 
     def measure_all(self, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
         """Answers for all cases."""
-        return [answer for answers in self._measured(numbers, workers) for answer in answers]
+        with ProcessPoolExecutor(workers) as pool:
+            return [answer for answers in pool.map(self.measure, numbers) for answer in answers]
 
     def resume(self, path: Path, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
         """Measure the cases that the file lacks, and add them; all answers that are then in the file."""
         done = {row["number"] for row in _rows(path)}
-        with path.open("a", encoding="utf-8") as file:
-            for answers in self._measured([n for n in numbers if n not in done], workers):
+        with path.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers) as pool:
+            cases = [pool.submit(self.measure, number) for number in numbers if number not in done]
+            for answers in (case.result() for case in as_completed(cases)):  # a slow one holds up no other
                 file.write("".join(f"{json.dumps(vars(answer))}\n" for answer in answers))
                 file.flush()
         return self.load(path)
@@ -55,10 +57,6 @@ class Cases(Generic[Answer]):
         if given.save:
             return self.resume(given.save, numbers, given.workers)
         return self.measure_all(numbers, given.workers)
-
-    def _measured(self, numbers: Iterable[int], workers: int) -> Iterator[Sequence[Answer]]:
-        with ProcessPoolExecutor(workers) as pool:
-            yield from pool.map(self.measure, numbers)
 
 
 def add_options(parser: argparse.ArgumentParser, scenes: int, seed: int) -> None:
