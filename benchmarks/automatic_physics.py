@@ -1,22 +1,19 @@
 """Whether `physics="auto"` adds what matters, and nothing else.
 
 Run: python -m benchmarks.automatic_physics [--scenes N] [--first N] [--save FILE].  Random scenes, in half of
-which an effect matters, solved with chosen physics and with the largest set of effects that can be combined.
-Where large deflection excludes others, what the side that was not chosen would change, solved alone, counts
-as an error, too.
+which an effect matters (in half of these, large deflection), solved with chosen physics and with the
+largest set of effects that can be combined.  Where large deflection excludes others, what the side that was
+not chosen would change, solved alone, counts as an error, too.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -29,8 +26,9 @@ from beamdyn.modal.model import Model
 from beamdyn.model_error.choice import add_effects
 from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.physics_choice import PhysicsChoice
-from benchmarks.cases.random_physics import Section, random_twist
+from benchmarks.cases.random_physics import Section, random_twist, speed_of_deflection
 from benchmarks.cases.scenes import time_unit
+from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show, time_text
 from benchmarks.stated_model_errors import solved_change
 
@@ -41,6 +39,7 @@ _WITHIN, _NEEDED = 0.99, 0.8  # shares of the scenes that are aimed at
 _USELESS = 1e-4  # change below which an added effect was not needed
 _STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
 _QUARTER = np.pi / 2
+_DEFLECTION = 0.03, 0.4  # least and most of the linear static deflection of bent scenes over the length
 _ALL = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
 
 
@@ -63,19 +62,19 @@ class Answer:
     refusal: str = ""
 
 
-def measure(number: int, seed: int) -> Answer:
+def measure(number: int, seed: int) -> list[Answer]:
     """The answer for the scene with this number: the odd ones need an effect."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of beams that no material has
-        scene, speed, needed = _draw(np.random.default_rng([seed, number]), needing=bool(number % 2))
+        scene, speed, needed = _draw(np.random.default_rng([seed, number]), number)
         start = perf_counter()
         try:
             modes = bd.natural_modes(replace(scene, physics="auto"), speed, _MODES, tolerance=TOLERANCE)
         except (ValueError, ArithmeticError) as error:
-            return Answer(number, perf_counter() - start, refusal=str(error))
+            return [Answer(number, perf_counter() - start, refusal=str(error))]
         time, choice = perf_counter() - start, modes.physics_choice
         assert choice is not None
-        return Answer(
+        answer = Answer(
             number=number,
             time=time,
             needed=needed,
@@ -84,14 +83,16 @@ def measure(number: int, seed: int) -> Answer:
             said=not choice.is_met,
             removed={name: _change_without(name, scene, speed, choice) for name in choice.included},
         )
+        return [answer]
 
 
-def _draw(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, float, float]:
-    """A scene, its speed, and what the plain beam leaves out: above the tolerance if effects are needed."""
+def _draw(rng: np.random.Generator, number: int) -> tuple[bd.Scene, float, float]:
+    """A scene, its speed, and what the plain beam leaves out: more than the tolerance if it has a kind."""
     while True:
-        scene, speed = random_scene(rng, needing)
+        kinds = random_kinds(rng, number)
+        scene, speed = random_scene(rng, kinds)
         needed = true_error(bd.natural_modes(scene, speed, _MODES))
-        if not needing or not needed <= TOLERANCE:
+        if not kinds or not needed <= TOLERANCE:
             return scene, speed, needed
 
 
@@ -138,13 +139,24 @@ def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsCho
 # Scenes -------------------------------------------------------------------------------------------
 
 
-def random_scene(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, float]:
-    """A beam of steel with all properties, of the plain physics, and a speed.
+def random_kinds(rng: np.random.Generator, number: int) -> list[str]:
+    """What makes the scene with this number need an effect: nothing in every other scene.
 
-    Where none is needed, it is slender, straight and points at the axis or away from it.  Else it is one or
-    two of these: stocky, twisted, oblique in its bending angle, bent by the rotation.
+    Every fourth is bent by the rotation in its plane, enough for large deflection to matter.  The rest are
+    one or two of these: stocky, twisted, oblique in the bending angle, or turned to any setting angle.
     """
-    kinds = rng.permutation(["stocky", "twisted", "oblique", "bent"])[: rng.integers(1, 3)] if needing else []
+    if number % 2 == 0:
+        return []
+    if number % 4 == 1:
+        return rng.permutation(["stocky", "twisted", "oblique", "turned"])[: rng.integers(1, 3)].tolist()
+    return ["bent", *rng.permutation(["stocky", "twisted", ""])[:1].tolist()]
+
+
+def random_scene(rng: np.random.Generator, kinds: Sequence[str]) -> tuple[bd.Scene, float]:
+    """A beam of steel of these kinds with all properties, of the plain physics, and a speed.
+
+    Of no kind, it is slender, straight and points at the axis or away from it.
+    """
     low, high = (5, 60) if "stocky" in kinds else (300, 2000)
     ratio, slenderness = 10 ** rng.uniform(0.3, 2.0), 10 ** rng.uniform(np.log10(low), np.log10(high))
     length = 10 ** rng.uniform(-2, 1)
@@ -152,19 +164,20 @@ def random_scene(rng: np.random.Generator, needing: bool) -> tuple[bd.Scene, flo
     axial = section["mass_per_length"] * _STEEL[0] / _STEEL[1]
     twist = random_twist(rng) if "twisted" in kinds else None
     beam = bd.Beam.from_stiffness(length, **section, axial_stiffness=axial, twist=twist)
+    turned = rng.uniform(0.0, np.pi) if {"turned", "bent"} & {*kinds} else rng.choice([0.0, np.pi])
     bending = rng.uniform(0.1, _QUARTER) if "oblique" in kinds else rng.choice([0.0, _QUARTER])
-    bent = rng.uniform(0.0, np.pi) if "bent" in kinds else rng.choice([0.0, np.pi])
-    mount = bd.Mount(length * rng.uniform(0, 5), float(bent), float(bending))
-    scene = bd.Scene(beam, mount)
+    bending = 0.0 if "bent" in kinds else bending
+    scene = bd.Scene(beam, bd.Mount(length * rng.uniform(0, 5), float(turned), float(bending)))
+    if "bent" in kinds:
+        return scene, speed_of_deflection(scene, 10 ** rng.uniform(*np.log10(_DEFLECTION)))
     critical = Model(scene, bd.Ritz(12)).solver.critical_speed
     gamma = 10 ** rng.uniform(-1.5, 0.4) / time_unit(beam)
     return scene, float(min(gamma, 0.8 * critical))
 
 
-def measure_all(numbers: Iterable[int], workers: int, seed: int) -> Iterator[Answer]:
-    """All answers, on several processes, as they come."""
-    with ProcessPoolExecutor(workers) as pool:
-        yield from pool.map(partial(measure, seed=seed), numbers, chunksize=2)
+def cases(seed: int = SEED) -> Cases[Answer]:
+    """The random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Answer)
 
 
 # Report -------------------------------------------------------------------------------------------
@@ -203,45 +216,17 @@ def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
 
 def measure_sample() -> Iterator[Row]:
     """The first 24 scenes."""
-    yield from summarize(list(measure_all(range(24), 2, SEED)))
+    yield from summarize(cases().measure_all(range(24)))
 
 
 PARTS = (measure_sample,)
 
 
-# Answers in a file, so that a long run can go on ----------------------------------------------------
-
-
-def load(path: Path) -> list[Answer]:
-    """Answers that a run has saved."""
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    return [Answer(**json.loads(line)) for line in lines]
-
-
-def measure_and_save(path: Path, numbers: Iterable[int], **options: Any) -> list[Answer]:
-    """Measure what is not in the file yet, and add it there."""
-    done = {a.number for a in load(path)}
-    with path.open("a", encoding="utf-8") as file:
-        for found in measure_all([n for n in numbers if n not in done], **options):
-            file.write(json.dumps(asdict(found)) + "\n")
-            file.flush()
-    return load(path)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
+    add_options(parser, scenes=200, seed=SEED)
     given = parser.parse_args()
-    numbers = range(given.first, given.first + given.scenes)
-    options: dict[str, Any] = {"workers": given.workers, "seed": given.seed}
-    if given.save:
-        answers = measure_and_save(given.save, numbers, **options)
-    else:
-        answers = list(measure_all(numbers, **options))
+    answers = cases(given.seed).run(given)
     show("automatic physics", lambda: summarize(answers))
 
 

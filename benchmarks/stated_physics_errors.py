@@ -8,16 +8,12 @@ collocation of the differential equations, which shares nothing with the package
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
 
@@ -26,6 +22,7 @@ import numpy as np
 import beamdyn as bd
 from benchmarks.cases.random_physics import random_physics_scene
 from benchmarks.cases.reference.resolved import Known, known_frequencies
+from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show, time_text
 
 _COVERED, _OVER_ESTIMATE = 0.999, 30.0  # share covered and median over-estimate that are aimed at
@@ -95,18 +92,12 @@ def answer(
     )
 
 
-def measure_all(
-    numbers: Iterable[int],
-    workers: int,
-    seed: int,
-    discretization: str = "ritz",
-    tolerances: Sequence[float | None] = TOLERANCES,
-) -> Iterator[Answer]:
-    """All answers, on several processes, as they come."""
+def cases(
+    seed: int = SEED, discretization: str = "ritz", tolerances: Sequence[float | None] = TOLERANCES
+) -> Cases[Answer]:
+    """The random scenes of a seed, solved by a discretization to some tolerances."""
     each = partial(measure, seed=seed, discretization=discretization, tolerances=tolerances)
-    with ProcessPoolExecutor(workers) as pool:
-        for answers in pool.map(each, numbers, chunksize=2):
-            yield from answers
+    return Cases(each, Answer)
 
 
 # Report -------------------------------------------------------------------------------------------
@@ -151,55 +142,18 @@ def _summarize_tolerance(answers: Sequence[Answer]) -> Iterator[Row]:
 
 def measure_sample() -> Iterator[Row]:
     """The first 100 scenes."""
-    yield from summarize(list(measure_all(range(100), 2, SEED)))
+    yield from summarize(cases().measure_all(range(100)))
 
 
 PARTS = (measure_sample,)
 
 
-# Answers in a file, so that a long run can go on ----------------------------------------------------
-
-
-def load(path: Path) -> list[Answer]:
-    """Answers that a run has saved."""
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    return [_answer_of(json.loads(line)) for line in lines]
-
-
-def _answer_of(row: dict[str, Any]) -> Answer:
-    return Answer(**{key: tuple(value) if isinstance(value, list) else value for key, value in row.items()})
-
-
-def measure_and_save(path: Path, numbers: Iterable[int], **options: Any) -> list[Answer]:
-    """Measure what is not in the file yet, and add it there."""
-    before = load(path)
-    done = {a.number for a in before}
-    with path.open("a", encoding="utf-8") as file:
-        for found in measure_all([n for n in numbers if n not in done], **options):
-            file.write(json.dumps(asdict(found)) + "\n")
-            file.flush()
-    return load(path)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=3000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=SEED)
+    add_options(parser, scenes=3000, seed=SEED)
     parser.add_argument("--discretization", choices=("ritz", "fem"), default="ritz")
-    parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
     given = parser.parse_args()
-    numbers = range(given.first, given.first + given.scenes)
-    options: dict[str, Any] = {
-        "workers": given.workers,
-        "seed": given.seed,
-        "discretization": given.discretization,
-    }
-    if given.save:
-        answers = measure_and_save(given.save, numbers, **options)
-    else:
-        answers = list(measure_all(numbers, **options))
+    answers = cases(given.seed, given.discretization).run(given)
     show(f"stated errors of frequencies with all physics, {given.discretization}", lambda: summarize(answers))
 
 

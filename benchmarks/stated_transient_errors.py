@@ -1,10 +1,10 @@
 """Whether the stated errors of transients cover the true ones.
 
-Run: python -m benchmarks.stated_transient_errors [--scenes N] [--physics].  Random scenes in motion; with
---physics, of two planes, twist, shear, rotary inertia and springs in all combinations.  The
-time-integration error is measured against DOP853 of `solve_ivp`, or where that takes too long against our
-own steps at a tolerance of 1e-11; the modal truncation error against many modes at three speeds in a large
-basis.
+Run: python -m benchmarks.stated_transient_errors [--scenes N] [--physics] [--save FILE].  Random
+scenes in motion; with --physics, of two planes, twist, shear, rotary inertia and springs in all
+combinations.  The time-integration error is measured against DOP853 of `solve_ivp`, or where that takes
+too long against our own steps at a tolerance of 1e-11; the modal truncation error against many modes at
+three speeds in a large basis.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -25,6 +24,7 @@ from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.transient.simulate import Transient
 from benchmarks.cases.random_physics import random_still_scene
 from benchmarks.cases.random_scenes import random_beam
+from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 
 _BOUND = 0.99
@@ -102,17 +102,18 @@ def random_motion(rng: np.random.Generator, speed: float, t_end: float, length: 
     return bd.RollingWheel(radius, rotation, road if rng.integers(4) else None)
 
 
-def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] = random_run) -> Case:
+def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] = random_run) -> list[Case]:
     """Stated and true errors of the run with this number."""
     given = draw(np.random.default_rng([seed, number]))
     t = np.linspace(0, given["t_end"], _TIMES)
     try:
         run = bd.simulate(**given, t_eval=t)
     except (ValueError, ArithmeticError) as error:
-        return Case(number, refusal=str(error))
+        return [Case(number, refusal=str(error))]
     size = run.largest or 1.0
     stated = run.time_error / size, run.mode_error / size
-    return Case(number, stated, (find_time_error(run, t) / size, find_mode_error(run, t) / size))
+    true = find_time_error(run, t) / size, find_mode_error(run, t) / size
+    return [Case(number, stated, true)]
 
 
 def find_time_error(run: Transient, t: np.ndarray) -> float:
@@ -171,21 +172,9 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
             yield f"refused: run {case.number}", case.refusal, ""
 
 
-def measure_all(
-    first: int,
-    scenes: int,
-    workers: int,
-    seed: int,
-    draw: Callable[[np.random.Generator], dict] = random_run,
-) -> list[Case]:
-    """All runs from a first one, on several processes."""
-    with ProcessPoolExecutor(workers) as pool:
-        return list(pool.map(partial(measure, seed=seed, draw=draw), range(first, first + scenes)))
-
-
 def measure_sample() -> Iterator[Row]:
     """The first 20 runs."""
-    yield from summarize(measure_all(0, 20, 2, SEED))
+    yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(20)))
 
 
 PARTS = (measure_sample,)
@@ -193,15 +182,12 @@ PARTS = (measure_sample,)
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--seed", type=int, default=SEED)
+    add_options(parser, scenes=200, seed=SEED)
     parser.add_argument("--physics", action="store_true", help="with all physics in all combinations")
-    options = parser.parse_args()
-    draw = random_physics_run if options.physics else random_run
-    cases = measure_all(options.first, options.scenes, options.workers, options.seed, draw)
-    show("stated errors of transients", lambda: summarize(cases))
+    given = parser.parse_args()
+    draw = random_physics_run if given.physics else random_run
+    runs = Cases(partial(measure, seed=given.seed, draw=draw), Case).run(given)
+    show("stated errors of transients", lambda: summarize(runs))
 
 
 if __name__ == "__main__":

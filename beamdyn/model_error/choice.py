@@ -37,6 +37,7 @@ _SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effect
 _MODES = 3  # of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
+_NOTHING = "no mode vibrates and is stable"
 _EXCLUSIVE = "it cannot be combined with large deflection"
 _WITH_LARGE_DEFLECTION = ("rotary inertia of sections",)
 
@@ -131,14 +132,20 @@ def plain_physics(scene: Scene) -> Scene:
 
 
 def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> Judged:
-    """Sizes of effects in the values that count; that of large deflection is a rough one where unknown."""
+    """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
+
+    An effect that turns modes into others can be added: that its size is not known is no reason against it.
+    """
     sizes = {name: _size(change, counts) for name, change in effects.changes.items()}
     sizes |= dict.fromkeys(effects.not_known.keys() - sizes.keys(), math.nan)
     if LARGE_DEFLECTION in sizes and not math.isfinite(sizes[LARGE_DEFLECTION]):
         sizes[LARGE_DEFLECTION] = rough
     additions, _, _ = list_effects(scene)
     assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
-    return Judged(sizes, assumed | effects.not_known)
+    addable = {a.name for a in additions} - assumed.keys()
+    refused = {name: why for name, why in effects.not_known.items() if name not in addable}
+    nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
+    return Judged(sizes, nothing | assumed | refused)
 
 
 def _size(change: np.ndarray, counts: np.ndarray) -> float:

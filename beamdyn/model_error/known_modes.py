@@ -12,6 +12,7 @@ from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assem
 from beamdyn.modal.eigen import Eigen
 from beamdyn.modal.model import Model
 from beamdyn.modal.uncoupled import solver_of
+from beamdyn.model_error.pencils import KEPT
 from beamdyn.scene.scene import Scene
 
 _MOST = 160  # coordinates of a model: an estimate of a change needs no more
@@ -72,3 +73,35 @@ class Simple:
         s, v = found.eigenvalue[0], found.vector[0]
         _, order = linear_sum_assignment(np.abs(eigenvalue[:, None] - s[None, :]))
         return s[order], v[:, order]
+
+
+def find_alike(equations: Equations, speed: float, vectors: np.ndarray, count: int) -> np.ndarray:
+    """Find the modes of equations that are mostly the given ones, by solving.
+
+    Parameters
+    ----------
+    equations : Equations
+        Equations of motion.
+    speed : float
+        Speed [rad/s].
+    vectors : ndarray, shape (n, m)
+        Modes of other equations in these coordinates.
+    count : int
+        Number of modes that are solved for.
+
+    Returns
+    -------
+    ndarray of complex, shape (m,)
+        Eigenvalues [1/s]; nan where no mode has more than half of the given one.
+    """
+    M, solver = equations.steady().M, solver_of(equations)
+    found: Eigen = solver.solve(np.array([speed]), min(count, solver.size))
+    s, within = found.eigenvalue[0], found.vector[0]
+    product = np.abs(vectors.conj().T @ M @ within) ** 2
+    kept = product / np.outer(_squares(M, vectors), _squares(M, within))
+    return np.where(kept.max(axis=1) > KEPT, s[kept.argmax(axis=1)], np.nan)
+
+
+def _squares(M: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Squared sizes (m,) of modes (n, m) by mass."""
+    return np.einsum("nm,nm->m", vectors.conj(), M @ vectors).real

@@ -8,11 +8,11 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.left_out import list_left_out
 from beamdyn.modal.model import Model
 from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
-from beamdyn.model_error.known_modes import Simple
+from beamdyn.model_error.known_modes import Simple, find_alike
 from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
@@ -20,10 +20,11 @@ from beamdyn.scene.scene import Scene
 
 _LOST = "it turns a mode into others"
 _STRAIGHT = "as of the straight beam"
+_AMONG = 4  # modes with the effect for each one without, among which that is sought
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
 
 Embedding: TypeAlias = Callable[[np.ndarray], np.ndarray]  # of vectors in the coordinates with an effect
-Change: TypeAlias = Callable[[SteadyPencil, Embedding], np.ndarray]
+Change: TypeAlias = Callable[[Equations, Embedding], np.ndarray]
 
 
 def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
@@ -47,9 +48,9 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
     simple = Simple.of(without_large_deflection(model), eigenvalue.shape[1])
     found_modes = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
 
-    def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
+    def change(equations: Equations, embed: Embedding) -> np.ndarray:
         each = zip(speeds.tolist(), found_modes, strict=True)
-        return np.array([_change_of_frequencies(pencil, speed, s, embed(v)) for speed, (s, v) in each])
+        return np.array([_change_of_frequencies(equations, speed, s, embed(v)) for speed, (s, v) in each])
 
     def bent() -> tuple[np.ndarray, str]:
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
@@ -85,8 +86,8 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     v = buckling_mode(pencil, critical)
     known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
 
-    def change(pencil: SteadyPencil, embed: Embedding) -> np.ndarray:
-        return np.array(shift_critical_speed(pencil, known, embed(v)) / known - 1)
+    def change(equations: Equations, embed: Embedding) -> np.ndarray:
+        return np.array(shift_critical_speed(equations.steady(), known, embed(v)) / known - 1)
 
     def bent() -> tuple[np.ndarray, str]:
         does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
@@ -130,7 +131,7 @@ def without_large_deflection(model: Model) -> Model:
 
 def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray:
     equations = simple.extend(addition.scene)
-    return change(equations.steady(), lambda v: simple.embed(equations, v))
+    return change(equations, lambda v: simple.embed(equations, v))
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
@@ -138,10 +139,14 @@ def _reasons(scene: Scene) -> dict[str, str]:
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 
-def _change_of_frequencies(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) with the pencil of an effect."""
-    pairs = zip(s.tolist(), v.T, vibrate(s), strict=True)
+def _change_of_frequencies(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) by equations with an effect."""
+    pencil, known = equations.steady(), vibrate(s)
+    pairs = zip(s.tolist(), v.T, known, strict=True)
     shifted = np.array([shift_eigenvalue(pencil, speed, r, x) if ok else np.nan for r, x, ok in pairs])
+    lost = known & np.isnan(shifted)
+    if lost.any():  # a step of inverse iteration may lead to a neighbour
+        shifted[lost] = find_alike(equations, speed, v[:, lost], _AMONG * len(s))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
 

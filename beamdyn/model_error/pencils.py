@@ -16,7 +16,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 _APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
 _STEPS = 8  # of inverse iteration at most: one will do unless the effect is large, or modes are close
 _CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
-_KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
+KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
 
 
 def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> complex:
@@ -52,7 +52,7 @@ def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarr
         if abs(at - before) <= _CONVERGED * abs(at - s) + _ROUNDING * abs(s):
             break
     kept = abs(x.conj() @ M @ z) ** 2 / ((x.conj() @ M @ x) * (z.conj() @ M @ z)).real
-    return at if kept > _KEPT else complex(np.nan)
+    return at if kept > KEPT else complex(np.nan)
 
 
 def _improve(

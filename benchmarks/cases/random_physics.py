@@ -76,11 +76,12 @@ def random_still_scene(rng: np.random.Generator) -> bd.Scene:
     return bd.Scene(beam, mount, physics=bd.Physics(planes, shear=shear, rotary_inertia=rotary))
 
 
-def random_physics_beam(rng: np.random.Generator, stocky: bool) -> bd.Beam:
+def random_physics_beam(rng: np.random.Generator, stocky: bool, slenderest: float = 1000.0) -> bd.Beam:
     """Uniform, tapered or by stations; half with a tip body; two of three twisted."""
     length = 10 ** rng.uniform(-2, 1)
     ratio = 10 ** rng.uniform(np.log10(0.05), 4)
-    slenderness = 10 ** rng.uniform(np.log10(5), 3) * (max(1.0, np.sqrt(ratio)) if stocky else 1.0)
+    slenderness = 10 ** rng.uniform(np.log10(5), np.log10(slenderest))
+    slenderness *= max(1.0, np.sqrt(ratio)) if stocky else 1.0
     section = Section(length, slenderness, ratio).properties()
     vary = (_keep, _taper, _stations)[rng.integers(3)]
     tip = _random_tip(rng, section["mass_per_length"] * length, length) if rng.integers(2) else None
@@ -180,6 +181,19 @@ def random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
     functions = max(6, _FUNCTIONS // (len(scene.beam.breakpoints) - 1))
     critical = Model(scene, bd.Ritz(functions)).solver.critical_speed
     return float(min(gamma / time_unit(scene.beam), share * min(critical, fastest)))
+
+
+def speed_of_deflection(scene: bd.Scene, ratio: float) -> float:
+    """The least speed at which the tip bends by a share of the length in linear theory, or the largest.
+
+    The largest is 0.95 critical, gamma = 50, or that with a tension of `MOST_TENSION`.
+    """
+    model = Model(scene, bd.Ritz(max(6, _FUNCTIONS // (len(scene.beam.breakpoints) - 1))))
+    fastest = np.sqrt(MOST_TENSION / largest_tension(scene))
+    top = min(50 / time_unit(scene.beam), fastest, 0.95 * model.solver.critical_speed)
+    speeds = top * np.geomspace(1e-4, 1, 400)
+    deflection = np.linalg.norm(model.static_tips(speeds), axis=1) / scene.beam.length
+    return float(np.interp(ratio, np.maximum.accumulate(deflection), speeds))
 
 
 def largest_tension(scene: bd.Scene) -> float:

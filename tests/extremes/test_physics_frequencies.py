@@ -18,7 +18,7 @@ import beamdyn as bd
 from beamdyn.modal import large
 from benchmarks.cases.random_physics import random_still_scene
 from benchmarks.cases.reference.resolved import known_frequencies
-from benchmarks.stated_physics_errors import Answer, answer, load, measure, measure_and_save
+from benchmarks.stated_physics_errors import Answer, answer, cases, measure
 
 SEED = 20  # of no run that an estimate was fitted to
 OUTWARD = math.pi
@@ -117,7 +117,7 @@ def test_what_is_not_covered_is_seen() -> None:
 
 def test_a_saved_run_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "answers.jsonl"
-    options = {"workers": 1, "seed": SEED, "discretization": "ritz", "tolerances": (1e-2,)}
-    first = measure_and_save(path, [7], **options)
-    both = measure_and_save(path, [7, 13], **options)
-    assert both[0] == first[0] and [a.number for a in both] == [7, 13] and load(path) == both
+    scenes = cases(SEED, tolerances=(1e-2,))
+    first = scenes.resume(path, [7], workers=1)
+    both = scenes.resume(path, [7, 13], workers=1)
+    assert both[0] == first[0] and [a.number for a in both] == [7, 13] and scenes.load(path) == both

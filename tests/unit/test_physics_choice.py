@@ -122,6 +122,25 @@ def test_an_oblique_direction_excludes_large_deflection_and_says_so() -> None:
     assert any("is not met" in text and "multiple of 90 deg" in text for text in modes.warnings)
 
 
+def test_an_effect_that_turns_modes_into_others_is_added() -> None:
+    """Sections turned by 0.5 to 1.5 rad: the second mode of one plane is in neither direction mostly."""
+    twist = np.polynomial.Polynomial([0.5, 1.0])
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=25.0, twist=twist)
+    choice = choice_of(bd.natural_modes(bd.Scene(beam, physics="auto"), 0.0, 2))
+    assert choice.physics.planes == 2
+    assert (choice.effects[0].name, choice.effects[0].size) == ("twist", math.inf)
+    assert choice.is_met
+
+
+def test_where_no_mode_vibrates_nothing_is_added_and_all_is_said_not_to_be_known() -> None:
+    scene = bd.Scene(STRIP, INWARD)
+    speed = 1.1 * bd.critical_speed(scene)
+    choice = choice_of(bd.natural_modes(replace(scene, physics="auto"), speed, 1))
+    assert choice.included == ()
+    assert {*choice.not_known} == {SHEAR, ROTARY, SECOND, STRETCH, LARGE}
+    assert "no mode vibrates" in choice.not_known[SHEAR]
+
+
 def test_costs_are_measured() -> None:
     choice = choice_of(bd.natural_modes(bd.Scene(STOCKY, INWARD, physics="auto"), 100.0))
     shear, rotary = choice.effects[:2]

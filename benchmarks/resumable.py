@@ -1,0 +1,77 @@
+"""Random cases, measured on several processes; a long run keeps its answers in a file, and can go on.
+
+The file has one answer, as JSON, on each line.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+Answer = TypeVar("Answer")
+
+
+@dataclass(frozen=True)
+class Cases(Generic[Answer]):
+    """Random cases, known by their numbers.
+
+    Parameters
+    ----------
+    measure : callable
+        Answers for the case with a number; it can be sent to another process.
+    kind : type
+        The dataclass that answers are, with the field `number`; its fields are numbers, strings, tuples of
+        numbers, and dictionaries of them.
+    """
+
+    measure: Callable[[int], Sequence[Answer]]
+    kind: type[Answer]
+
+    def measure_all(self, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
+        """Answers for all cases."""
+        with ProcessPoolExecutor(workers) as pool:
+            return [answer for answers in pool.map(self.measure, numbers) for answer in answers]
+
+    def resume(self, path: Path, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
+        """Measure the cases that the file lacks, and add them; all answers that are then in the file."""
+        done = {row["number"] for row in _rows(path)}
+        with path.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers) as pool:
+            cases = [pool.submit(self.measure, number) for number in numbers if number not in done]
+            for answers in (case.result() for case in as_completed(cases)):  # a slow one holds up no other
+                file.write("".join(f"{json.dumps(vars(answer))}\n" for answer in answers))
+                file.flush()
+        return self.load(path)
+
+    def load(self, path: Path) -> list[Answer]:
+        """Answers in a file; none if there is no such file."""
+        return [self.kind(**{name: _frozen(value) for name, value in row.items()}) for row in _rows(path)]
+
+    def run(self, given: argparse.Namespace) -> list[Answer]:
+        """What the options of `add_options` ask for."""
+        numbers = range(given.first, given.first + given.scenes)
+        if given.save:
+            return self.resume(given.save, numbers, given.workers)
+        return self.measure_all(numbers, given.workers)
+
+
+def add_options(parser: argparse.ArgumentParser, scenes: int, seed: int) -> None:
+    """Give a command the options of a run, with the number of its cases and its seed."""
+    parser.add_argument("--scenes", type=int, default=scenes)
+    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=seed)
+    parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
+
+
+def _rows(path: Path) -> list[dict[str, Any]]:
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    return [json.loads(line) for line in lines]
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
