@@ -1,14 +1,18 @@
-"""Assumed modes by bending moments: polynomials over the whole beam, divided by its stiffness.
+"""Assumed modes by bending moments, for beams of many segments.
 
-At a station where properties have a kink or a jump, the curvature of a beam has one, too; its bending moment
-is smooth.  Trial functions with the curvature
+Where properties have a kink or a jump, at each station of a table, the curvature of a beam has one, too;
+its bending moment M is smooth.  Trial functions with the curvature
 
-    w'' = P(x/L) / EI(x)
+    w'' = M(x) / EI(x)
 
-for Legendre polynomials P over the whole beam thus need no more functions for a hundred segments than for
-one.  Of a deflection by shear and of a stretch, it is the slope that is a force over a stiffness.  Twisted
-sections bend in both directions under a moment in one: the curvature in each direction is a product with
-entries of their compliance.
+thus need no more functions for a hundred segments than for one.  The moments are polynomials over the whole
+beam, and those that inertia and tension cause where the first of these functions vibrate,
+
+    int_x^1 int_s^1 rho A w,  int_x^1 N w',
+
+which have the small roughness of M that polynomials lack: as one step of inverse iteration would.  Of a
+deflection by shear and of a stretch, it is the slope that is a force over a stiffness.  Twisted sections bend
+in both directions under a moment in one: curvatures are products with entries of their compliance.
 
 The quotients are interpolated by polynomials on cells.  The functions are thus piecewise polynomials, of
 which integrals are exact, and eigenvalues are upper bounds as those of other assumed modes.
@@ -16,15 +20,18 @@ which integrals are exact, and eigenvalues are upper bounds as those of other as
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 
 import numpy as np
+import scipy.linalg
 from numpy.polynomial import legendre
 
 from beamdyn.common.legendre import gauss_points_on, gauss_rule, legendre_series
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
+from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions
 from beamdyn.equations.sampled_space import SampledSpace, product_of
 from beamdyn.scene.beam import Beam
@@ -35,7 +42,7 @@ _NODES = 16  # on each cell, through which the quotients are interpolated
 _RESOLVED = 1e-9  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
 _PHASE = 12.0  # largest change of phase of the highest polynomial within a cell [rad]
 _SHORTEST = 1e-10  # cell that is halved, as x/L
-_DEPENDENT = 1e-9  # part of a function that those before it lack, below which it is left out
+_DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
 
 _STIFFNESSES = ("bending_stiffness", "shear_stiffness", "axial_stiffness")
 
@@ -48,12 +55,12 @@ class MomentSpaces(FieldsOnly):
     ----------
     beam : Beam
         The beam, with the modelled properties.
-    polynomials : int
-        Number of polynomials over the beam.
+    forces : int
+        Number of forces or moments in each direction.
     """
 
     beam: Beam
-    polynomials: int
+    forces: int
 
     def functions(self, conditions: RootConditions) -> MomentSpace:
         """Trial functions that satisfy conditions at the root."""
@@ -75,12 +82,23 @@ class MomentSpaces(FieldsOnly):
 
     def _are_coarse(self, ends: np.ndarray) -> np.ndarray:
         """Whether each cell is to be halved."""
-        coarse = np.diff(np.arccos(1 - 2 * ends)) * self.polynomials > _PHASE
+        coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
         xi = gauss_points_on(ends, _NODES)
         for name in _STIFFNESSES:
             for entry in invert(stiffness_tensor(self.beam, name), xi).values():
                 coarse |= ~_are_resolved(entry)
         return coarse & (np.diff(ends) > _SHORTEST)
+
+    @cached_property
+    def nodes(self) -> ArcQuadrature:
+        """Points of all cells through which quotients are interpolated."""
+        return ArcQuadrature(Cells(self.cells, _NODES))
+
+    def weights_of_slopes(self, direction: int) -> Iterator[np.ndarray]:
+        """Yield what slopes are multiplied by in moments, at the nodes: tension, and rotary inertia."""
+        yield axial_tension(self.beam)[1](self.nodes.xi)
+        if (inertia := section_tensor(self.beam, "rotary_inertia").get((direction, direction))) is not None:
+            yield inertia(self.nodes.xi)
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
@@ -135,7 +153,7 @@ def _interpolation(points: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class MomentSpace(SampledSpace):
-    """Trial functions with a highest derivative that is a polynomial over a stiffness.
+    """Trial functions with a highest derivative that is a force over a stiffness.
 
     Their highest derivatives are orthonormal with the stiffness in their direction as weight; a rotation
     about the root stands before them where the root turns.
@@ -143,7 +161,7 @@ class MomentSpace(SampledSpace):
     Parameters
     ----------
     spaces : MomentSpaces
-        Beam and number of polynomials.
+        Beam and number of forces.
     conditions : RootConditions
         Conditions at the root, with the stiffness and its direction.
     """
@@ -167,16 +185,39 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def _quotients(self) -> np.ndarray:
-        """Orthonormal quotients of polynomials and stiffness at the points, shape (m, k)."""
+        """Orthonormal quotients of forces and stiffness at the points, shape (m, k)."""
         tensor = stiffness_tensor(self.spaces.beam, self.conditions.stiffness)
-        direction, xi = self.conditions.direction, gauss_points_on(self.spaces.cells, _NODES)
-        entries = [c for (i, _), c in invert(tensor, xi).items() if i == direction]
-        polynomials = legendre.legvander(2 * xi - 1, self.spaces.polynomials - 1)
-        at_nodes = polynomials[..., None] * np.stack(entries, axis=-1)[:, :, None, :]
-        to_points = _interpolation(self.spaces.quadrature.cells.points)
-        at_points = to_points @ at_nodes.reshape(*xi.shape, -1)
-        weight = self.weights(tensor[direction, direction])
-        return _orthonormalize(at_points.reshape(len(weight), -1), weight).T
+        direction, xi = self.conditions.direction, self.spaces.nodes.xi
+        compliance = invert(tensor, xi)
+        quotients = np.array(
+            [
+                compliance[direction, other] * self._forces(other, compliance[other, other])
+                for other in (0, 1)
+                if (direction, other) in compliance
+            ]
+        )
+        ordered = quotients.swapaxes(0, 1).reshape(-1, xi.size)
+        weight = self.spaces.nodes.weights * tensor[direction, direction](xi)
+        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, _NODES)
+        at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
+        return at_points.reshape(len(on_cells), -1)
+
+    def _forces(self, direction: int, compliance: np.ndarray) -> np.ndarray:
+        """Forces or moments in a direction at the nodes: shape (n, N).
+
+        Polynomials, and what displacements by the first of them cause by inertia and by tension.
+        """
+        nodes, orders = self.spaces.nodes, self.conditions.derivatives
+        weights = [*self.spaces.weights_of_slopes(direction)]
+        first = self.spaces.forces // (2 + len(weights))
+        P = legendre.legvander(2 * nodes.xi - 1, self.spaces.forces - (1 + len(weights)) * first - 1).T
+        displacements = [P[:first] * compliance]
+        for _ in range(orders):
+            displacements.insert(0, nodes.integrate(displacements[0])[:, :-1])
+        mass = self.spaces.beam.mass_per_length(nodes.xi)
+        inertia = _integrate_from_tip(nodes, mass * displacements[0], orders)
+        slopes = (_integrate_from_tip(nodes, w * displacements[1], orders - 1) for w in weights)
+        return np.concatenate([P, inertia, *slopes])
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
@@ -212,12 +253,17 @@ class MomentSpace(SampledSpace):
         return values
 
 
-def _orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Orthonormal combinations of columns (k, n), each of the columns up to its own, with a weight (k,).
+def _integrate_from_tip(nodes: ArcQuadrature, values: np.ndarray, times: int) -> np.ndarray:
+    """Integrate repeatedly from each node to the tip: values and result have shape (n, N)."""
+    for _ in range(times):
+        integral = nodes.integrate(values)
+        values = integral[:, -1:] - integral[:, :-1]
+    return values
 
-    What depends on the columns before it is left out.
-    """
+
+def _orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Orthonormal basis (k, m) of the span of columns (k, n), with a weight (k,), but for rounding."""
     root = np.sqrt(weight)[:, None]
     scaled = columns * root
-    Q, R = np.linalg.qr(scaled / np.linalg.norm(scaled, axis=0))
+    Q, R, _ = scipy.linalg.qr(scaled / np.linalg.norm(scaled, axis=0), mode="economic", pivoting=True)
     return Q[:, np.abs(np.diag(R)) > _DEPENDENT] / root

@@ -23,7 +23,7 @@ from beamdyn.scene.sections import weight_degree
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 12  # Gauss points on each segment beyond those that integrate small deflections exactly
 
-_COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.7}  # sizes: the slower, the smaller
+_COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
 
 Evaluation = Callable[[np.ndarray, int], np.ndarray]  # (xi of shape (k,), order) -> shape (n, k)
 

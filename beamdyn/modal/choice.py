@@ -169,7 +169,7 @@ def _find_first(name: str, segments: int, modes: int, target: float, cheapest: b
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
     if segments > _FEW_SEGMENTS:
-        return Ritz(modes + int(6 * target**-0.08), "moments")
+        return Ritz(14 + modes - int(1.5 * np.log10(target)), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
     total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))

@@ -17,7 +17,12 @@ import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
 from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
-from beamdyn.common.legendre import gauss_points_on, gauss_rule, legendre_series
+from beamdyn.common.legendre import (
+    gauss_points_on,
+    gauss_rule,
+    legendre_series,
+    multiply_series,
+)
 from beamdyn.common.pickling import FieldsOnly
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
@@ -96,13 +101,13 @@ class Profile(FieldsOnly):
         ends = merge_breakpoints(np.union1d(self.breakpoints, breakpoints))
         if ends == self.breakpoints:
             return self
-        return _interpolate(ends, self(gauss_points_on(np.array(ends), self.degree + 1)))
+        values = self(gauss_points_on(np.array(ends), self.degree + 1))
+        return _of_series(ends, legendre_series(values.shape[1]) @ values.T)
 
     def __mul__(self, other: Profile) -> Profile:
         """Multiply two properties pointwise."""
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
-        points = a.degree + b.degree + 1
-        return _interpolate(a.breakpoints, a.at_points(points) * b.at_points(points))
+        return _of_series(a.breakpoints, multiply_series(a.series, b.series))
 
     def __add__(self, other: Profile) -> Profile:
         """Add two properties pointwise."""
@@ -128,20 +133,15 @@ class Profile(FieldsOnly):
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
         half = np.diff(self.breakpoints) / 2
-        inner = -half * np.asarray(legendre.legint(self.series, lbnd=1.0))
-        of_segments = legendre.legval(-1.0, inner)
-        inner[0] += np.cumsum(of_segments[::-1])[::-1] - of_segments
+        inner = np.asarray(legendre.legint(-half * self.series, lbnd=1.0))
+        of_segments = np.asarray(legendre.legval(-1.0, inner))
+        inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 
 
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
     """The piecewise polynomial of Legendre coefficients, those of each segment in a column."""
     return Profile(ends, tuple(map(tuple, series.T.tolist())))
-
-
-def _interpolate(ends: tuple[float, ...], values: np.ndarray) -> Profile:
-    """The piecewise polynomial through values (segments, points) at Gauss points of each segment."""
-    return _of_series(ends, legendre_series(values.shape[1]) @ values.T)
 
 
 def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) -> list[list[float]]:
