@@ -44,7 +44,14 @@ _PHASE = 12.0  # largest change of phase of the highest polynomial within a cell
 _SHORTEST = 1e-10  # cell that is halved, as x/L
 _DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
 
-_STIFFNESSES = ("bending_stiffness", "shear_stiffness", "axial_stiffness")
+# Order of the derivative of a displacement that each stiffness resists.
+_ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
+# Stiffnesses against displacements that cause forces in the functions for each.
+_COUPLED = {
+    "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
+    "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
+    "axial_stiffness": ("axial_stiffness",),
+}
 
 
 @dataclass(frozen=True)
@@ -84,7 +91,7 @@ class MomentSpaces(FieldsOnly):
         """Whether each cell is to be halved."""
         coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
         xi = gauss_points_on(ends, _NODES)
-        for name in _STIFFNESSES:
+        for name in _ORDERS:
             for entry in invert(stiffness_tensor(self.beam, name), xi).values():
                 coarse |= ~_are_resolved(entry)
         return coarse & (np.diff(ends) > _SHORTEST)
@@ -94,11 +101,13 @@ class MomentSpaces(FieldsOnly):
         """Points of all cells through which quotients are interpolated."""
         return ArcQuadrature(Cells(self.cells, _NODES))
 
-    def weights_of_slopes(self, direction: int) -> Iterator[np.ndarray]:
-        """Yield what slopes are multiplied by in moments, at the nodes: tension, and rotary inertia."""
-        yield axial_tension(self.beam)[1](self.nodes.xi)
-        if (inertia := section_tensor(self.beam, "rotary_inertia").get((direction, direction))) is not None:
-            yield inertia(self.nodes.xi)
+    def displacements(self, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
+        """Displacements by forces (n, N) at the nodes against a stiffness, and their slopes: each (n, N)."""
+        compliance = invert(stiffness_tensor(self.beam, stiffness), self.nodes.xi)[direction, direction]
+        derivatives = [forces * compliance]
+        for _ in range(_ORDERS[stiffness]):
+            derivatives.insert(0, self.nodes.integrate(derivatives[0])[:, :-1])
+        return derivatives[:2]
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
@@ -191,7 +200,7 @@ class MomentSpace(SampledSpace):
         compliance = invert(tensor, xi)
         quotients = np.array(
             [
-                compliance[direction, other] * self._forces(other, compliance[other, other])
+                compliance[direction, other] * self._forces(other)
                 for other in (0, 1)
                 if (direction, other) in compliance
             ]
@@ -202,22 +211,35 @@ class MomentSpace(SampledSpace):
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return at_points.reshape(len(on_cells), -1)
 
-    def _forces(self, direction: int, compliance: np.ndarray) -> np.ndarray:
+    def _forces(self, direction: int) -> np.ndarray:
         """Forces or moments in a direction at the nodes: shape (n, N).
 
         Polynomials, and what displacements by the first of them cause by inertia and by tension.
         """
-        nodes, orders = self.spaces.nodes, self.conditions.derivatives
-        weights = [*self.spaces.weights_of_slopes(direction)]
-        first = self.spaces.forces // (2 + len(weights))
-        P = legendre.legvander(2 * nodes.xi - 1, self.spaces.forces - (1 + len(weights)) * first - 1).T
-        displacements = [P[:first] * compliance]
-        for _ in range(orders):
-            displacements.insert(0, nodes.integrate(displacements[0])[:, :-1])
-        mass = self.spaces.beam.mass_per_length(nodes.xi)
-        inertia = _integrate_from_tip(nodes, mass * displacements[0], orders)
-        slopes = (_integrate_from_tip(nodes, w * displacements[1], orders - 1) for w in weights)
-        return np.concatenate([P, inertia, *slopes])
+        spaces, causes = self.spaces, [*self._causes(direction)]
+        first = spaces.forces // (1 + len(causes))
+        P = legendre.legvander(2 * spaces.nodes.xi - 1, spaces.forces - len(causes) * first - 1).T
+        caused = (
+            _integrate_from_tip(
+                spaces.nodes,
+                weight * spaces.displacements(P[:first], name, direction)[order],
+                self.conditions.derivatives - order,
+            )
+            for name, order, weight in causes
+        )
+        return np.concatenate([P, *caused])
+
+    def _causes(self, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
+        """Yield of loads: the stiffness against the displacement, the derivative of that, and its weight."""
+        beam, xi = self.spaces.beam, self.spaces.nodes.xi
+        mass, tension = beam.mass_per_length(xi), axial_tension(beam)[1](xi)
+        rotary = section_tensor(beam, "rotary_inertia").get((direction, direction))
+        for name in _COUPLED[self.conditions.stiffness]:
+            if stiffness_tensor(beam, name):
+                yield name, 0, mass
+                yield name, 1, tension
+        if rotary is not None and self.conditions.stiffness == "bending_stiffness":
+            yield "bending_stiffness", 1, rotary(xi)
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
@@ -265,5 +287,7 @@ def _orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Orthonormal basis (k, m) of the span of columns (k, n), with a weight (k,), but for rounding."""
     root = np.sqrt(weight)[:, None]
     scaled = columns * root
-    Q, R, _ = scipy.linalg.qr(scaled / np.linalg.norm(scaled, axis=0), mode="economic", pivoting=True)
+    norm = np.linalg.norm(scaled, axis=0)
+    unit = scaled[:, norm > 0] / norm[norm > 0]
+    Q, R, _ = scipy.linalg.qr(unit, mode="economic", pivoting=True)
     return Q[:, np.abs(np.diag(R)) > _DEPENDENT] / root
