@@ -8,6 +8,8 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.polynomial import legendre
 
+from beamdyn.common.legendre import gauss_points_on, gauss_rule, legendre_series
+
 
 @dataclass(frozen=True)
 class Cells:
@@ -40,13 +42,12 @@ class ArcQuadrature:
     @cached_property
     def xi(self) -> np.ndarray:
         """Points on [0, 1], shape (N,)."""
-        ends, (t, _) = self.cells.ends, _gauss(self.cells.points)
-        return (ends[:-1, None] + np.diff(ends)[:, None] * (1 + t) / 2).ravel()
+        return gauss_points_on(self.cells.ends, self.cells.points).ravel()
 
     @cached_property
     def weights(self) -> np.ndarray:
         """Weights of the integral from 0 to 1, shape (N,)."""
-        _, w = _gauss(self.cells.points)
+        _, w = gauss_rule(self.cells.points)
         return (np.diff(self.cells.ends)[:, None] / 2 * w).ravel()
 
     @cached_property
@@ -56,7 +57,7 @@ class ArcQuadrature:
     def integrate(self, values: np.ndarray) -> np.ndarray:
         """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
         p = self.cells.points
-        _, w = _gauss(p)
+        _, w = gauss_rule(p)
         scaled = values.reshape(*values.shape[:-1], -1, p) * self._half_lengths
         ends = np.cumsum(scaled @ w, axis=-1)
         starts = ends - scaled @ w
@@ -66,7 +67,7 @@ class ArcQuadrature:
     def transposed(self, forces: np.ndarray) -> np.ndarray:
         """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
         p = self.cells.points
-        _, w = _gauss(p)
+        _, w = gauss_rule(p)
         inside = forces[..., :-1].reshape(*forces.shape[:-1], -1, p)
         of_cells = inside.sum(axis=-1)
         beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
@@ -75,31 +76,39 @@ class ArcQuadrature:
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
         """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""
-        ends, p = self.cells.ends, self.cells.points
-        cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
-        length = np.diff(ends)[cell]
-        t = np.clip(2 * (xi - ends[cell]) / length - 1, -1, 1)
+        cell, t, own = self._find(xi)
+        length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
-        own = cell[:, None] * p + np.arange(p)
         np.put_along_axis(matrix, own, length[:, None] / 2 * _integrate_interpolant(t, p), axis=1)
         return matrix
 
+    def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
+        """Weights (k, N) of the interpolants through the points of each cell at xi (k,)."""
+        _, t, own = self._find(xi)
+        matrix = np.zeros((len(xi), len(self.xi)))
+        np.put_along_axis(matrix, own, _interpolate(t, self.cells.points), axis=1)
+        return matrix
 
-@cache
-def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
-    return legendre.leggauss(points)
+    def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Cell (k,) of each xi, place in it from -1 to 1 (k,), and indices (k, p) of the cell's points."""
+        ends, p = self.cells.ends, self.cells.points
+        cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
+        t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
+        return cell, t, cell[:, None] * p + np.arange(p)
 
 
 @cache
 def _cumulative(points: int) -> np.ndarray:
     """Weights (p, p) of the integrals from -1 to each of p Gauss points of the interpolant through them."""
-    return _integrate_interpolant(_gauss(points)[0], points)
+    return _integrate_interpolant(gauss_rule(points)[0], points)
 
 
 def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     """Weights (k, p) of the integrals from -1 to t (k,) of the interpolant through p Gauss points."""
-    nodes, w = _gauss(points)
-    degrees = np.arange(points)
-    to_series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(nodes, points - 1).T * w
     integrals = legendre.legint(np.eye(points), lbnd=-1)
-    return legendre.legvander(t, points) @ integrals @ to_series
+    return legendre.legvander(t, points) @ integrals @ legendre_series(points)
+
+
+def _interpolate(t: np.ndarray, points: int) -> np.ndarray:
+    """Weights (k, p) of the interpolant through p Gauss points at t (k,)."""
+    return legendre.legvander(t, points - 1) @ legendre_series(points)

@@ -20,10 +20,25 @@ class RootConditions(NamedTuple):
         Number of derivatives, from the value on, that vanish at the root.
     derivatives : int
         Highest order of derivative that is square-integrable.
+    stiffness : str
+        Property of the sections that resists that derivative, to which functions may be adapted.
+    direction : int
+        Direction of the displacement across the beam, 0 or 1.
     """
 
     held: int
     derivatives: int
+    stiffness: str = ""
+    direction: int = 0
+
+    def against(self, stiffness: str, direction: int = 0) -> RootConditions:
+        """The same conditions, of a displacement that a stiffness resists."""
+        return self._replace(stiffness=stiffness, direction=direction)
+
+    @property
+    def at_root(self) -> RootConditions:
+        """The same without a stiffness: all that functions which are the same in all beams depend on."""
+        return RootConditions(self.held, self.derivatives)
 
 
 CLAMPED = RootConditions(2, 2)  # a deflection without slope at the root

@@ -144,7 +144,7 @@ class FemSpaces(FieldsOnly):
 
     def functions(self, conditions: RootConditions) -> FemSpace:
         """Trial functions that satisfy conditions at the root."""
-        return FemSpace(self, conditions)
+        return FemSpace(self, conditions.at_root)
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)

@@ -12,15 +12,18 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.checks import count, one_of, set_fields
-from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
+from beamdyn.equations.moment_functions import MomentSpaces
+from beamdyn.equations.sampled_space import SampledSpace, product_of
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 12  # Gauss points on each segment beyond those that integrate small deflections exactly
+
+_COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
 
 Evaluation = Callable[[np.ndarray, int], np.ndarray]  # (xi of shape (k,), order) -> shape (n, k)
 
@@ -33,19 +36,26 @@ class Ritz:
     ----------
     functions : int
         Number of functions for the deflection, and as many for the stretch where it is modelled,
-        from 1 to 200; for Legendre functions, the number on each segment between the beam's breakpoints.
-    basis : {"legendre", "eigenfunctions"}
-        Integrated Legendre polynomials, or the modes of the uniform beam at rest, which the papers use
-        and whose error falls slowly, as N^-5, under rotation.
+        from 1 to 200; for Legendre functions, the number on each segment between the beam's breakpoints;
+        of moments in twisted sections, the number for a moment in each direction.
+    basis : {"legendre", "eigenfunctions", "moments"}
+        Integrated Legendre polynomials; or the modes of the uniform beam at rest, which the papers use
+        and whose error falls slowly, as N^-5, under rotation; or deflections by bending moments that are
+        polynomials over the whole beam, for beams of many segments.
     """
 
     functions: int = 14
-    basis: Literal["legendre", "eigenfunctions"] = "legendre"
+    basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
 
     def __post_init__(self) -> None:
         most, remedy = MOST_FUNCTIONS, "use fewer, or discretization='fem'"
         set_fields(self, functions=count("functions", self.functions, most=most, remedy=remedy))
-        one_of("basis", self.basis, tuple(_BASES))
+        one_of("basis", self.basis, (*_BASES, "moments"))
+
+    @property
+    def on_each_segment(self) -> bool:
+        """Whether each segment between breakpoints has its own functions."""
+        return self.basis == "legendre"
 
     @property
     def order(self) -> None:
@@ -57,8 +67,10 @@ class Ritz:
         """0: scaling of the functions keeps all digits of their integrals."""
         return 0.0
 
-    def spaces(self, beam: Beam) -> RitzSpaces:
+    def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
         """Build the function spaces on a beam."""
+        if self.basis == "moments":
+            return MomentSpaces(beam, self.functions)
         return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
@@ -68,11 +80,13 @@ class Ritz:
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
+        if self.basis == "moments":
+            return MomentSpaces(beam, self.functions).quadrature.cells
         return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""
-        ratio = 0.88 if self.basis == "legendre" else 0.5  # eigenfunctions converge more slowly
+        ratio = _COARSER[self.basis]
         return replace(self, functions=max(1, min(int(ratio * self.functions), self.functions - 2)))
 
     def finer(self) -> Ritz | None:
@@ -106,18 +120,17 @@ class RitzSpaces:
 
     def functions(self, conditions: RootConditions) -> RitzSpace:
         """Trial functions that satisfy conditions at the root."""
-        return _build_space(self, conditions)
+        return _build_space(self, conditions.at_root)
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
-        first, second = self.functions(rows), self.functions(columns)
-        return (first.samples[orders[0]] * first.weights(weight)) @ second.samples[orders[1]].T
+        return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
 
 @dataclass(frozen=True)
-class RitzSpace(FieldsOnly):
+class RitzSpace(SampledSpace):
     """Trial functions sampled at the points of a Gauss rule.
 
     Parameters
@@ -159,24 +172,6 @@ class RitzSpace(FieldsOnly):
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points."""
         return [self.evaluation(self.points, order) for order in self._orders]
-
-    @property
-    def size(self) -> int:
-        """Number of functions."""
-        return len(self.samples[0])
-
-    def weights(self, weight: Profile) -> np.ndarray:
-        """Multiply the weights of the rule by a property."""
-        return self.rule * weight(self.points)
-
-    def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivatives of functions i and j."""
-        phi = self.samples[order]
-        return (phi * self.weights(weight)) @ phi.T
-
-    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivative of function i."""
-        return self.samples[order] @ self.weights(weight)
 
     @cached_property
     def _tip_values(self) -> list[np.ndarray]:

@@ -20,6 +20,7 @@ TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
 _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
+_FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
 _MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
@@ -149,7 +150,7 @@ def _list_from(model: Model | None, refining: bool) -> Iterator[Model]:
 def _refine(model: Model) -> Model | None:
     """The next finer model; None if there is none that is affordable."""
     finer, segments = model.discretization.finer(), len(model.scene.modelled_beam.breakpoints) - 1
-    if finer is None or (isinstance(finer, Ritz) and finer.functions * segments > _MOST_IN_ALL):
+    if finer is None or _count_functions(finer, segments) > _MOST_IN_ALL:
         return None
     refined = Model(model.scene, finer)
     if refined.coarser.discretization == model.discretization:  # it is there already
@@ -167,6 +168,8 @@ def _find_first(name: str, segments: int, modes: int, target: float, cheapest: b
 
 def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
+    if segments > _FEW_SEGMENTS:
+        return Ritz(14 + modes - int(1.5 * np.log10(target)), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
     total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
@@ -193,8 +196,16 @@ def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) 
 
 
 def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
-    """Whether a beam of some segments has functions enough: those of a Ritz basis stand on each segment."""
-    return discretization.fits(-(-modes // segments) if isinstance(discretization, Ritz) else modes)
+    """Whether a beam of some segments has functions enough."""
+    on_each = isinstance(discretization, Ritz) and discretization.on_each_segment
+    return discretization.fits(-(-modes // segments) if on_each else modes)
+
+
+def _count_functions(discretization: Discretization, segments: int) -> int:
+    """Number of assumed modes on all segments together; 0 of finite elements, which have their own limit."""
+    if not isinstance(discretization, Ritz):
+        return 0
+    return discretization.functions * (segments if discretization.on_each_segment else 1)
 
 
 def _check_size(discretization: Discretization, modes: int, segments: int) -> Discretization:

@@ -31,6 +31,11 @@ class DeflectedSolver(Eigensolver):
         self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}
 
+    @property
+    def conservative(self) -> bool:
+        """False: a bent beam in the plane of rotation is gyroscopic."""
+        return False
+
     @cached_property
     def lowest_at_rest(self) -> float:
         """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""

@@ -47,6 +47,11 @@ class Eigensolver(Protocol):
         """Number n of coordinates and modes."""
         return len(self.pencil.M)
 
+    @property
+    def conservative(self) -> bool:
+        """Whether the equations have neither damping nor gyroscopic terms: then modes are real."""
+        return self.pencil.conservative
+
     @cached_property
     def lowest_at_rest(self) -> float:
         """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from beamdyn.modal.eigensolver import Eigen
 from beamdyn.modal.model import Model
+from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
@@ -60,9 +61,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     EstimatedModes
     """
     coarse = model.coarser
-    fine = model.solver.solve(speeds, min(modes + extra, model.solver.size))
+    fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     s = fine.eigenvalue[:, :modes]
-    squared, distance = s**2, s**2 - coarse.solver.eigenvalues(speeds, modes) ** 2
+    squared, distance = s**2, s**2 - eigenvalues_over_speeds(coarse.solver, speeds, modes) ** 2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation: removes the leading term of the error
         squared = squared + distance / (2**order - 1)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -16,6 +17,13 @@ import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
 from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
+from beamdyn.common.legendre import (
+    gauss_points_on,
+    gauss_rule,
+    legendre_series,
+    multiply_series,
+)
+from beamdyn.common.pickling import FieldsOnly
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
@@ -45,7 +53,7 @@ Property: TypeAlias = "float | Polynomial | Table | Callable[[np.ndarray], np.nd
 
 
 @dataclass(frozen=True)
-class Profile:
+class Profile(FieldsOnly):
     """A piecewise polynomial of the fraction x/L on [0, 1].
 
     Parameters
@@ -64,16 +72,19 @@ class Profile:
         xi = np.asarray(xi, dtype=float)
         segment = np.searchsorted(self.breakpoints, xi, side="right") - 1
         segment = np.clip(segment, 0, len(self.coefficients) - 1)
-        values = np.empty(xi.shape)
-        for k in np.unique(segment):
-            mask = segment == k
-            values[mask] = legendre.legval(self._map_to_unit(k, xi[mask]), self.coefficients[k])
-        return values
+        ends = np.array(self.breakpoints)
+        a, b = ends[segment], ends[segment + 1]
+        t = ((xi - a) - (b - xi)) / (b - a)
+        of_points = self.series[:, segment] if len(self.coefficients) > 1 else self.series[:, 0]
+        return legendre.legval(t, of_points, tensor=False)
 
-    def _map_to_unit(self, k: int, xi: np.ndarray) -> np.ndarray:
-        """Map fractions on segment k to the interval [-1, 1] of the Legendre polynomials."""
-        a, b = self.breakpoints[k : k + 2]
-        return ((xi - a) - (b - xi)) / (b - a)
+    @cached_property
+    def series(self) -> np.ndarray:
+        """Legendre coefficients of each segment in columns, those of high degree 0 where there are none."""
+        series = np.zeros((self.degree + 1, len(self.coefficients)))
+        for k, row in enumerate(self.coefficients):
+            series[: len(row), k] = row
+        return series
 
     @property
     def degree(self) -> int:
@@ -90,26 +101,30 @@ class Profile:
         ends = merge_breakpoints(np.union1d(self.breakpoints, breakpoints))
         if ends == self.breakpoints:
             return self
-        t, w = legendre.leggauss(self.degree + 1)
-        return Profile(ends, tuple(_project(self, a, b, t, w) for a, b in pairwise(ends)))
+        values = self(gauss_points_on(np.array(ends), self.degree + 1))
+        return _of_series(ends, legendre_series(values.shape[1]) @ values.T)
 
     def __mul__(self, other: Profile) -> Profile:
         """Multiply two properties pointwise."""
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
-        pairs = zip(a.coefficients, b.coefficients, strict=True)
-        return Profile(a.breakpoints, tuple(tuple(legendre.legmul(p, q).tolist()) for p, q in pairs))
+        return _of_series(a.breakpoints, multiply_series(a.series, b.series))
 
     def __add__(self, other: Profile) -> Profile:
         """Add two properties pointwise."""
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
-        pairs = zip(a.coefficients, b.coefficients, strict=True)
-        return Profile(a.breakpoints, tuple(tuple(legendre.legadd(p, q).tolist()) for p, q in pairs))
+        series = np.zeros((max(a.degree, b.degree) + 1, len(a.coefficients)))
+        series[: a.degree + 1] = a.series
+        series[: b.degree + 1] += b.series
+        return _of_series(a.breakpoints, series)
+
+    def at_points(self, points: int) -> np.ndarray:
+        """Values at Gauss points of each segment, shape (segments, points)."""
+        return (legendre.legvander(gauss_rule(points)[0], self.degree) @ self.series).T
 
     def map(self, function: Callable[[np.ndarray], np.ndarray]) -> Profile:
         """Apply an analytic function, such as the cosine, to the property; exact to rounding."""
-        ends = pairwise(self.breakpoints)
-        rows = (_map_series(function, row, a, b) for row, (a, b) in zip(self.coefficients, ends, strict=True))
-        return Profile(self.breakpoints, tuple(rows))
+        rows = _map_series(function, self)
+        return Profile(self.breakpoints, tuple(map(tuple, rows)))
 
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
@@ -117,28 +132,35 @@ class Profile:
 
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
-        rows, total = [], 0.0
-        for k in reversed(range(len(self.coefficients))):
-            a, b = self.breakpoints[k : k + 2]
-            inner = legendre.legint(self.coefficients[k], lbnd=1.0, scl=(a - b) / 2)
-            inner[0] += total
-            rows.append(tuple(inner.tolist()))
-            total = float(legendre.legval(-1.0, inner))
-        return Profile(self.breakpoints, tuple(reversed(rows)))
+        half = np.diff(self.breakpoints) / 2
+        inner = np.asarray(legendre.legint(-half * self.series, lbnd=1.0))
+        of_segments = np.asarray(legendre.legval(-1.0, inner))
+        inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
+        return _of_series(self.breakpoints, inner)
 
 
-def _map_series(
-    function: Callable[[np.ndarray], np.ndarray], row: Sequence[float], a: float, b: float
-) -> tuple[float, ...]:
-    """Legendre coefficients on [a, b] of a function of a Legendre series: as many as do not vanish."""
-    if len(row) == 1:
-        return (float(function(np.array(row))[0]),)
+def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
+    """The piecewise polynomial of Legendre coefficients, those of each segment in a column."""
+    return Profile(ends, tuple(map(tuple, series.T.tolist())))
+
+
+def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) -> list[list[float]]:
+    """Legendre coefficients of a function of a property: as many on each segment as do not vanish."""
+    rows: list[list[float]] = [[]] * len(profile.coefficients)
+    varying = np.array([len(row) > 1 for row in profile.coefficients])
+    for k in np.flatnonzero(~varying):
+        rows[k] = [float(function(np.array(profile.coefficients[k]))[0])]
+    left = np.flatnonzero(varying)
     for nodes in _FIT_NODES:
-        t, _ = legendre.leggauss(nodes)
-        values = function(legendre.legval(t, row))
-        series = np.linalg.solve(legendre.legvander(t, nodes - 1), values)
-        if (np.abs(series[-3:]) <= _FIT_TOLERANCE * np.abs(series).max()).all():
-            return tuple(legendre.legtrim(series, 1e-17 * np.abs(series).max()).tolist())
+        values = function(profile.at_points(nodes)[left])
+        series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values.T)
+        largest = np.abs(series).max(axis=0)
+        resolved = (np.abs(series[-3:]) <= _FIT_TOLERANCE * largest).all(axis=0)
+        for k, row, size in zip(left[resolved], series.T[resolved], largest[resolved], strict=True):
+            rows[k] = legendre.legtrim(row, 1e-17 * size).tolist()
+        if not (left := left[~resolved]).size:
+            return rows
+    a, b = profile.breakpoints[left[0] : left[0] + 2]
     raise ValueError(
         f"the property varies too quickly between x/L = {a:.4g} and {b:.4g}: give breakpoints between them"
     )

@@ -45,7 +45,9 @@ class PowerSpaces:
     length: float
 
     def functions(self, conditions):
-        return Powers({CLAMPED: BENDING, HINGED: (1, *BENDING), FIXED: STRETCH}[conditions], self.length)
+        return Powers(
+            {CLAMPED: BENDING, HINGED: (1, *BENDING), FIXED: STRETCH}[conditions.at_root], self.length
+        )
 
     def product(self, weight, rows, columns, orders=(0, 0)):
         each = zip((rows, columns), orders, strict=True)

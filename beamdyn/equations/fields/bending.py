@@ -45,7 +45,8 @@ class Bending(TransverseField):
 
     def conditions(self, mount: Mount) -> RootConditions:
         """Clamped, or hinged where a spring holds the root."""
-        return HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
+        at_root = HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
+        return at_root.against("bending_stiffness", self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
         """Yield bending stiffness and root spring."""

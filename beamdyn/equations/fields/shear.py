@@ -41,7 +41,7 @@ class Shear(TransverseField):
 
     def conditions(self, mount: Mount) -> RootConditions:
         """No deflection at the root."""
-        return FIXED
+        return FIXED.against("shear_stiffness", self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
         """Yield the shear stiffness of shear with shear."""

@@ -18,6 +18,8 @@ from beamdyn.scene.beam import TipMass
 from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
 
+_CONDITIONS = FIXED.against("axial_stiffness")
+
 
 class Stretch(Field):
     """Axial stretch of the beam."""
@@ -65,12 +67,12 @@ class Stretch(Field):
             for term in _coupling(Trial(partner, scene, spaces))
         )
         terms = (*_own_terms(scene, spaces), *coupling)
-        return FieldEquations(spaces.functions(FIXED).size, terms, (*_loads(scene, spaces),))
+        return FieldEquations(spaces.functions(_CONDITIONS).size, terms, (*_loads(scene, spaces),))
 
 
 def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
     """Yield mass M11 (15), axial stiffness KS (16) and its softening by spin."""
-    s, beam, space = Stretch.name, scene.beam, spaces.functions(FIXED)
+    s, beam, space = Stretch.name, scene.beam, spaces.functions(_CONDITIONS)
     assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
     end = space.end(0)
     M = space.gram(beam.mass_per_length, 0) * beam.length + _tip(scene).mass * np.outer(end, end)
@@ -82,8 +84,8 @@ def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
 def _coupling(trial: Trial) -> Iterator[Term]:
     """Yield the coupling, by the mass M12 (15), with a deflection in the plane of rotation."""
     b, s, beam = trial.field.name, Stretch.name, trial.beam
-    by_beam = trial.spaces.product(beam.mass_per_length, FIXED, trial.conditions) * beam.length
-    M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(FIXED).end(0), trial.centre)
+    by_beam = trial.spaces.product(beam.mass_per_length, _CONDITIONS, trial.conditions) * beam.length
+    M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(_CONDITIONS).end(0), trial.centre)
     c = plane_components(trial.scene)[0][trial.direction]
     yield Term("Coriolis coupling of stretch", s, b, 1, M12, "speed", 2 * c)
     yield Term("Coriolis coupling of bending", b, s, 1, M12.T, "speed", -2 * c)
@@ -93,7 +95,7 @@ def _coupling(trial: Trial) -> Iterator[Term]:
 
 def _loads(scene: Scene, spaces: Spaces) -> Iterator[Load]:
     """Yield the loads of eqs. (21) and (20)."""
-    beam, tip, space = scene.beam, _tip(scene), spaces.functions(FIXED)
+    beam, tip, space = scene.beam, _tip(scene), spaces.functions(_CONDITIONS)
     length, mass, end = beam.length, beam.mass_per_length, space.end(0)
     P = space.load(mass) * length + tip.mass * end
     Q = space.load(mass * FRACTION) * length**2 + tip.mass * (length + tip.offset) * end

@@ -1,0 +1,50 @@
+"""Gauss-Legendre points on the parts of an interval, and Legendre series of interpolants through them."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+
+@cache
+def gauss_rule(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights of the Gauss rule on [-1, 1]."""
+    return legendre.leggauss(points)
+
+
+def gauss_points_on(ends: np.ndarray, points: int) -> np.ndarray:
+    """Gauss points on each of c cells between ascending ends (c + 1,): shape (c, points)."""
+    return ends[:-1, None] + np.diff(ends)[:, None] * (1 + gauss_rule(points)[0]) / 2
+
+
+@cache
+def legendre_series(points: int) -> np.ndarray:
+    """Legendre coefficients, in rows, of the interpolant through Gauss points by its values there."""
+    t, w = gauss_rule(points)
+    return (np.arange(points)[:, None] + 0.5) * legendre.legvander(t, points - 1).T * w
+
+
+def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Multiply Legendre series in columns, (m, c) and (n, c): shape (m + n - 1, c).
+
+    The recurrence of Legendre polynomials P_k gives P_k b; no digits are lost of series of a few terms.
+    """
+    short, long = sorted((a, b), key=len)
+    total = np.zeros((len(a) + len(b) - 1, long.shape[1]))
+    before, product = np.zeros_like(total), np.zeros_like(total)
+    product[: len(long)] = long
+    for k, coefficients in enumerate(short):
+        total += coefficients * product
+        before, product = product, ((2 * k + 1) * _times_argument(product) - k * before) / (k + 1)
+    return total
+
+
+def _times_argument(series: np.ndarray) -> np.ndarray:
+    """Multiply series in columns by t, without the term of highest degree, which is to be 0."""
+    k = np.arange(len(series))[:, None]
+    shifted = np.zeros_like(series)
+    shifted[1:] = (series * (k + 1) / (2 * k + 1))[:-1]
+    shifted[:-1] += (series * k / (2 * k + 1))[1:]
+    return shifted

@@ -1,0 +1,72 @@
+"""Modes over many speeds, by interpolation between those at a few.
+
+Without gyroscopic and damping terms squared frequencies are smooth functions of the squared speed, and so are
+the modes, but for sharp veerings.  They are interpolated in Chebyshev points of an interval of speeds.  The
+interpolant through every other point predicts the rest: where it errs by more than rounding, the interval is
+halved, down to a few speeds, which are solved each.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from beamdyn.modal.eigensolver import Eigen, Eigensolver
+
+_FEW = 160  # speeds that are solved each
+_INTERVALS = 16, 32  # between the points, in turn
+_MISFIT = 1e-13  # of predicted squared frequencies, relative to their rounding errors at best
+_MISFIT_OF_MODES = 1e-7  # of predicted modes, relative to their largest coordinate: they are only compared
+
+
+def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
+    """Compute the `count` lowest modes at ascending speeds (S,) [rad/s], as `Eigensolver.solve` does."""
+    if len(speeds) <= _FEW or not solver.conservative:
+        return solver.solve(speeds, count)
+    for intervals in _INTERVALS:
+        if (found := _interpolate(solver, speeds, count, intervals)) is not None:
+            return found
+    parts = [solve_over_speeds(solver, part, count) for part in np.array_split(speeds, 2)]
+    joined = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
+    return Eigen(*map(np.concatenate, joined))
+
+
+def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> np.ndarray:
+    """Compute the eigenvalues of the `count` lowest modes at ascending speeds, shape (S, count)."""
+    if len(speeds) <= _FEW:
+        return solver.eigenvalues(speeds, count)  # without modes
+    return solve_over_speeds(solver, speeds, count).eigenvalue
+
+
+def _interpolate(solver: Eigensolver, speeds: np.ndarray, count: int, intervals: int) -> Eigen | None:
+    """The same by interpolation; None where it errs by more than rounding."""
+    low, high = speeds[[0, -1]] ** 2
+    t = -np.cos(np.pi * np.arange(intervals + 1) / intervals)
+    eigen = solver.solve(np.sqrt(np.clip(low + (high - low) * (1 + t) / 2, low, high)), count)
+    squared, vector = np.real(-(eigen.eigenvalue**2)), _align(eigen.vector, solver.pencil.M)
+    at_nodes = np.concatenate([squared, vector.reshape(len(t), -1)], axis=1)
+    misfit = np.abs(_evaluate(t[::2], at_nodes[::2], t[1::2]) - at_nodes[1::2]).max(axis=0)
+    of_squares = misfit[:count] / np.abs(squared).min(axis=0)
+    of_modes = misfit[count:].max() / np.abs(vector).max()
+    if not (of_squares <= _MISFIT + eigen.rounding.min(axis=0)).all() or not of_modes <= _MISFIT_OF_MODES:
+        return None
+    values = _evaluate(t, at_nodes, 2 * (speeds**2 - low) / (high - low) - 1)
+    root = np.sqrt(np.abs(values[:, :count]))
+    return Eigen(
+        eigenvalue=np.where(values[:, :count] > 0, 1j * root, root),
+        vector=values[:, count:].reshape(len(speeds), -1, count),
+        rounding=np.tile(eigen.rounding.max(axis=0) + of_squares, (len(speeds), 1)),
+    )
+
+
+def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
+    """Give modes (S, n, k) at successive speeds the same signs."""
+    products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:])
+    signs = np.cumprod(np.where(products < 0, -1.0, 1.0), axis=0)
+    return np.concatenate([vector[:1], vector[1:] * signs[:, None, :]])
+
+
+def _evaluate(nodes: np.ndarray, values: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Evaluate the polynomials through values (n, m) at nodes (n,) at t (k,): shape (k, m)."""
+    degree = len(nodes) - 1
+    return chebyshev.chebvander(t, degree) @ np.linalg.solve(chebyshev.chebvander(nodes, degree), values)
