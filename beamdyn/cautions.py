@@ -25,8 +25,12 @@ def warnings_of(result: Any, tolerance: float | None = None) -> list[str]:
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
     if isinstance(result, StatesModelError):
-        where = where_worst(result) if hasattr(result, "left_out_speeds") else ""
-        yield from result.left_out_effects.warnings(tolerance, where)
+        yield from result.left_out_effects.warnings(tolerance, _worst_place(result))
+
+
+def _worst_place(result: Any) -> str:
+    """Where the model error is largest, of a result that has several places."""
+    return where_worst(result) if hasattr(result, "left_out_speeds") else ""
 
 
 def describe_choice(result: Result) -> list[str]:

@@ -309,8 +309,9 @@ def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndar
     even = np.concatenate([np.ones((1, len(h))), -(first[:, None] * first).reshape(4, -1)])
     angle = phases @ first
     cos, sin = np.cos(angle), np.sin(angle)
-    value_and_curvature = _sum_waves(even, a.real, -a.imag, cos, sin)
-    slope = _sum_waves(-first, a.imag, a.real, cos, sin)
+    real, imaginary = np.real(a), np.imag(a)
+    value_and_curvature = _sum_waves(even, real, -imaginary, cos, sin)
+    slope = _sum_waves(-first, imaginary, real, cos, sin)
     return value_and_curvature[..., 0], slope, value_and_curvature[..., 1:].reshape(S, d, P, 2, 2)
 
 
