@@ -320,6 +320,8 @@ def _sum_waves(
 ) -> np.ndarray:
     """Sums over h of w_h (x_h cos + y_h sin): (S, d, P, k) of weights w (k, H), x and y (S, d, H)."""
     S, d, H = of_cos.shape
-    factors = ((x[:, :, None] * weights).reshape(S, -1, H).swapaxes(1, 2) for x in (of_cos, of_sin))
+    factors = (
+        (x[:, :, None] * weights).reshape(S, d * len(weights), H).swapaxes(1, 2) for x in (of_cos, of_sin)
+    )
     sums = sum(wave @ factor for wave, factor in zip((cos, sin), factors, strict=True))
     return np.reshape(sums, (S, cos.shape[1], d, len(weights))).swapaxes(1, 2)
