@@ -244,7 +244,7 @@ PARTS = (measure_sample,)
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=1300, seed=SEED)
+    add_options(parser, scenes=1500, seed=SEED)
     given = parser.parse_args()
     answers = cases(given.seed).run(given)
     show("stated model errors", lambda: summarize(answers))
