@@ -58,7 +58,9 @@ def find_equilibrium(system: ElasticaSystem) -> np.ndarray:
     is_bent = system.branch == "bent"
     if is_bent and not root.speed:
         bound = "at time 0 the beam does not rotate, and no branch but that of the beam at rest exists"
-        raise InvalidValue("initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed")
+        raise InvalidValue(
+            "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
+        )
     values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
     size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
     load = LoadAtOnce(system.elastica, lowest / size, quantities=values)

@@ -23,6 +23,7 @@ _ITERATIONS = 30  # of Newton's method
 _CONVERGED = 1e-13  # error of the accelerations over their size that may be left
 _LEAST_REDUCTION = 1e-3  # of an error by an iteration that the changes of the last two may stand for
 _STALLED = 1e-9  # the same from which on rounding may end the iteration
+_BALANCED = 1e-12  # residual over the elastic force, for the same where the accelerations are small beside it
 _FAST = 0.1  # reduction by an iteration with which derivatives are kept
 _FEW = 4  # iterations of a step up to which the next begins with the same derivatives
 
@@ -154,7 +155,10 @@ class _Step:
             a = a - change
             size, scale = _norm(change), _norm(a) + _norm(residual)
             reduction = max(size / last, _LEAST_REDUCTION) if last else 1.0
-            if size * min(1.0, reduction) <= _CONVERGED * scale or last * _FAST < size <= _STALLED * scale:
+            is_stalled = last * _FAST < size and (
+                size <= _STALLED * scale or _norm(residual) <= _BALANCED * _norm(now.elastic)
+            )
+            if is_stalled or size * min(1.0, reduction) <= _CONVERGED * scale:
                 if iteration > _FEW:
                     self.tangent = None
                 return a

@@ -239,6 +239,11 @@ class Evaluation:
         """Squared speed (s, 1) in so far as the beam bends out of the plane of rotation [rad2/s2]."""
         return self.system.out_of_plane * self.drive.squared[:, None]
 
+    @cached_property
+    def elastic(self) -> np.ndarray:
+        """Elastic force (s, n)."""
+        return self.q.dot(self.system.elastica.stiffness)
+
     @property
     def residual(self) -> np.ndarray:
         """Residual of the equations of motion (s, n)."""
@@ -248,7 +253,7 @@ class Evaluation:
             by_angle += self.turned * elastica.points.inertia
         if self.system.out_of_plane:
             by_angle += self._softening * elastica.points.tilting * self.cos * self.sin
-        total = by_angle.dot(self.system.slopes) + self.q.dot(elastica.stiffness)
+        total = by_angle.dot(self.system.slopes) + self.elastic
         return total + self.v.dot(elastica.damping) if self.system.is_damped else total
 
     @cached_property

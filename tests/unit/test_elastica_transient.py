@@ -78,7 +78,9 @@ def test_start_on_the_bent_branch_stays_there(bending_angle: float) -> None:
     assert still.time_error == 0
 
 
-@pytest.mark.parametrize(("motion", "why"), [(bd.SpinUp(200.0, 1.0), "rotate"), (bd.SteadyRotation(90.0), "90")])
+@pytest.mark.parametrize(
+    ("motion", "why"), [(bd.SpinUp(200.0, 1.0), "rotate"), (bd.SteadyRotation(90.0), "90")]
+)
 def test_refuses_to_start_on_a_branch_that_does_not_exist(motion: bd.Motion, why: str) -> None:
     physics = bd.Physics(large_deflection=True, branch="bent")
     scene = replace(HARVESTER, physics=physics, mount=bd.Mount(0.215, 0.0), motion=motion)
