@@ -30,8 +30,8 @@ _SHIFT, _PHASE = 1e-4, 1e-2  # of a frequency, relative, and of its phase at the
 _SHORT_RUN = 2000  # samples up to which a run is done with large deflection
 _BY_FREQUENCY = "by the first frequency"
 _BY_BACKBONE = (
-    "roughly estimated by the static deflection and the backbone: where much of it vibrates, it may be off by "
-    "a factor, or in sign"
+    "roughly estimated by the static deflection and the backbone: "
+    "where much of it vibrates, it may be off by a factor, or in sign"
 )
 
 
