@@ -30,6 +30,7 @@ class DeflectedSolver(Eigensolver):
         self.pencil = elastica.linear.steady()  # about the straight beam
         self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}
+        self._solved: dict[tuple[float, int], Eigen] = {}
 
     @property
     def conservative(self) -> bool:
@@ -62,15 +63,17 @@ class DeflectedSolver(Eigensolver):
         return self._straight.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes at each speed [rad/s]: as `Solver.solve`.
+        """Compute the `count` lowest modes at each speed [rad/s], once each: as `Solver.solve`.
 
         Raises
         ------
         NoEquilibrium
             An ArithmeticError: if the branch of equilibria does not reach a speed.
         """
-        pencils = [equations.steady() for equations in self.equations(speeds)]
-        each = [Solver(p).solve(np.array([v]), count) for p, v in zip(pencils, speeds, strict=True)]
+        missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
+        for v, equations in zip(missing.tolist(), self.equations(missing), strict=True):
+            self._solved[v, count] = Solver(equations.steady()).solve(np.array([v]), count)
+        each = [self._solved[v, count] for v in speeds.tolist()]
         return Eigen(
             *(
                 np.concatenate([getattr(e, name) for e in each])

@@ -30,7 +30,6 @@ from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-SLOW = "Physics(large_deflection=True) includes it, which takes minutes here"
 _MARGIN = 0.5  # of the tolerance: an estimate may be low by a factor of two
 _SMALL = 0.1  # of the tolerance, below which no effect is added
 _SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change

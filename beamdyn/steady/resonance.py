@@ -23,7 +23,7 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import UncoupledSolver
-from beamdyn.model_error.choice import SLOW, choose_physics
+from beamdyn.model_error.choice import choose_physics
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line, Motion
 from beamdyn.scene.scene import Scene, check_scene
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 _HIGHEST_ORDER = 20  # that may be asked for: ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
+_BENT_NODES = 100  # the same where each takes an equilibrium, about which the loci are smooth
 _ROUNDING = 4 * np.finfo(float).eps
 _COINCIDENT = 1e-8  # largest distance of a line from a frequency over the speeds, over it: rounding
 _FURTHER_MODES = 2  # of other parts, which may come below those that are sought
@@ -192,7 +193,7 @@ def resonance_speeds(
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
-    scene = choose_physics(replace(scene, damping_ratio=0.0), [0.0, top], modes, straight=SLOW)
+    scene = choose_physics(replace(scene, damping_ratio=0.0), [0.0, top], modes)
     model = _choose_resolved(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)
@@ -402,7 +403,8 @@ class _Loci:
     ) -> None:
         self.model, self.solver, self.places, self.numbers = model, solver, places, numbers
         self.modes = len(numbers)
-        self.speeds = np.linspace(0, top, _NODES + 1)
+        nodes = _BENT_NODES if model.scene.physics.large_deflection else _NODES
+        self.speeds = np.linspace(0, top, nodes + 1)
         self.values = self.frequencies(self.speeds)
         vectors = self.solver.solve(self.speeds, self.modes).vector
         self.order, _ = track(vectors, self.solver.pencil.M)

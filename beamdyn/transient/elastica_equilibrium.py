@@ -11,8 +11,10 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.elastica import QUANTITIES
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.modal.eigen import Solver
-from beamdyn.modal.equilibrium import Branch, NoEquilibrium, SteadyLoad, find_bent, follow_to
+from beamdyn.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
 from beamdyn.transient.elastica_system import ElasticaSystem
+
+_REMEDY = "give 'rest' or an array"
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,8 @@ class LoadAtOnce(SteadyLoad):
         return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
 
 
-def find_equilibrium(system: ElasticaSystem, branch: Branch = "straight") -> np.ndarray:
-    """Coordinates (n,) in equilibrium with the loads at time 0, on a branch of equilibria.
+def find_equilibrium(system: ElasticaSystem) -> np.ndarray:
+    """Coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene.
 
     Raises
     ------
@@ -53,11 +55,17 @@ def find_equilibrium(system: ElasticaSystem, branch: Branch = "straight") -> np.
     """
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
     speed = abs(float(root.speed)) or 1.0
+    is_bent = system.branch == "bent"
+    if is_bent and not root.speed:
+        bound = "at time 0 the beam does not rotate, and no branch but that of the beam at rest exists"
+        raise InvalidValue(
+            "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
+        )
     values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
     size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
     load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
     try:
-        return find_bent(load, speed) if branch == "bent" else follow_to(load, np.array([speed]))[0]
+        return find_bent(load, speed) if is_bent else follow_to(load, np.array([speed]))[0]
     except NoEquilibrium as error:
         bound = f"at time 0 there is none: {error}"
-        raise InvalidValue("initial", "equilibrium", bound, "give 'rest' or an array") from None
+        raise InvalidValue("initial", "equilibrium", bound, _REMEDY) from None

@@ -8,6 +8,7 @@ numerical damping, so that energy does not drift.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
@@ -19,8 +20,10 @@ from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, tableau
 
 _ITERATIONS = 30  # of Newton's method
-_CONVERGED = 1e-13  # change of the accelerations over their size: the error left is far smaller
+_CONVERGED = 1e-13  # error of the accelerations over their size that may be left
+_LEAST_REDUCTION = 1e-3  # of an error by an iteration that the changes of the last two may stand for
 _STALLED = 1e-9  # the same from which on rounding may end the iteration
+_BALANCED = 1e-12  # residual over the elastic force, for the same where the accelerations are small beside it
 _FAST = 0.1  # reduction by an iteration with which derivatives are kept
 _FEW = 4  # iterations of a step up to which the next begins with the same derivatives
 
@@ -109,6 +112,7 @@ class _Step:
     def __init__(self, system: ElasticaSystem, h: float, table: Tableau) -> None:
         self.system, self.h, self.table = system, h, table
         self.drift, self.to_v, self.to_q = h * table.c[:, None], h * table.A, h**2 * table.A2
+        self.to_motion = np.concatenate([self.to_q, self.to_v, np.eye(len(table.c))])
         self.end_v, self.end_q = h * table.b, h**2 * table.b2
         self.tangent: Tangent | None = None
 
@@ -126,8 +130,8 @@ class _Step:
 
     def _tangent_at(self, drive: Drive, q: np.ndarray) -> Tangent:
         """Derivatives at rest in some coordinates (n,), the same for all nodes of a step."""
-        middle, still = Drive(*(x[[len(x) // 2]] for x in drive)), np.zeros((1, len(q)))
-        here = self.system.at(middle, q[None], still, still)
+        still = np.zeros((1, len(q)))
+        here = self.system.at(drive.node(len(self.table.c) // 2), q[None], still, still)
         return Tangent(here.stiffness, here.damping, self._factorize(here))
 
     def _guess(self, drive: Drive, q: np.ndarray, v: np.ndarray, drift: np.ndarray) -> np.ndarray:
@@ -142,19 +146,23 @@ class _Step:
         """Solve for the accelerations (s, n) by Newton's method; the tangent is kept while it serves."""
         assert self.tangent is not None
         factors: Factors | None = self.tangent.factors
-        last = np.inf
+        start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
-            now = self.system.at(drive, drifted + self.to_q.dot(a), v + self.to_v.dot(a), a)
+            now = Evaluation(self.system, drive, start + self.to_motion.dot(a).reshape(start.shape))
             factors = factors or self._factorize(now)
             residual = now.residual
             change = _divide(factors, residual)
             a = a - change
-            size, scale = np.abs(change).max(), np.abs(a).max() + np.abs(residual).max()
-            if size <= _CONVERGED * scale or last * _FAST < size <= _STALLED * scale:
+            size, scale = _norm(change), _norm(a) + _norm(residual)
+            reduction = max(size / last, _LEAST_REDUCTION) if last else 1.0
+            is_stalled = last * _FAST < size and (
+                size <= _STALLED * scale or _norm(residual) <= _BALANCED * _norm(now.elastic)
+            )
+            if is_stalled or size * min(1.0, reduction) <= _CONVERGED * scale:
                 if iteration > _FEW:
                     self.tangent = None
                 return a
-            if not np.isfinite(size):
+            if not math.isfinite(size):
                 break
             if size > _FAST * last:
                 factors = None
@@ -170,6 +178,11 @@ class _Step:
         matrix[index, :, index] += now.mass
         lu, pivots, _ = dgetrf(matrix.reshape(s * n, s * n))
         return lu, pivots
+
+
+def _norm(values: np.ndarray) -> float:
+    flat = values.ravel()
+    return math.sqrt(flat.dot(flat))
 
 
 def _divide(factors: Factors, residual: np.ndarray) -> np.ndarray:

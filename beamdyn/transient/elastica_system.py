@@ -21,6 +21,7 @@ from beamdyn.equations.directions import check_direction
 from beamdyn.equations.elastica import Elastica
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import RootMotion
+from beamdyn.modal.equilibrium import Branch
 from beamdyn.modal.modal_basis import ModalBasis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
@@ -37,16 +38,20 @@ class ElasticaSystem:
         Equations of motion in modal coordinates.
     motion : Motion
         Motion of the root.
+    branch : {"straight", "bent"}
+        Equilibria of which a run begins with one, if it is to begin in equilibrium.
     """
 
     elastica: Elastica
     motion: Motion
+    branch: Branch = "straight"
 
     @classmethod
     def of_model(cls, model: Model, basis: ModalBasis, motion: Motion) -> ElasticaSystem:
         """Equations of a model for large deflection in the coordinates of a modal basis."""
         assert model.elastica is not None
-        return cls(Elastica(model.modal_equations(basis), model.elastica.points), motion)
+        elastica = Elastica(model.modal_equations(basis), model.elastica.points)
+        return cls(elastica, motion, model.scene.physics.branch)
 
     @property
     def size(self) -> int:
@@ -109,6 +114,11 @@ class ElasticaSystem:
         return (positions * self.elastica.points.mass) @ positions.T
 
     @cached_property
+    def kernel_and_moments(self) -> np.ndarray:
+        """-H, as X and Y are summed with the other sign, and in a further row the moments: (N + 2, N + 1)."""
+        return np.vstack([-self.kernel, self.moments])
+
+    @cached_property
     def moments(self) -> np.ndarray:
         """Moments g (N + 1,) at the slope angles under a unit acceleration [kg m]."""
         return self.elastica.points.moments(self.elastica.points.mass)
@@ -137,15 +147,14 @@ class ElasticaSystem:
         """Quantities of the root's motion as they enter the equations."""
         c = self.elastica.in_plane
         return Drive(
-            coriolis=2 * c * root.speed,
+            turning=c * np.stack([root.speed, root.acceleration], axis=-2),
             squared=root.speed_squared,
-            euler=c * root.acceleration,
-            root=root.root_axial + 1j * root.root_transverse,
+            root=np.stack([root.root_axial, root.root_transverse], axis=-2),
         )
 
     def at(self, drive: Drive, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluation:
         """Evaluate the equations at coordinates, rates and accelerations (s, n) under a drive (s,)."""
-        return Evaluation(self, drive, q, v, a)
+        return Evaluation(self, drive, np.stack([q, v, a]))
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
@@ -169,26 +178,34 @@ class ElasticaSystem:
 
 
 class Drive(NamedTuple):
-    """What the motion of the root does to the beam, at the nodes of a step: arrays of shape (..., s).
+    """What the motion of the root does to the beam, at the nodes of a step.
 
     Parameters
     ----------
-    coriolis, squared, euler : ndarray
-        2 c omega [rad/s], omega^2 [rad2/s2] and c omega' [rad/s2].
-    root : ndarray of complex
-        Acceleration of the root along b1, and i times that along e [m/s2].
+    turning : ndarray, shape (..., 2, s)
+        c omega [rad/s] and c omega' [rad/s2]: turning of the axes in the plane of bending, negative.
+    squared : ndarray, shape (..., s)
+        omega^2 [rad2/s2].
+    root : ndarray, shape (..., 2, s)
+        Acceleration of the root along b1 and e [m/s2].
     """
 
-    coriolis: np.ndarray
+    turning: np.ndarray
     squared: np.ndarray
-    euler: np.ndarray
     root: np.ndarray
+
+    def node(self, k: int) -> Drive:
+        """The drive at one node of a step alone, s = 1."""
+        return Drive(*(values[..., [k]] for values in self))
 
 
 class Evaluation:
     """The equations at s sets of coordinates, rates and accelerations: their residual and its derivatives.
 
-    Vectors in the plane of bending are complex numbers, x + i y = exp(i theta) (along + i across).
+    Integrators ask for the residual a million times, of arrays so small that the number of operations counts.
+    In the plane of rotation, rate and acceleration of an angle as seen from the ground, w and w', leave
+    X = -w^2 cos theta - w' sin theta and Y = -w^2 sin theta + w' cos theta; out of it X has
+    -omega^2 cos theta, too.
 
     Parameters
     ----------
@@ -196,80 +213,80 @@ class Evaluation:
         The equations.
     drive : Drive
         Motion of the root, of shape (s,).
-    q, v, a : ndarray, shape (s, n)
+    motion : ndarray, shape (3, s, n)
         Coordinates, their rates and accelerations.
     """
 
-    def __init__(
-        self, system: ElasticaSystem, drive: Drive, q: np.ndarray, v: np.ndarray, a: np.ndarray
-    ) -> None:
-        self.system, self.drive, self.q, self.v = system, drive, q, v
-        s = len(q)
-        angles = system.slopes.dot(np.concatenate([q, v, a]).T)
-        self.cos, self.sin = np.cos(angles[:, :s]), np.sin(angles[:, :s])
-        self.turning = angles[:, s : 2 * s]
-        self.along = self.turning * (drive.coriolis - self.turning)
-        self.across = angles[:, 2 * s :] - drive.euler
-        self.axis = self.cos + 1j * self.sin
-        acceleration = self.axis * (self.along - drive.squared + 1j * self.across)
+    def __init__(self, system: ElasticaSystem, drive: Drive, motion: np.ndarray) -> None:
+        self.system, self.drive, (self.q, self.v, _) = system, drive, motion
+        _, s, n = motion.shape
+        angles = motion.reshape(-1, n).dot(system.elastica.angles).reshape(3, s, -1)
+        angles[1:] -= drive.turning[..., None]
+        theta, w, self.turned = angles
+        self.cos, self.sin, self.squared = np.cos(theta), np.sin(theta), w * w
+        self.turning = w
+        changes = np.empty((2, s, len(system.kernel) + 1))
+        changes[0, :, :-1] = self.cos * self.squared + self.sin * self.turned
+        changes[1, :, :-1] = self.sin * self.squared - self.cos * self.turned
         if system.out_of_plane:
-            acceleration += 1j * system.out_of_plane * drive.squared * self.sin
-        forces = system.kernel.dot(acceleration.view(float)).view(complex)
-        forces += np.multiply.outer(system.moments, drive.root)
-        turned = forces * np.conj(self.axis)
-        self.force_along, self.force_across = np.real(turned), np.imag(turned)
+            changes[0, :, :-1] += self._softening * self.cos
+        changes[..., -1] = drive.root
+        along, across = changes.reshape(2 * s, -1).dot(system.kernel_and_moments).reshape(2, s, -1)
+        self.along, self.across = along, across
+
+    @property
+    def _softening(self) -> np.ndarray:
+        """Squared speed (s, 1) in so far as the beam bends out of the plane of rotation [rad2/s2]."""
+        return self.system.out_of_plane * self.drive.squared[:, None]
+
+    @cached_property
+    def elastic(self) -> np.ndarray:
+        """Elastic force (s, n)."""
+        return self.q.dot(self.system.elastica.stiffness)
 
     @property
     def residual(self) -> np.ndarray:
         """Residual of the equations of motion (s, n)."""
-        elastica, by_angle = self.system.elastica, self.force_across
+        elastica = self.system.elastica
+        by_angle = self.cos * self.across - self.sin * self.along
         if self.system.has_inertia:
-            by_angle = by_angle + self.across * elastica.points.inertia[:, None]
+            by_angle += self.turned * elastica.points.inertia
         if self.system.out_of_plane:
-            tilting = self.cos * self.sin * elastica.points.tilting[:, None]
-            by_angle = by_angle + self.system.out_of_plane * self.drive.squared * tilting
-        total = elastica.angles.dot(by_angle).T + self.q.dot(elastica.stiffness)
+            by_angle += self._softening * elastica.points.tilting * self.cos * self.sin
+        total = by_angle.dot(self.system.slopes) + self.elastic
         return total + self.v.dot(elastica.damping) if self.system.is_damped else total
 
     @cached_property
-    def _turned(self) -> np.ndarray:
-        """Slopes by the coordinates, turned by a right angle: (s, N + 1, n)."""
-        return 1j * self.axis.T[:, :, None] * self.system.slopes
+    def _levers(self) -> np.ndarray:
+        """Moments by the coordinates of forces along b1, then of those along e: (s, n, 2 (N + 1))."""
+        angles, kernel = self.system.elastica.angles, self.system.kernel
+        turned = np.stack([-self.sin, self.cos], axis=1)[:, None] * angles[:, None]
+        return turned.dot(kernel).reshape(len(self.q), len(angles), -1)
 
-    @cached_property
-    def _weighted(self) -> np.ndarray:
-        """The same times the kernel, conjugate and transposed: (s, n, N + 1)."""
-        s, _, n = self._turned.shape
-        columns = self._turned.transpose(1, 0, 2).reshape(-1, s * n)
-        weighted = (self.system.kernel @ columns.view(float)).view(complex)
-        return np.conj(weighted).reshape(-1, s, n).transpose(1, 2, 0)
-
-    def _derivative(self, change: np.ndarray) -> np.ndarray:
-        """Derivative (s, n, n) from that of the acceleration by the angles, complex (N + 1, s)."""
-        return np.real(self._weighted @ (change.T[:, :, None] * self.system.slopes))
+    def _derivative(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
+        """Derivative (s, n, n) of the moments from those of X and Y by the angles (s, N + 1)."""
+        changes = np.stack([along, across], axis=1)[..., None] * self.system.slopes
+        return self._levers @ changes.reshape(len(self.q), -1, self.system.size)
 
     @cached_property
     def mass(self) -> np.ndarray:
         """Derivative by the accelerations (s, n, n)."""
         angles, inertia = self.system.elastica.angles, self.system.elastica.points.inertia
-        return self._derivative(1j * self.axis) + (angles * inertia) @ angles.T
+        return self._derivative(-self.sin, self.cos) + (angles * inertia) @ angles.T
 
     @cached_property
     def damping(self) -> np.ndarray:
         """Derivative by the rates (s, n, n)."""
-        rate = self.drive.coriolis - 2 * self.turning
-        return self._derivative(rate * self.axis) + self.system.elastica.damping
+        rate = -2 * self.turning
+        return self._derivative(rate * self.cos, rate * self.sin) + self.system.elastica.damping
 
     @cached_property
     def stiffness(self) -> np.ndarray:
         """Derivative by the coordinates (s, n, n)."""
-        system, angles = self.system, self.system.elastica.angles
-        along = self.along - self.drive.squared
-        change, by_angle = self.axis * (1j * along - self.across), -self.force_along
-        if share := system.out_of_plane:
-            change += 1j * share * self.drive.squared * self.cos
-            tilting = system.elastica.points.tilting[:, None] * (self.cos**2 - self.sin**2)
-            by_angle = by_angle + share * self.drive.squared * tilting
-        return (
-            self._derivative(change) + (by_angle.T[:, None] * angles) @ angles.T + system.elastica.stiffness
-        )
+        system, angles, softening = self.system, self.system.elastica.angles, self._softening
+        along = (self.squared + softening) * self.sin - self.turned * self.cos
+        across = -self.squared * self.cos - self.turned * self.sin
+        by_angle = -self.cos * self.along - self.sin * self.across
+        by_angle += softening * system.elastica.points.tilting * (self.cos**2 - self.sin**2)
+        geometric = (by_angle[:, None] * angles) @ angles.T
+        return self._derivative(along, across) + geometric + system.elastica.stiffness

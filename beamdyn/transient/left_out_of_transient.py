@@ -29,7 +29,10 @@ _MODES = 2  # lowest modes, whose frequencies tell whether an effect matters
 _SHIFT, _PHASE = 1e-4, 1e-2  # of a frequency, relative, and of its phase at the end [rad], that matter
 _SHORT_RUN = 2000  # samples up to which a run is done with large deflection
 _BY_FREQUENCY = "by the first frequency"
-_BY_BACKBONE = "estimated by the static deflection and the backbone"
+_BY_BACKBONE = (
+    "roughly estimated by the static deflection and the backbone: "
+    "where much of it vibrates, it may be off by a factor, or in sign"
+)
 
 
 class Run(Protocol):

@@ -128,17 +128,48 @@ def test_the_stated_error_covers_the_true_one(tolerance: float, exact_tip: np.nd
     assert true <= run.time_error <= tolerance * run.largest
 
 
+BENDING_ANGLES = (0.0, math.pi / 2, math.pi)
+
+
+def loaded_system(bending_angle: float) -> ElasticaSystem:
+    """With every load: three modes of a beam with a tip body and rotary inertia that spins up."""
+    physics = bd.Physics(large_deflection=True, rotary_inertia=True)
+    mount, motion = bd.Mount(0.2, 0.7, bending_angle), bd.SpinUp(80.0, duration=1.0)
+    beam = replace(HARVESTER.beam, tip=TIPPED)
+    scene = bd.Scene(beam, mount, motion, gravity=9.81, damping_ratio=0.01, physics=physics)
+    return system_of(scene, 3)
+
+
+SIZES = 1e-3, 0.1, 50.0  # of coordinates, rates and accelerations at which all terms count
+
+
 def test_the_cheap_form_of_the_equations_is_the_plain_one() -> None:
     """By the matrix of the mass as by the positions of the masses, in every plane and with every load."""
     random = np.random.default_rng(4)
-    physics = bd.Physics(large_deflection=True, rotary_inertia=True)
-    beam = replace(HARVESTER.beam, tip=TIPPED)
-    for bending in (0.0, math.pi / 2, math.pi):
-        mount, motion = bd.Mount(0.2, 0.7, bending), bd.SpinUp(80.0, duration=1.0)
-        scene = bd.Scene(beam, mount, motion, gravity=9.81, damping_ratio=0.01, physics=physics)
-        system = system_of(scene, 3)
-        q, v, a = (random.normal(size=(5, 3)) * size for size in (1e-3, 0.1, 50.0))
+    for bending in BENDING_ANGLES:
+        system = loaded_system(bending)
+        q, v, a = (random.normal(size=(5, 3)) * size for size in SIZES)
         root = system.root(np.linspace(0.1, 0.9, 5))
         cheap = system.at(system.drive(root), q, v, a).residual
         plain = system.elastica.at(q).work(v, a, root)
         assert cheap == pytest.approx(plain, rel=1e-9, abs=1e-12 * np.abs(plain).max())
+
+
+def test_derivatives_are_those_of_the_residual() -> None:
+    """Central differences over 2e-4 of the size: their error is about its square, 1e-8."""
+    random = np.random.default_rng(5)
+    for bending in BENDING_ANGLES:
+        system = loaded_system(bending)
+        motion = [random.normal(size=(1, 3)) * size for size in SIZES]
+        drive = system.drive(system.root(np.array([0.4])))
+        here = system.at(drive, *motion)
+        for i, (name, size) in enumerate(zip(("stiffness", "damping", "mass"), SIZES, strict=True)):
+            stated, columns = getattr(here, name)[0], []
+            for step in 1e-4 * size * np.eye(3):
+                ahead, behind = (
+                    system.at(drive, *(x + sign * step * (j == i) for j, x in enumerate(motion))).residual[0]
+                    for sign in (1, -1)
+                )
+                columns.append((ahead - behind) / (2e-4 * size))
+            difference = np.abs(np.array(columns).T - stated).max()
+            assert difference < 1e-6 * np.abs(stated).max(), name

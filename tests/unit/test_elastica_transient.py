@@ -66,6 +66,28 @@ def test_start_in_equilibrium_stays_there() -> None:
     assert still.time_error == 0
 
 
+@pytest.mark.parametrize("bending_angle", [0.0, math.pi / 2])
+def test_start_on_the_bent_branch_stays_there(bending_angle: float) -> None:
+    """Where `equilibrium` has it; eight modes at rest show four digits of its tip."""
+    mount = bd.Mount(0.215, 0.0, bending_angle)
+    scene = replace(HARVESTER, physics=bd.Physics(large_deflection=True, branch="bent"), mount=mount)
+    expected = bd.equilibrium(scene, 200.0).tip @ [0, math.cos(bending_angle), math.sin(bending_angle)]
+    still = bd.simulate(replace(scene, motion=bd.SteadyRotation(200.0)), 0.01, 8, initial="equilibrium")
+    assert abs(expected) > 0.3 * 0.05  # the straight branch has 0
+    assert still.tip == pytest.approx(expected, rel=1e-4)
+    assert still.time_error == 0
+
+
+@pytest.mark.parametrize(
+    ("motion", "why"), [(bd.SpinUp(200.0, 1.0), "rotate"), (bd.SteadyRotation(90.0), "90")]
+)
+def test_refuses_to_start_on_a_branch_that_does_not_exist(motion: bd.Motion, why: str) -> None:
+    physics = bd.Physics(large_deflection=True, branch="bent")
+    scene = replace(HARVESTER, physics=physics, mount=bd.Mount(0.215, 0.0), motion=motion)
+    with pytest.raises(InvalidValue, match=f"initial.*{why}"):
+        bd.simulate(scene, 0.01, 3, initial="equilibrium")
+
+
 def test_equilibrium_holds_gravity_too() -> None:
     """A soft cantilever sags: 0.1 s later it is where it was, as nothing else acts on it."""
     scene = replace(HARVESTER, gravity=981.0, motion=bd.SteadyRotation(0.0), physics=ELASTICA)

@@ -208,6 +208,17 @@ def test_motions_are_chosen_for_by_their_frequencies() -> None:
     assert bd.resonance_speeds(scene, 150.0, modes=2).scene.physics == with_shear
 
 
+def test_every_motion_of_a_beam_that_rotation_bends_is_one_of_large_deflection() -> None:
+    scene = bd.Scene(STRIP, replace(INWARD, setting_angle=math.radians(45)), ROLLING, physics="auto")
+    answers = (
+        bd.simulate(scene, 0.01, modes=1),
+        bd.sweep(scene, [60.0], (0.0, 0.01), modes=1),
+        bd.steady_response(scene, [60.0], modes=1),
+        bd.resonance_speeds(scene, 60.0, modes=1),
+    )
+    assert [answer.scene.physics for answer in answers] == 4 * [bd.Physics(large_deflection=True)]
+
+
 def test_a_sweep_is_stored_under_the_same_keys_each_time(tmp_path: Path) -> None:
     """The measured times of the choice are no part of the request."""
     scene = bd.Scene(STOCKY, INWARD, ROLLING, physics="auto")
