@@ -75,7 +75,8 @@ def _deck_tables(deck: Deck) -> list[RenderableType]:
     from beamdyn.common.edge.tables import table
 
     audit, scene = deck.audit, deck.scene
-    title = f"{deck.title or deck.kind} ({deck.kind}), {scene.beam.length:.6g} m on a hub of {scene.mount.radius:.6g} m"
+    size = f"{scene.beam.length:.6g} m on a hub of {scene.mount.radius:.6g} m"
+    title = f"{deck.title or 'Blade'} ({deck.kind}), {size}"
     parts: list[RenderableType] = [table(title, ("", "", ""), _audit_rows(audit), (0, 2))]
     if audit.steps:
         heads = ("steep steps between stations", "x/L", "to x/L", "factor")

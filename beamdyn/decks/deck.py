@@ -22,7 +22,7 @@ from beamdyn.decks.scene_file import tables_of, text_of
 from beamdyn.scene.scene import Scene
 
 _KINDS = (
-    "a blade file or the main file of ElastoDyn or FAST 7, a .bmi or section properties of BModes, "
+    "a blade file or the main file of ElastoDyn, FAST 7 or OpenFAST, a .bmi or section properties of BModes, "
     "or a CSV table with units in its heads"
 )
 
@@ -141,6 +141,9 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
     if elastodyn.is_main_file(text):
         _needed(text, given, "", length=False, hub_radius=False)
         return elastodyn.read_main_file(text)
+    if elastodyn.is_openfast_file(text):
+        _needed(text, given, "", length=False, hub_radius=False)
+        return elastodyn.read_openfast_file(text)
     if bmodes.is_main_file(text):
         _needed(text, given, "", length=False, hub_radius=False)
         return bmodes.read_main_file(text)

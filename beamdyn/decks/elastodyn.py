@@ -88,6 +88,17 @@ def is_main_file(text: DataText) -> bool:
     return len(named_values(text, {"tiprad", "bldfile1"})) == 2
 
 
+def is_openfast_file(text: DataText) -> bool:
+    """Whether the text is that of a main file of OpenFAST, which names that of ElastoDyn."""
+    return bool(named_values(text, {"edfile"}))
+
+
+def read_openfast_file(text: DataText) -> Blade:
+    """Read the first blade of the turbine: the file of ElastoDyn and all that it names."""
+    blade = read_main_file(read_data(named_file(text, named_values(text, {"edfile"})["edfile"])))
+    return replace(blade, sources=(text.path, *blade.sources))
+
+
 def read_main_file(text: DataText) -> Blade:
     """Read the first blade of a rotor: the main file, and the blade file that it names."""
     found = named_values(text, _MAIN_NAMES.keys() | _MAIN_MORE.keys())

@@ -104,7 +104,7 @@ def _decoded(file: Path, content: bytes) -> str:
 
 
 def to_number(word: str) -> float | None:
-    """The number that FORTRAN reads in a word, also 1.0D+03; None if it is none, or beyond a float's range."""
+    """The number that FORTRAN reads in a word, also 1.0D+03; None if it is none, or too large."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         return None
@@ -205,7 +205,7 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
 
 
 def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapping[str, str]) -> None:
-    """Refuse a file that lacks names; `names` are those that it must have, by plain name, as they are shown."""
+    """Refuse a file that lacks names; `names` are those it must have, by plain name, as shown."""
     for key in names:
         if key in found and not found[key].word:
             raise text.refusal(found[key].line, f"expected a value before {found[key].name}, found none")
