@@ -105,7 +105,7 @@ def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) ->
 def _commented(sentences: Iterable[str]) -> Iterator[str]:
     """Comment lines; what would end a comment early is shown as a blank."""
     for sentence in sentences:
-        yield "# " + "".join(c if c.isprintable() else " " for c in sentence)
+        yield f"# {''.join(c if c.isprintable() else ' ' for c in sentence)}".rstrip()
 
 
 def _assignment(key: str, value: Any) -> Iterator[str]:

@@ -118,3 +118,4 @@ r [ft]; mass [kg/m]; EI flap [MN m2]; EI edge (Nm^2); twist [deg]; chord [m]
 109.0879265091864; 66; 15; 7e7; -1.5; 1
 135.3346456692913; 13.2; 0.2; 3e6; 0; 0.5
 """
+CSV_ROWS = CSV.splitlines()[3:]

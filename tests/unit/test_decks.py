@@ -184,7 +184,7 @@ def test_the_command_audits_writes_and_the_scene_runs(folder, run):
         assert part in out
     assert "warning: the deck's shape of flap 1" in err
     code, out, _ = run("modes", scene, "--tolerance", "1e-4", "--modes", "2")
-    assert code == 0 and "1.88496" in out  # rad/s: the speed of the deck
+    assert code == 0 and "1.884955592 rad/s" in out  # the speed of the deck
     code, _, err = run("import", folder / "main.dat", "-o", folder / "sub" / "blade.dat", "--force")
     assert code == 2 and "the command itself needs" in err
 
@@ -272,7 +272,7 @@ BAD_BLADES = {
         {"rows": swapped(1, ROWS[1].replace("1.100000E+01", "−1.1E+01"))}, 18, "U+2212 (minus sign)",
     ),
     "letter for a digit": ({"rows": swapped(2, "O.5 0.25 5 180 2e8 9e8")}, 19, "for BlFract, found 'O.5'"),
-    "a cell too few": ({"rows": swapped(3, "0.8 0.25 1.5 60 1.5e7")}, 20, "6 numbers under the heads, found 5"),
+    "a cell too few": ({"rows": swapped(3, "0.8 0.25 1.5 60 1.5e7")}, 20, "6 numbers under the heads"),
     "decimal commas": ({"rows": swapped(3, "0,8 0,25 1,5 60 1,5e7 1e8")}, 20, "write decimal points"),
     "no stiffness": ({"rows": swapped(4, "1.0 0.25 0 12 0.0 6e6")}, 21, "FlpStff above 0, found 0 Nm^2"),
     "not to the tip": ({"rows": swapped(4, "0.99 0.25 0 12 2e5 6e6")}, 21, "BlFract = 1, the tip"),
@@ -343,7 +343,7 @@ def test_a_bad_main_file_of_bmodes_is_refused_by_line(folder, changes, said):
         ("330;", "330,5;", 5, "write a decimal point"),
         ("330; 1500;", "330;", 5, "expected 6 cells under the heads, found 5"),
         ("69.7178477690289", "20", 6, "follows"),
-        ("69.7178477690289; 198; 200; 4.5E+08; -5; 2", "30.3477690288714; 330; 1500; 1.25D9; -11; 4", 6, "it repeats line 5"),
+        (written.CSV_ROWS[2], written.CSV_ROWS[1], 6, "it repeats line 5"),
         ("109.0879265091864", "135.3346456692913", 8, "a jump to stand between other stations"),
     ],
 )  # fmt: skip
@@ -359,7 +359,7 @@ def test_a_bad_csv_table_is_refused_by_line(folder, old, new, line, said):
 @pytest.mark.parametrize("content", [b"", b"\n\n", b"PK\x03\x04\0\0", b"[beam]\nlength = 3\n"])
 def test_what_is_no_deck_is_refused(folder, content):
     (folder / "thing").write_bytes(content)
-    with pytest.raises(bd.ConfigError, match="thing: .*(empty|no text|none of the files)"):
+    with pytest.raises(bd.ConfigError, match=r"thing: .*(empty|no text|none of the files)"):
         bd.read_deck(folder / "thing")
     with pytest.raises(bd.ConfigError, match="there is no such file"):
         bd.read_deck(folder / "parsnips")
