@@ -330,7 +330,8 @@ def _with_columns(given: Any) -> Any:
         return given
     rows = given["stations"]
     if isinstance(rows, str):
-        raise InvalidInput("stations", rows, "the name of a file is taken in a file only; give the rows")
+        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
+        raise InvalidInput("stations", rows, f"{remedy}; only a scene in a file may name another file")
     columns = read_columns("stations", rows, _PLACES | _VARYING)
     places = [name for name in columns if name in _PLACES]
     if len(places) != 1 or len(columns) < 2:
