@@ -398,6 +398,14 @@ def test_mistakes_in_a_named_csv_file_are_of_its_lines(folder):
         assert said in str(refused.value)
 
 
+def test_a_named_csv_file_is_an_input_that_no_output_replaces(folder, run):
+    (folder / "s.csv").write_text("x [m],mass [kg/m],EI [N m2]\n0,20,3000\n40,20,3000\n")
+    (folder / "scene.toml").write_text(SCENE)
+    code, _, err = run("modes", folder / "scene.toml", "--csv", folder / "s.csv", "--force")
+    assert code == 2 and "the command itself needs" in err
+    assert (folder / "s.csv").read_text().startswith("x [m]")
+
+
 def test_the_example_in_csv_is_a_scene():
     scene = bd.load_scene("examples/blade_of_stations.toml")
     deck = bd.read_deck("examples/blade_stations.csv", 40.0, 1.25)
