@@ -14,6 +14,9 @@ from beamdyn._version import __version__ as __version__
 _NAMES = {
     "common.results": ("load",),
     "config": ("ConfigError", "load_scene"),
+    "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
+    "decks.blade": ("IgnoredProperty",),
+    "decks.deck": ("Deck", "read_deck"),
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
@@ -73,6 +76,9 @@ if TYPE_CHECKING:
     from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.results import load
     from beamdyn.config import load_scene
+    from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
+    from beamdyn.decks.blade import IgnoredProperty
+    from beamdyn.decks.deck import Deck, read_deck
     from beamdyn.equations.discretization import Discretization
     from beamdyn.equations.fem import Fem
     from beamdyn.equations.left_out import OmittedEffect

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from numpy.polynomial import Polynomial
@@ -16,6 +17,8 @@ from pydantic_core import CoreSchema, core_schema
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.columns import read_columns
 from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
+from beamdyn.common.edge.csv_columns import CsvTable, check_places, read_csv
+from beamdyn.common.edge.data_text import DataText, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
@@ -31,7 +34,7 @@ __all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
-    """Read a scene from a TOML file.
+    """Read a scene from a TOML file, and the CSV file of its stations if it names one.
 
     Parameters
     ----------
@@ -45,9 +48,11 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     Raises
     ------
     ConfigError
-        If there is no such file or it does not describe a scene; the message lists all mistakes.
+        If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
+        the CSV file is named by its line.
     """
-    return parse_scene(read(path), str(path))
+    data = parse(read(path), str(path))
+    return scene_from_dict(_with_station_file(data, Path(path).parent), str(path))
 
 
 def parse_scene(text: str, source: str = "scene") -> Scene:
@@ -211,7 +216,7 @@ class _BeamInput(CoreSection):
         list[list[Any]] | None,
         Field(
             description="table of the sections: a row of heads such as x/L and twist [deg], then numbers, "
-            "a row a station; linear between stations, one given twice is a jump"
+            "a row a station; linear between stations, one given twice is a jump; or the name of a CSV file"
         ),
     ] = None
     twist: Annotated[
@@ -309,6 +314,7 @@ def _naming_missing_key(beam: type[BaseModel]) -> Iterator[None]:
 # A table of stations ------------------------------------------------------------------------------
 
 
+RADIUS = "r"  # in CSV files: distance from the axis of rotation
 _PLACES = {"x/L": Position(meaning="position"), "x": Position("m", meaning="position")}
 _VARYING = {
     entry.name: entry.quantity
@@ -323,6 +329,9 @@ def _with_columns(given: Any) -> Any:
     if not isinstance(given, dict) or given.get("stations") is None:
         return given
     rows = given["stations"]
+    if isinstance(rows, str):
+        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
+        raise InvalidInput("stations", rows, f"{remedy}; only a scene in a file may name another file")
     columns = read_columns("stations", rows, _PLACES | _VARYING)
     places = [name for name in columns if name in _PLACES]
     if len(places) != 1 or len(columns) < 2:
@@ -332,6 +341,60 @@ def _with_columns(given: Any) -> Any:
         raise InvalidInput("stations[0]", rows[0], f"{twice[0]} is a key of its own, too; give it once")
     x = tuple(columns.pop(places[0]))
     return given | {name: Table(x, tuple(values)) for name, values in columns.items()}
+
+
+# Heads of CSV files, beside the keys of the beam.
+_HEADS = {
+    "x/L": ("span", "blfract", "sec_loc", "span_loc"),
+    "mass_per_length": ("mass", "mass per metre", "BMassDen", "mass_den"),
+    "bending_stiffness": ("EI", "EI flap", "flap EI", "flap stiffness", "FlpStff", "flp_stff"),
+    "second_bending_stiffness": ("EI edge", "edge EI", "edge stiffness", "EI lag", "EdgStff", "edge_stff"),
+    "axial_stiffness": ("EA", "axial_stff"),
+}
+_STATION_NAMES = {plain_name(name): name for name in [*_PLACES, *_VARYING]}
+_STATION_NAMES |= {plain_name(head): name for name, heads in _HEADS.items() for head in heads}
+
+
+def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None) -> CsvTable:
+    """Read stations from a CSV file: its columns by the keys of the beam, checked to ascend.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    more : mapping, optional
+        Further places or properties, by name.
+
+    Raises
+    ------
+    ConfigError
+        At the first mistake: names file, line, and what was expected.
+    """
+    known = _PLACES | _VARYING | dict(more or {})
+    table = read_csv(text, known, _STATION_NAMES | {plain_name(name): name for name in more or ()})
+    places = [name for name in table.named() if name in _PLACES or name == RADIUS]
+    if len(places) != 1:
+        wanted = "x/L, x [m] or r [m]" if more else "x/L or x [m]"
+        found = ", ".join(column.head for column in table.columns)
+        said = f"expected one column of positions, {wanted}; the heads are {found}"
+        raise text.refusal(table.head_line, said)
+    check_places(table, places[0])
+    return table
+
+
+def _with_station_file(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The tables of a file with the rows of the CSV file that `beam.stations` names, if it names one."""
+    beam = data.get("beam")
+    if not isinstance(beam, dict) or not isinstance(beam.get("stations"), str):
+        return data
+    table = read_station_file(read_data(folder / beam["stations"]))
+    if unknown := next((column.head for column in table.columns if not column.name), ""):
+        known = ", ".join([*_PLACES, *_VARYING])
+        raise table.text.refusal(table.head_line, f"unknown column '{unknown}'; known are {known}")
+    units = {name: (_PLACES | _VARYING)[name].unit for name in table.named()}
+    heads = [f"{name} [{unit}]" if unit else name for name, unit in units.items()]
+    rows = [list(row) for row in zip(*(column.values for column in table.columns), strict=True)]
+    return data | {"beam": beam | {"stations": [heads, *rows]}}
 
 
 @contextmanager

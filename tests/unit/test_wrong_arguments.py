@@ -157,6 +157,7 @@ CALLS = {
         {"scene": SCENE, "speed": 5.0, "modes": 2, "t_end": None, "budget": 1.0, "progress": None},
     ),
     "load_scene": (bd.load_scene, {"path": "examples/blade.toml"}),
+    "read_deck": (bd.read_deck, {"path": "examples/blade_stations.csv", "length": 40.0, "hub_radius": 1.25}),
 }
 SWITCHES = ("shear", "rotary_inertia", "stretch", "large_deflection")
 SAID_AS = {"driver": "load"}  # in messages
@@ -167,6 +168,7 @@ ALLOWED = {
     "sweep.progress": {"class"},
     "tradeoff.progress": {"class"},
     "load_scene.path": {"text"},
+    "read_deck.path": {"text"},
     **{f"{name}.breakpoints": {"empty", "empty array"} for name in CALLS},
 }
 
@@ -205,6 +207,7 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere = {"Crossing", "GaussCollocation", "Line", "MotionSample", "Polynomial", "Profile"}
     made_elsewhere |= {"OmittedEffect"}  # in the terms of a scene
     made_elsewhere |= {"EquilibriumBranch", "JudgedEffect", "PhysicsChoice"}  # parts of results
+    made_elsewhere |= {"IgnoredProperty", "PropertyStep", "ShapeCheck"}  # parts of decks
     made_elsewhere |= {"load"}  # reads files: tests/unit/test_load.py
     assert rest == made_elsewhere | {"Discretization", "Motion", "Rotation"}  # the last are base classes
     for make, good in CALLS.values():

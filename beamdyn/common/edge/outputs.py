@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -75,8 +76,9 @@ class Outputs:
         own = {"plot": self.plot, "json": self.json, "csv": self.csv, "report": self.report}
         paths = {**own, **more}
         given = {option: path for option, path in paths.items() if path is not None}
+        read = [place for i in inputs if i is not None and given for place in (i, *_named_by(Path(i)))]
         for option, path in given.items():
-            _check_is_no_input(option, path, [i for i in inputs if i is not None])
+            _check_is_no_input(option, path, read)
             _check_output(option, path, self.force)
         for (one, path), (other, same) in combinations(given.items(), 2):
             if same_file(path, same):
@@ -130,6 +132,16 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
         return figure
 
     return made
+
+
+def _named_by(scene: Path) -> list[Path]:
+    """The file that a scene file names as its stations, if it is a scene file and names one."""
+    try:
+        beam = tomllib.loads(scene.read_text(encoding="utf-8-sig")).get("beam")
+    except (OSError, ValueError, RecursionError):  # what it is instead is said when it is read
+        return []
+    named = beam.get("stations") if isinstance(beam, dict) else None
+    return [scene.parent / named] if isinstance(named, str) else []
 
 
 def _check_is_no_input(option: str, path: Path, inputs: Iterable[str | Path]) -> None:

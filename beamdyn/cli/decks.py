@@ -1,0 +1,115 @@
+"""The command that reads blades of other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from beamdyn.cli.program import app, warn
+from beamdyn.cli.values import Text, naming_option, parse_quantity
+from beamdyn.common.edge.outputs import Flag, Outputs
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from beamdyn.decks.deck import Deck, DeckAudit
+
+DeckFile = Annotated[Path, Parameter(name="FILE")]
+Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]
+
+
+@app.command(name="import")
+def import_deck(
+    file: DeckFile,
+    /,
+    *,
+    output: Output = None,
+    length: Text | None = None,
+    hub_radius: Text | None = None,
+    force: Flag = False,
+) -> None:
+    """Read a blade of ElastoDyn, FAST 7 or BModes, or a CSV table: audit it, and write it as a scene.
+
+    Parameters
+    ----------
+    file
+        A blade file or the main file of ElastoDyn or FAST 7, a .bmi or section properties of BModes, or a CSV
+        table with units in its heads, such as "r [m], mass [kg/m], EI flap [N m2]".
+    output
+        Write the scene into this TOML file, which the other commands read; without it, only the audit is
+        printed.
+    length
+        Length of the blade with its unit, where the file does not say it (TipRad - HubRad).
+    hub_radius
+        Distance of the root from the axis of rotation with its unit, where the file does not say it.
+    force
+        Overwrite a file that exists.
+    """
+    from beamdyn.common.edge.tables import show
+    from beamdyn.decks.deck import read_deck
+
+    outputs = Outputs(force=force)
+    outputs.check(file, output=output)
+    given = {
+        name: None if text is None else parse_quantity(f"--{name.replace('_', '-')}", text, "m")
+        for name, text in {"length": length, "hub_radius": hub_radius}.items()
+    }
+    with (
+        naming_option("length", "--length", length or ""),
+        naming_option("hub_radius", "--hub-radius", hub_radius or ""),
+    ):
+        deck = read_deck(file, **given)
+    outputs.check(*deck.sources, output=output)
+    show(_deck_tables(deck))
+    if output is not None:
+        deck.write_scene(output, force)
+        show([f"Written: {output}, for beamdyn modes {output} and the other commands."])
+    warn(deck.audit.warnings)
+
+
+def _deck_tables(deck: Deck) -> list[RenderableType]:
+    """What the deck is, its audit, and what of it is ignored."""
+    from beamdyn.common.edge.tables import table
+
+    audit, scene = deck.audit, deck.scene
+    size = f"{scene.beam.length:.6g} m on a hub of {scene.mount.radius:.6g} m"
+    title = f"{deck.title or 'Blade'} ({deck.kind}), {size}"
+    parts: list[RenderableType] = [table(title, ("", "", ""), _audit_rows(audit), (0, 2))]
+    if audit.steps:
+        heads = ("steep steps between stations", "x/L", "to x/L", "factor")
+        rows = [(s.name, f"{s.start:g}", f"{s.end:g}", f"{s.factor:.4g}") for s in audit.steps]
+        parts.append(table("", heads, rows))
+    if audit.shapes:
+        parts.append(_shape_table(audit))
+    ignored = [(entry.name, entry.values, entry.reason) for entry in deck.ignored]
+    if ignored:
+        parts.append(table("Ignored", ("in the deck", "values", "because"), ignored, (0, 1, 2)))
+    return parts
+
+
+def _audit_rows(audit: DeckAudit) -> Iterator[tuple[str, str, str]]:
+    yield "stations", f"{audit.stations}", "ascending from 0 to 1"
+    yield "mass", f"{audit.mass:.8g}", "kg, linear between stations, without tip body"
+    yield "centre of mass", f"{audit.centre:.8g}", "m from the root"
+    yield "first moment", f"{audit.first_moment:.8g}", "kg m about the root"
+    yield "second moment", f"{audit.second_moment:.8g}", "kg m2 about the root"
+    yield "", f"{audit.hub_second_moment:.8g}", "kg m2 about the axis of rotation"
+    for plane, ratio in zip(("flap", "edge"), audit.stiffness_ratios, strict=False):
+        yield f"{plane} stiffness", f"{ratio:.3g}", "smallest over largest"
+
+
+def _shape_table(audit: DeckAudit) -> RenderableType:
+    from beamdyn.common.edge.tables import table
+
+    rpm = audit.shape_speed * 9.549296585513721
+    speed = f"at {rpm:.4g} rpm" if audit.shape_speed else "at rest"
+    heads = ("mode", "sum of coefficients", "largest difference", "at x/L", "our frequency [Hz]")
+    rows = [
+        (s.mode, f"{s.coefficient_sum:.6f}", f"{s.difference:.4f}", f"{s.place:.3f}", f"{s.frequency:.5g}")
+        for s in audit.shapes
+    ]
+    title = f"Mode shapes of the deck beside those of its stations, without twist, {speed}; tip deflection 1"
+    return table(title, heads, rows)

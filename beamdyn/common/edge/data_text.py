@@ -1,0 +1,228 @@
+"""Text files of numbers that other programs write: their lines, and numbers as FORTRAN reads them.
+
+What is refused names the file, the line and what was expected there.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.files import as_path
+
+# 1.0D+03 and 1.0+03 are 1.0e+03 to FORTRAN.
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:(?:[eEdDqQ]|(?=[+-]))([+-]?\d+))?", re.ASCII)
+_WORD = re.compile(r"'[^']*'|\"[^\"]*\"|[^\s,]+")
+_MOST_BYTES = 20_000_000  # a deck has some ten thousand
+_ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # by the mark at the start
+
+
+@dataclass(frozen=True)
+class DataText:
+    """A text file, line by line.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    lines : tuple of str
+        Its lines; the first is line 1.
+    """
+
+    path: Path
+    lines: tuple[str, ...]
+
+    def refusal(self, line: int, sentence: str) -> ConfigError:
+        """The error that a sentence about a line is."""
+        return ConfigError(str(self.path), [f"line {line}: {sentence}"])
+
+    def lacking(self, sentence: str) -> ConfigError:
+        """The error that something is missing from the whole file."""
+        return self.refusal(len(self.lines), f"the file ends here, {sentence}")
+
+    def words(self, line: int) -> list[str]:
+        """The words of a line as FORTRAN separates them, by blanks, tabs and commas; quotes keep together."""
+        return _WORD.findall(self.lines[line - 1])
+
+
+def read_data(path: str | PathLike[str]) -> DataText:
+    """Read a text file.
+
+    Its comments may be in any encoding: what is not UTF-8 is read as Latin-1.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+
+    Raises
+    ------
+    InvalidValue
+        If it is not the name of a file.
+    ConfigError
+        If it cannot be read, is no text or is empty.
+    """
+    file = as_path("path", path, "a file")
+    text = _decoded(file, _bytes_of(file))
+    if not text.strip():
+        raise ConfigError(str(file), ["the file is empty; give a deck or a table"])
+    return DataText(file, tuple(text.splitlines()))
+
+
+def _bytes_of(file: Path) -> bytes:
+    try:
+        with file.open("rb") as opened:
+            content = opened.read(_MOST_BYTES + 1)
+    except FileNotFoundError:
+        raise ConfigError(str(file), ["there is no such file; check the name and the folder"]) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ConfigError(str(file), [f"it cannot be read ({reason}); give a text file"]) from None
+    if len(content) > _MOST_BYTES:
+        raise ConfigError(str(file), ["it is longer than 20 MB; give a deck or a table"])
+    return content
+
+
+def _decoded(file: Path, content: bytes) -> str:
+    encoding = _ENCODINGS.get(content[:2], "utf-8-sig")
+    try:
+        text = content.decode(encoding)
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    if "\0" in text:
+        raise ConfigError(str(file), ["it is no text; give a deck or a table saved as text"])
+    return text
+
+
+# Numbers ------------------------------------------------------------------------------------------
+
+
+def to_number(word: str) -> float | None:
+    """The number that FORTRAN reads in a word, also 1.0D+03; None if it is none, or too large."""
+    match = _NUMBER.fullmatch(word)
+    if match is None:
+        return None
+    number = float(f"{match[1]}e{match[2] or 0}")
+    return number if math.isfinite(number) else None
+
+
+def as_decimal(word: str) -> str:
+    """A number's word with e in place of FORTRAN's letters."""
+    match = _NUMBER.fullmatch(word)
+    assert match is not None
+    return match[1] + (f"e{match[2]}" if match[2] else "")
+
+
+def number_at(text: DataText, line: int, word: str, name: str) -> float:
+    """The number in a word, or an error that says what was expected."""
+    number = to_number(word)
+    if number is None:
+        raise text.refusal(line, f"expected a number for {name}, found {quote(word)}{_advice(word)}")
+    return number
+
+
+def quote(word: str) -> str:
+    """A word in a message, shortened where it is long."""
+    return f"'{word if len(word) <= 40 else word[:37] + '...'}'"
+
+
+def _advice(word: str) -> str:
+    """What is wrong with a word that is no number."""
+    if strange := next((c for c in word if not c.isascii()), ""):
+        name = unicodedata.name(strange, "no name").lower()
+        return f" with the character U+{ord(strange):04X} ({name}); write it in plain characters"
+    if to_number(word.replace(",", ".", 1)) is not None:
+        return "; write a decimal point"
+    return "" if word.lower().lstrip("+-") not in ("nan", "inf", "infinity") else "; give a finite one"
+
+
+# Values with their names behind them --------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class NamedValue:
+    """A value and where it stands.
+
+    Parameters
+    ----------
+    name : str
+        Its name, as written.
+    word : str
+        The value, as written, without quotes.
+    line : int
+        Its line.
+    """
+
+    name: str
+    word: str
+    line: int
+
+
+def plain_name(name: str) -> str:
+    """A name without what programs write differently: capitals, brackets, colons, underscores, blanks."""
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue]:
+    """Read lines such as ``0.48  BldFlDmp(1) - damping`` or ``1.75 hub_rad: hub radius``.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    names : collection of str
+        The names looked for, as `plain_name` makes them.
+
+    Returns
+    -------
+    dict
+        By plain name; those that the file does not have are missing.
+
+    Raises
+    ------
+    ConfigError
+        If a name stands twice.
+    """
+    found: dict[str, NamedValue] = {}
+    bare: dict[str, NamedValue] = {}
+    for line in range(1, len(text.lines) + 1):
+        words = [word for word in text.words(line) if word not in (":", "-")][:2]
+        keys = [plain_name(word) for word in words]
+        if len(keys) == 2 and (key := keys[1]) in names:
+            if key in found:
+                there = f"{words[1].rstrip(':')} stands in line {found[key].line}, too"
+                raise text.refusal(line, f"{there}; expected each name once")
+            found[key] = NamedValue(words[1].rstrip(":"), words[0].strip("'\""), line)
+        elif keys and keys[0] in names:  # perhaps a line whose value is missing, perhaps a comment
+            bare.setdefault(keys[0], NamedValue(words[0].rstrip(":"), "", line))
+    return bare | found
+
+
+def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapping[str, str]) -> None:
+    """Refuse a file that lacks names; `names` are those it must have, by plain name, as shown."""
+    for key in names:
+        if key in found and not found[key].word:
+            raise text.refusal(found[key].line, f"expected a value before {found[key].name}, found none")
+    if missing := [shown for key, shown in names.items() if key not in found]:
+        some = ", ".join(missing[:4]) + (f" and {len(missing) - 4} more" if len(missing) > 4 else "")
+        raise text.lacking(f"without a line for {some}; expected a value and this name behind it")
+
+
+def named_number(text: DataText, named: NamedValue) -> float:
+    """The number that a name has."""
+    return number_at(text, named.line, named.word, named.name)
+
+
+def named_count(text: DataText, named: NamedValue, least: int = 2) -> int:
+    """The whole number that a name has."""
+    number = named_number(text, named)
+    if number != int(number) or number < least:
+        said = f"expected a whole number of {least} or more for {named.name}, found {quote(named.word)}"
+        raise text.refusal(named.line, said)
+    return int(number)

@@ -1,0 +1,220 @@
+"""What a deck amounts to: mass and its moments, steep steps, and its mode shapes beside ours."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.common.results import Result
+from beamdyn.decks.blade import Blade
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.profile import FRACTION, Profile, mean
+from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.modes import natural_modes
+
+STEEP = 3.0  # factor between neighbouring stations from which a step is named
+_SUM_ERROR = 1e-3  # of the coefficients of a mode shape, which ElastoDyn lets pass
+_SHAPE_ERROR = 0.05  # difference of a mode shape, of its tip deflection, that is warned of
+_TOLERANCE = 1e-6  # of the frequencies of the shapes that are compared
+_POINTS = 401  # at which shapes are compared
+_STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
+_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
+_NAMES |= {"second_bending_stiffness": "edge stiffness"}
+
+
+@dataclass(frozen=True)
+class PropertyStep:
+    """A property that changes by a large factor between neighbouring stations.
+
+    Parameters
+    ----------
+    name : str
+        The property.
+    start, end : float
+        The stations x/L; they are the same at a jump.
+    factor : float
+        Value at the end over that at the start.
+    """
+
+    name: str
+    start: float
+    end: float
+    factor: float
+
+    def sentence(self) -> str:
+        """Say it."""
+        place = (
+            f"at x/L = {self.start:g}"
+            if self.start == self.end
+            else (f"from x/L = {self.start:g} to {self.end:g}, {self.end - self.start:.2g} of the length")
+        )
+        ratio = self.factor if self.factor >= 1 else 1 / self.factor
+        return f"{self.name} {'rises' if self.factor > 1 else 'falls'} by a factor of {ratio:.3g} {place}"
+
+
+@dataclass(frozen=True)
+class ShapeCheck:
+    """A mode shape that a deck states, beside that of its own stations.
+
+    Parameters
+    ----------
+    mode : str
+        Such as "flap 1".
+    coefficient_sum : float
+        Sum of its coefficients: its deflection at the tip, which should be 1.
+    difference : float
+        Largest difference of the two shapes, each with the tip deflection 1.
+    place : float
+        Where it is, x/L.
+    frequency : float
+        Frequency of the mode of the stations [Hz].
+    """
+
+    mode: str
+    coefficient_sum: float
+    difference: float
+    place: float
+    frequency: float
+
+
+@dataclass(frozen=True)
+class DeckAudit(Result):
+    """What a deck amounts to.
+
+    Properties are linear between stations.  Mass and moments are those of the blade without its tip body.
+
+    Parameters
+    ----------
+    stations : int
+        Number of stations.
+    mass : float
+        Mass [kg].
+    first_moment, second_moment : float
+        Moments of the mass about the root [kg m, kg m2].
+    hub_second_moment : float
+        Second moment of the mass about the axis of rotation [kg m2], without cone.
+    centre : float
+        Distance of the centre of mass from the root [m].
+    stiffness_ratios : tuple of float
+        Smallest over largest stiffness, for flap and, where there is one, edge.
+    steps : tuple of PropertyStep
+        Steep steps, from root to tip.
+    shapes : tuple of ShapeCheck
+        The deck's mode shapes; empty if it states none.
+    shape_speed : float
+        Speed at which shapes are compared [rad/s].
+    warnings : tuple of str
+        What looks like a mistake in the deck.
+    """
+
+    stations: int
+    mass: float
+    first_moment: float
+    second_moment: float
+    hub_second_moment: float
+    centre: float
+    stiffness_ratios: tuple[float, ...]
+    steps: tuple[PropertyStep, ...]
+    shapes: tuple[ShapeCheck, ...]
+    shape_speed: float
+    warnings: tuple[str, ...]
+
+
+def audit(blade: Blade, scene: Scene) -> DeckAudit:
+    """Audit a blade, by the beam of its scene."""
+    beam, hub = scene.beam, scene.mount.radius
+    mass, first, second = moments(beam)
+    speed = blade.speed * math.pi / 30
+    shapes = tuple(_check_shape(scene, mode, row, speed) for mode, row in blade.polynomials.items())
+    return DeckAudit(
+        stations=len(blade.stations),
+        mass=mass,
+        first_moment=first,
+        second_moment=second,
+        hub_second_moment=second + 2 * hub * first + hub**2 * mass,
+        centre=first / mass,
+        stiffness_ratios=tuple(
+            float(values.min() / values.max())
+            for name in _STEPPED[1:]
+            if (values := blade.columns.get(name)) is not None
+        ),
+        steps=find_steps(blade),
+        shapes=shapes,
+        shape_speed=speed,
+        warnings=tuple(_warnings(shapes)),
+    )
+
+
+def moments(beam: Beam) -> tuple[float, float, float]:
+    """Mass [kg], and first and second moments about the root [kg m, kg m2], of a beam without tip body."""
+    weighted = [beam.mass_per_length]
+    for _ in range(2):
+        weighted.append(weighted[-1] * FRACTION)
+    mass, first, second = (beam.length ** (k + 1) * mean(profile) for k, profile in enumerate(weighted))
+    return mass, first, second
+
+
+def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
+    """Properties that change by a factor of `STEEP` or more between neighbouring stations."""
+    x = blade.stations
+    found: list[PropertyStep] = []
+    for name in _STEPPED:
+        if (values := blade.columns.get(name)) is not None:
+            factors = values[1:] / values[:-1]
+            steep = np.flatnonzero(np.maximum(factors, 1 / factors) >= STEEP)
+            found += [
+                PropertyStep(_NAMES[name], float(x[k]), float(x[k + 1]), float(factors[k])) for k in steep
+            ]
+    return tuple(sorted(found, key=lambda step: step.start))
+
+
+# Mode shapes --------------------------------------------------------------------------------------
+
+
+def _check_shape(scene: Scene, mode: str, coefficients: np.ndarray, speed: float) -> ShapeCheck:
+    """Compare a polynomial with the mode of the same plane, without twist, at the speed of the deck."""
+    plane, number = mode.split()
+    x = np.linspace(0, 1, _POINTS)
+    stated = (coefficients[:, None] * x ** np.arange(2, 7)[:, None]).sum(axis=0)
+    total = float(coefficients.sum())
+    modes = natural_modes(_one_plane(scene, plane), speed, int(number), tolerance=_TOLERANCE)
+    shape = np.real(modes.shape(x * scene.beam.length))[-1]
+    apart = np.abs(stated / total - shape / shape[-1]) if total else np.full(_POINTS, math.inf)
+    k = int(apart.argmax())
+    return ShapeCheck(mode, total, float(apart[k]), float(x[k]), float(modes.frequency[-1]))
+
+
+def _one_plane(scene: Scene, plane: str) -> Scene:
+    """The blade without twist, bending in one plane alone: the model of the deck's program."""
+    second = scene.beam.second_bending_stiffness
+    stiffness: Profile | None = scene.beam.bending_stiffness if plane == "flap" else second
+    assert stiffness is not None
+    beam = Beam(scene.beam.length, scene.beam.mass_per_length, stiffness, tip=_turned(scene.beam.tip, plane))
+    angle = math.pi / 2 if plane == "flap" else 0.0
+    mount = Mount(scene.mount.radius, scene.mount.setting_angle, angle)
+    return replace(scene, beam=beam, mount=mount, physics=Physics())
+
+
+def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
+    """The tip body for bending in the plane."""
+    if tip is None or plane == "flap":
+        return tip
+    return replace(tip, inertia=tip.inertia_about_bending_direction, transverse_inertia=tip.inertia)
+
+
+def _warnings(shapes: tuple[ShapeCheck, ...]) -> list[str]:
+    wrong_sums = [
+        f"the coefficients of {shape.mode} add up to {shape.coefficient_sum:.6g}; they must add up to 1"
+        for shape in shapes
+        if abs(shape.coefficient_sum - 1) > _SUM_ERROR
+    ]
+    return wrong_sums + [
+        f"the deck's shape of {shape.mode} is {shape.difference:.2g} of the tip deflection off that of its "
+        f"stations, at x/L = {shape.place:.3g}"
+        for shape in shapes
+        if shape.difference > _SHAPE_ERROR
+    ]
