@@ -1,10 +1,11 @@
 """Whether the stated errors of transients cover the true ones.
 
 Run: python -m benchmarks.stated_transient_errors [--scenes N] [--physics | --bent] [--save FILE].  Random
-scenes in motion; with --physics, of two planes, twist, shear, rotary inertia and springs in all combinations; with --bent, of
-large deflection, where the modal truncation error is not measured.  The time-integration error is measured
-against DOP853 of `solve_ivp`, or where that takes too long against our own steps at a tolerance of 1e-11;
-the modal truncation error against many modes at three speeds in a large basis.
+scenes in motion; with --physics, of two planes, twist, shear, rotary inertia and springs in all
+combinations; with --bent, of large deflection, where the modal truncation error is not measured.  The
+time-integration error is measured against DOP853 of `solve_ivp`, or where that takes too long against our
+own steps at a tolerance of 1e-11; the modal truncation error against many modes at three speeds in a large
+basis.
 """
 
 from __future__ import annotations
