@@ -37,7 +37,7 @@ def blade_scene(name: str, physics: bd.Physics = bd.Physics(planes=2), twisted: 
         along(data["mass_per_length"]),
         along(data["flap_stiffness"]),
         second_bending_stiffness=along(data["edge_stiffness"]),
-        twist=along(np.radians(data["twist_deg"])) if twisted else None,
+        twist=along(np.radians(-data["twist_deg"])) if twisted else None,  # docs/decks.md has the signs
     )
     return bd.Scene(beam, bd.Mount(data["hub_radius"], math.pi, math.pi / 2), physics=physics)
 
@@ -54,7 +54,7 @@ def reference_blade(name: str, twisted: bool = True) -> tuple[Blade, float]:
     blade = Blade(
         mass=along(data["mass_per_length"] / mass),
         stiffness=(along(data["flap_stiffness"] / stiffness), along(data["edge_stiffness"] / stiffness)),
-        twist=along(np.radians(data["twist_deg"]) * twisted),
+        twist=along(np.radians(-data["twist_deg"]) * twisted),
         hub=data["hub_radius"] / length,
         bending_angle=math.pi / 2,
         breakpoints=x[1:-1].tolist(),
