@@ -259,7 +259,7 @@ def test_commands_say_it_below_the_table_and_in_json(
     if command[0] != "critical":
         assert "with Poisson's ratio 0.3 assumed" in printed
         assert "exceeds 1 %: shear deformation, left out, changes the answer by" in said.err
-        assert "Physics(shear=True) includes it, with shear_stiffness or poissons_ratio" in said.err
+        assert "[physics] shear = true includes it, with shear_stiffness or poissons_ratio" in said.err
 
 
 def test_no_warning_below_a_stated_tolerance(scene_file: Path, capsys: pytest.CaptureFixture[str]) -> None:

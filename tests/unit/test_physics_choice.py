@@ -209,7 +209,8 @@ def test_motions_are_chosen_for_by_their_frequencies() -> None:
 
 
 def test_every_motion_of_a_beam_that_rotation_bends_is_one_of_large_deflection() -> None:
-    scene = bd.Scene(STRIP, replace(INWARD, setting_angle=math.radians(45)), ROLLING, physics="auto")
+    rolling = bd.RollingWheel(0.3, bd.SpinUp(60.0, 0.01), bd.RoadWave(0.3, 0.01))
+    scene = bd.Scene(STRIP, LEANING, rolling, physics="auto")
     answers = (
         bd.simulate(scene, 0.01, modes=1),
         bd.sweep(scene, [60.0], (0.0, 0.01), modes=1),
