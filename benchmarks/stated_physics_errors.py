@@ -1,8 +1,9 @@
 """Whether the stated errors of frequencies cover the true ones, with all physics in all combinations.
 
-Run: python -m benchmarks.stated_physics_errors [--scenes N] [--discretization fem] [--save FILE].  Random
-scenes with two planes, twist, shear, rotary inertia and springs at the root, at three tolerances, against
-collocation of the differential equations, which shares nothing with the package.
+Run: python -m benchmarks.stated_physics_errors [--scenes N] [--stations] [--discretization fem]
+[--save FILE].  Random scenes with two planes, twist, shear, rotary inertia and springs at the root, or with
+--stations blades of 10 to 100 stations, at three tolerances, against collocation of the differential
+equations, which shares nothing with the package.
 """
 
 from __future__ import annotations
@@ -10,10 +11,11 @@ from __future__ import annotations
 import argparse
 import os
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
+from typing import TypeAlias
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
 
@@ -21,12 +23,14 @@ import numpy as np
 
 import beamdyn as bd
 from benchmarks.cases.random_physics import random_physics_scene
+from benchmarks.cases.random_stations import random_station_scene
 from benchmarks.cases.reference.resolved import Known, known_frequencies
 from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show, time_text
 
 _COVERED, _OVER_ESTIMATE = 0.999, 30.0  # share covered and median over-estimate that are aimed at
 SEED = 6
+Draw: TypeAlias = "Callable[[np.random.Generator], tuple[bd.Scene, float]]"  # of a scene and a speed
 TOLERANCES = (None, 1e-3, 1e-6)
 _MODES = {1: 3, 2: 5}  # by the number of planes
 _KNOWN = 1e-9  # uncertainty above which a reference says nothing
@@ -60,11 +64,17 @@ class Answer:
         return np.isfinite(stated) & (true > known) & (stated > 0)
 
 
-def measure(number: int, seed: int, discretization: str, tolerances: Sequence[float | None]) -> list[Answer]:
+def measure(
+    number: int,
+    seed: int,
+    discretization: str,
+    tolerances: Sequence[float | None],
+    draw: Draw = random_physics_scene,
+) -> list[Answer]:
     """Answers for the scene with this number."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of beams that no material has
-        scene, speed = random_physics_scene(np.random.default_rng([seed, number]))
+        scene, speed = draw(np.random.default_rng([seed, number]))
         count = _MODES[scene.physics.planes]
         try:
             known = known_frequencies(scene, speed, count)
@@ -93,10 +103,13 @@ def answer(
 
 
 def cases(
-    seed: int = SEED, discretization: str = "ritz", tolerances: Sequence[float | None] = TOLERANCES
+    seed: int = SEED,
+    discretization: str = "ritz",
+    tolerances: Sequence[float | None] = TOLERANCES,
+    draw: Draw = random_physics_scene,
 ) -> Cases[Answer]:
     """The random scenes of a seed, solved by a discretization to some tolerances."""
-    each = partial(measure, seed=seed, discretization=discretization, tolerances=tolerances)
+    each = partial(measure, seed=seed, discretization=discretization, tolerances=tolerances, draw=draw)
     return Cases(each, Answer)
 
 
@@ -152,9 +165,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     add_options(parser, scenes=3000, seed=SEED)
     parser.add_argument("--discretization", choices=("ritz", "fem"), default="ritz")
+    parser.add_argument("--stations", action="store_true", help="blades of many stations")
     given = parser.parse_args()
-    answers = cases(given.seed, given.discretization).run(given)
-    show(f"stated errors of frequencies with all physics, {given.discretization}", lambda: summarize(answers))
+    draw = random_station_scene if given.stations else random_physics_scene
+    answers = cases(given.seed, given.discretization, draw=draw).run(given)
+    what = "many stations" if given.stations else "all physics"
+    show(f"stated errors of frequencies with {what}, {given.discretization}", lambda: summarize(answers))
 
 
 if __name__ == "__main__":
