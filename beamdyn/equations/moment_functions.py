@@ -23,6 +23,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
+from typing import TypeAlias
 
 import numpy as np
 import scipy.linalg
@@ -33,7 +34,7 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions
-from beamdyn.equations.sampled_space import SampledSpace, product_of
+from beamdyn.equations.sampled_space import SampledSpace, Sampler, product_of
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
@@ -44,6 +45,7 @@ _PHASE = 12.0  # largest change of phase of the highest polynomial within a cell
 _SHORTEST = 1e-10  # cell that is halved, as x/L
 _DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
 
+Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, by directions
 # Order of the derivative of a displacement that each stiffness resists.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 # Stiffnesses against displacements that cause forces in the functions for each.
@@ -92,7 +94,8 @@ class MomentSpaces(FieldsOnly):
         coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
         xi = gauss_points_on(ends, _NODES)
         for name in _ORDERS:
-            for entry in invert(stiffness_tensor(self.beam, name), xi).values():
+            values = {entry: p(xi) for entry, p in stiffness_tensor(self.beam, name).items()}
+            for entry in invert(values).values():
                 coarse |= ~_are_resolved(entry)
         return coarse & (np.diff(ends) > _SHORTEST)
 
@@ -101,9 +104,19 @@ class MomentSpaces(FieldsOnly):
         """Points of all cells through which quotients are interpolated."""
         return ArcQuadrature(Cells(self.cells, _NODES))
 
+    @cached_property
+    def at_nodes(self) -> Sampler:
+        """Values of properties at the nodes."""
+        return Sampler(self.nodes.xi)
+
+    def compliance(self, stiffness: str) -> Values:
+        """Inverse of a stiffness of the sections at the nodes."""
+        tensor = stiffness_tensor(self.beam, stiffness)
+        return invert({entry: self.at_nodes(profile) for entry, profile in tensor.items()})
+
     def displacements(self, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
         """Displacements by forces (n, N) at the nodes against a stiffness, and their slopes: each (n, N)."""
-        compliance = invert(stiffness_tensor(self.beam, stiffness), self.nodes.xi)[direction, direction]
+        compliance = self.compliance(stiffness)[direction, direction]
         derivatives = [forces * compliance]
         for _ in range(_ORDERS[stiffness]):
             derivatives.insert(0, self.nodes.integrate(derivatives[0])[:, :-1])
@@ -113,6 +126,11 @@ class MomentSpaces(FieldsOnly):
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule that integrates products of the functions with properties exactly."""
         return ArcQuadrature(Cells(self.cells, _NODES + 3 + weight_degree(self.beam) // 2))
+
+    @cached_property
+    def at_points(self) -> Sampler:
+        """Values of properties at the points of that rule."""
+        return Sampler(self.quadrature.xi)
 
 
 @lru_cache(maxsize=16)  # fields of a scene, and pairs of them, ask for the same functions
@@ -130,9 +148,8 @@ def stiffness_tensor(beam: Beam, name: str) -> Tensor:
     return section_tensor(beam, name)
 
 
-def invert(tensor: Tensor, xi: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
-    """Entries at xi of the inverse of a tensor of sections, by directions."""
-    values = {entry: profile(xi) for entry, profile in tensor.items()}
+def invert(values: Values) -> Values:
+    """Entries of the inverse of a tensor of sections, by directions."""
     if (0, 1) not in values:
         return {entry: 1 / value for entry, value in values.items()}
     determinant = values[0, 0] * values[1, 1] - values[0, 1] ** 2
@@ -188,6 +205,10 @@ class MomentSpace(SampledSpace):
         """Weights of the Gauss rule, shape (k,)."""
         return self.spaces.quadrature.weights
 
+    def weights(self, weight: Profile) -> np.ndarray:
+        """Multiply the weights of the rule by a property."""
+        return self.rule * self.spaces.at_points(weight)
+
     @property
     def _turns(self) -> bool:
         return self.conditions.held < self.conditions.derivatives
@@ -195,9 +216,8 @@ class MomentSpace(SampledSpace):
     @cached_property
     def _quotients(self) -> np.ndarray:
         """Orthonormal quotients of forces and stiffness at the points, shape (m, k)."""
-        tensor = stiffness_tensor(self.spaces.beam, self.conditions.stiffness)
-        direction, xi = self.conditions.direction, self.spaces.nodes.xi
-        compliance = invert(tensor, xi)
+        stiffness, direction = self.conditions.stiffness, self.conditions.direction
+        compliance = self.spaces.compliance(stiffness)
         quotients = np.array(
             [
                 compliance[direction, other] * self._forces(other)
@@ -205,8 +225,9 @@ class MomentSpace(SampledSpace):
                 if (direction, other) in compliance
             ]
         )
-        ordered = quotients.swapaxes(0, 1).reshape(-1, xi.size)
-        weight = self.spaces.nodes.weights * tensor[direction, direction](xi)
+        ordered = quotients.swapaxes(0, 1).reshape(-1, quotients.shape[-1])
+        own = stiffness_tensor(self.spaces.beam, stiffness)[direction, direction]
+        weight = self.spaces.nodes.weights * self.spaces.at_nodes(own)
         on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, _NODES)
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return at_points.reshape(len(on_cells), -1)
@@ -231,15 +252,15 @@ class MomentSpace(SampledSpace):
 
     def _causes(self, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
         """Yield of loads: the stiffness against the displacement, the derivative of that, and its weight."""
-        beam, xi = self.spaces.beam, self.spaces.nodes.xi
-        mass, tension = beam.mass_per_length(xi), axial_tension(beam)[1](xi)
+        beam, at_nodes = self.spaces.beam, self.spaces.at_nodes
+        mass, tension = at_nodes(beam.mass_per_length), at_nodes(axial_tension(beam)[1])
         rotary = section_tensor(beam, "rotary_inertia").get((direction, direction))
         for name in _COUPLED[self.conditions.stiffness]:
             if stiffness_tensor(beam, name):
                 yield name, 0, mass
                 yield name, 1, tension
         if rotary is not None and self.conditions.stiffness == "bending_stiffness":
-            yield "bending_stiffness", 1, rotary(xi)
+            yield "bending_stiffness", 1, at_nodes(rotary)
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:

@@ -11,6 +11,26 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.profile import Profile
 
 
+class Sampler:
+    """Values of properties at given points, each computed once.
+
+    Parameters
+    ----------
+    points : ndarray, shape (k,)
+        The points on [0, 1].
+    """
+
+    def __init__(self, points: np.ndarray) -> None:
+        self.points = points
+        self._known: dict[Profile, np.ndarray] = {}
+
+    def __call__(self, profile: Profile) -> np.ndarray:
+        """Values (k,) of a property."""
+        if profile not in self._known:
+            self._known[profile] = profile(self.points)
+        return self._known[profile]
+
+
 class SampledSpace(FieldsOnly, ABC):
     """Base class of spaces of functions that are smooth between the points of a Gauss rule on cells."""
 

@@ -67,6 +67,13 @@ class Profile(FieldsOnly):
     breakpoints: tuple[float, ...]
     coefficients: tuple[tuple[float, ...], ...]
 
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:  # of many segments, for each look into a cache
+        return hash((self.breakpoints, self.coefficients))
+
     def __call__(self, xi: np.ndarray) -> np.ndarray:
         """Evaluate at fractions `xi` of the length, of any shape; at a jump, the value on its right."""
         xi = np.asarray(xi, dtype=float)

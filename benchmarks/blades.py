@@ -1,0 +1,117 @@
+"""Frequencies of three public blades by their tables of stations: error and time, beside pyBModes.
+
+Run: python -m benchmarks.blades.  Three modes a plane, at rest and at rated speed.  pyBModes has the
+deck's own stations as the ends of its elements.  Each of our calls has a scene that differs from the one
+before in its last digits, so that nothing computed before is used again.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import count
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: small matrices gain nothing by more
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.cases.blades import NAMES, blade_scene
+from benchmarks.cases.reference.resolved import known_frequencies
+from benchmarks.peers import pybmodes, twisted
+from benchmarks.rows import Row, best_time, show, time_text
+
+RATED = {"iea_15": 7.56, "nrel_5": 12.1, "bmodes_test01": 60.0}  # rpm
+TOLERANCES = (1e-6, 1e-9, None)
+_MODES = 6  # three a plane
+_SPEEDS = 1000  # of a locus
+_TWO_PLANES = bd.Physics(planes=2)
+_FASTER, _SLOWER = 5.0, 1.0  # times pyBModes is aimed to take, at 1e-6 and by default
+_LOCUS = 3.0  # time of a locus over that of one call
+
+
+def measure_errors() -> Iterator[Row]:
+    """Largest true errors of the frequencies, twisted and not, by collocation of the equations."""
+    for name in NAMES:
+        for rpm in (0.0, RATED[name]):
+            for is_twisted in (False, True):
+                scene, speed = blade_scene(name, twisted=is_twisted), rpm * math.pi / 30
+                known = known_frequencies(scene, speed, _MODES)
+                what = f"{name}, {rpm:g} rpm, {'twisted' if is_twisted else 'two planes apart'}"
+                for tolerance in TOLERANCES:
+                    found = bd.natural_modes(scene, speed, _MODES, tolerance=tolerance)
+                    true = np.abs(found.eigenvalue / known.eigenvalue - 1)
+                    covered = (true <= found.error + known.uncertainty).all()
+                    said = (
+                        f"{true.max():.0e}, stated {found.error.max():.0e}{'' if covered else ' NOT COVERED'}"
+                    )
+                    yield f"{what}, {_name(tolerance)}: error", said, f"{tolerance or 1e-9:g}"
+
+
+def measure_times() -> Iterator[Row]:
+    """Times of one call at rated speed, and of a peer; both planes."""
+    for name in NAMES:
+        theirs = their_time(name)
+        if theirs is not None:
+            yield f"{name}: {pybmodes.NAME}, own stations", time_text(theirs), ""
+        for is_twisted in (False, True):
+            for tolerance, bound in ((1e-6, _FASTER), (None, _SLOWER)):
+                ours = best_time(a_call(name, is_twisted, tolerance))
+                ratio = "" if theirs is None else f", {pybmodes.NAME} {theirs / ours:.1f} times"
+                what = f"{name}, {'twisted' if is_twisted else 'two planes apart'}, {_name(tolerance)}"
+                yield what, f"{time_text(ours)}{ratio}", f"{bound:g} times"
+
+
+def measure_loci() -> Iterator[Row]:
+    """Time of a locus of 1000 speeds over that of one call, three modes of flap at 1e-9."""
+    for name in NAMES:
+        one, many = (best_time(call) for call in calls_of_flap(name))
+        said = f"{time_text(many)}, {many / one:.1f} times one call"
+        yield f"{name}: {_SPEEDS} speeds", said, f"{_LOCUS:g} times"
+
+
+def calls_of_flap(name: str) -> tuple[Callable[[], object], Callable[[], object]]:
+    """One call for three modes at rated speed, and one for a locus up to it."""
+    top, scenes = RATED[name] * math.pi / 30, distinct_scenes(name, physics=bd.Physics())
+    speeds = np.linspace(0, top, _SPEEDS)
+    return (
+        lambda: bd.natural_modes(next(scenes), top, 3, tolerance=1e-9),
+        lambda: bd.frequency_locus(next(scenes), speeds, 3, tolerance=1e-9),
+    )
+
+
+def a_call(name: str, is_twisted: bool, tolerance: float | None) -> Callable[[], object]:
+    """One call for six modes of two planes."""
+    scenes, speed = distinct_scenes(name, twisted=is_twisted), RATED[name] * math.pi / 30
+    return lambda: bd.natural_modes(next(scenes), speed, _MODES, tolerance=tolerance)
+
+
+def distinct_scenes(
+    name: str,
+    physics: bd.Physics = _TWO_PLANES,
+    twisted: bool = False,
+) -> Iterator[bd.Scene]:
+    """Scenes of a blade, none of them equal to another."""
+    scene = blade_scene(name, physics, twisted)
+    for k in count(1):
+        yield replace(scene, beam=replace(scene.beam, length=scene.beam.length * (1 + 1e-13 * k)))
+
+
+def their_time(name: str) -> float | None:
+    """Time of pyBModes, without reading of its files; None where it is missing."""
+    if pybmodes.version() is None:
+        return None
+    with pybmodes.model(twisted.main_file(name, RATED[name], 1), twisted.sections(name)) as blade:
+        return best_time(lambda: blade.run(n_modes=_MODES, check_model=False))
+
+
+def _name(tolerance: float | None) -> str:
+    return "by default" if tolerance is None else f"tolerance {tolerance:g}"
+
+
+PARTS = (measure_times, measure_loci, measure_errors)
+
+if __name__ == "__main__":
+    show("blades by their stations", *PARTS)
