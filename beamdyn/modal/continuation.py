@@ -103,7 +103,7 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
     start : Point
         A point of the curve.
     longest : float
-        Longest step, by arc length.
+        Longest step, by the change of the slope angles, or of the parameter over its size.
 
     Raises
     ------
@@ -122,7 +122,15 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
             continue
         point = following
         yield point
-        step = min(longest, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
+        most = longest * _reach(problem, point)
+        step = min(most, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
+
+
+def _reach(problem: Problem, point: Point) -> float:
+    """Arc length of a change of the slope angles by 1 or of the parameter by its size, if the larger size."""
+    by_angles = _metric(problem, point.q_rate, 0.0)
+    by_parameter = 1 / (1 + abs(point.p) / problem.scale)
+    return 1 / max(by_angles, by_parameter)
 
 
 def _check_same_curve(problem: Problem, before: Point, after: Point, step: float) -> None:
