@@ -39,13 +39,16 @@ class Cases(Generic[Answer]):
 
     def resume(self, path: Path, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
         """Measure the cases that the file lacks, and add them; all answers that are then in the file."""
-        done = {row["number"] for row in _rows(path)}
+        numbers, rows = list(numbers), _rows(path)
+        path.write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
+        done = {row["number"] for row in rows}
         with path.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers) as pool:
             cases = [pool.submit(self.measure, number) for number in numbers if number not in done]
             for answers in (case.result() for case in as_completed(cases)):  # a slow one holds up no other
                 file.write("".join(f"{json.dumps(vars(answer))}\n" for answer in answers))
                 file.flush()
-        return self.load(path)
+        wanted = set(numbers)
+        return [answer for answer in self.load(path) if vars(answer)["number"] in wanted]
 
     def load(self, path: Path) -> list[Answer]:
         """Answers in a file; none if there is no such file."""
@@ -69,8 +72,9 @@ def add_options(parser: argparse.ArgumentParser, scenes: int, seed: int) -> None
 
 
 def _rows(path: Path) -> list[dict[str, Any]]:
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    return [json.loads(line) for line in lines]
+    """Lines of a file, without one that a run did not finish."""
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 
 
 def _frozen(value: Any) -> Any:

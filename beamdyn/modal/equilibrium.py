@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -154,23 +155,32 @@ def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np
     """Coordinates at squared speeds in the order in which a curve meets them."""
     found, curve, towards = [], follow(load, before), np.sign(before.p_rate)
     while len(found) < len(squares):
-        after = _next(load, curve, before)
+        after = _next(curve, before)
+        turning = find_turning_point(load, before, after) if after.p_rate * before.p_rate < 0 else None
+        after = turning or after
         while len(found) < len(squares) and towards * (after.p - squares[len(found)]) >= 0:
-            found.append(find_at(load, before, after, float(squares[len(found)])))
+            found.append(_find_between(load, before, after, float(squares[len(found)])))
+        if turning is not None and len(found) < len(squares):
+            raise NoEquilibrium(f"the branch turns back at {_speed(turning):.6g} rad/s")
         before = after
     return np.array(found)
 
 
-def _next(load: SteadyLoad, curve: Iterator[Point], before: Point) -> Point:
-    """The next point of a curve on which the speed must not turn."""
+def _next(curve: Iterator[Point], before: Point) -> Point:
+    """The next point of a curve."""
     try:
-        after = next(curve)
+        return next(curve)
     except NotConverged:
         raise NoEquilibrium(f"the branch could not be followed beyond {_speed(before):.6g} rad/s") from None
-    if after.p_rate * before.p_rate < 0:
-        turning = find_turning_point(load, before, after)
-        raise NoEquilibrium(f"the branch turns back at {_speed(turning):.6g} rad/s")
-    return after
+
+
+def _find_between(load: SteadyLoad, before: Point, after: Point, squared: float) -> np.ndarray:
+    """Coordinates at a squared speed between two points of a curve."""
+    try:
+        return find_at(load, before, after, squared)
+    except NotConverged:
+        speed = math.sqrt(squared)
+        raise NoEquilibrium(f"the equilibrium at {speed:.6g} rad/s was not found to rounding") from None
 
 
 def _speed(point: Point) -> float:
@@ -195,10 +205,18 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
         bent = _release(Pushed(load, squared, scale=abs(push) * squared), q, push * squared)
     except (NotConverged, NoEquilibrium):
         bent = None
-    straight = follow_to(load, np.array([speed]))[0]
-    if bent is None or np.abs((bent - straight) @ load.angles).max() < _SAME:
+    if bent is None or _is_on_branch_from_rest(load, speed, bent):
         raise NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
     return bent
+
+
+def _is_on_branch_from_rest(load: SteadyLoad, speed: float, q: np.ndarray) -> bool:
+    """Whether an equilibrium is on the branch from rest, which may turn back before."""
+    try:
+        from_rest = follow_to(load, np.array([speed]))[0]
+    except NoEquilibrium:
+        return False
+    return bool(np.abs((q - from_rest) @ load.angles).max() < _SAME)
 
 
 def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:

@@ -20,19 +20,28 @@ _MISFIT_OF_MODES = 1e-7  # of predicted modes, relative to their largest coordin
 
 
 def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
-    """Compute the `count` lowest modes at ascending speeds (S,) [rad/s], as `Eigensolver.solve` does."""
+    """Compute the `count` lowest modes at speeds (S,) [rad/s], as `Eigensolver.solve` does."""
     if len(speeds) <= _FEW or not solver.conservative:
+        return solver.solve(speeds, count)
+    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense of rotation is the same
+    found = _solve_ascending(solver, sizes, count)
+    return Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
+
+
+def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
+    """The same at ascending speeds of 0 or more."""
+    if len(speeds) <= _FEW:
         return solver.solve(speeds, count)
     for intervals in _INTERVALS:
         if (found := _interpolate(solver, speeds, count, intervals)) is not None:
             return found
-    parts = [solve_over_speeds(solver, part, count) for part in np.array_split(speeds, 2)]
+    parts = [_solve_ascending(solver, part, count) for part in np.array_split(speeds, 2)]
     joined = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
     return Eigen(*map(np.concatenate, joined))
 
 
 def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Compute the eigenvalues of the `count` lowest modes at ascending speeds, shape (S, count)."""
+    """Compute the eigenvalues of the `count` lowest modes at speeds (S,), shape (S, count)."""
     if len(speeds) <= _FEW:
         return solver.eigenvalues(speeds, count)  # without modes
     return solve_over_speeds(solver, speeds, count).eigenvalue

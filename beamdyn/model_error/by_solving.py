@@ -63,6 +63,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
         assumed={name: note for name, note in notes.items() if note},
         not_modelled=not_modelled,
         reasons={effect.name: effect.reason for effect in list_left_out(base)},
+        shape=np.shape(without.values),
     )
 
 

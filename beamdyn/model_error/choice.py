@@ -239,7 +239,8 @@ class _Candidate:
 
     def addable(self) -> dict[str, float]:
         """Sizes of the effects that can be added."""
-        return {name: size for name, size in self.left_out.items() if name not in self.reasons}
+        known = {name: size for name, size in self.left_out.items() if not math.isnan(size)}
+        return {name: size for name, size in known.items() if name not in self.reasons}
 
     def without(self, name: str, reason: str) -> _Candidate:
         """The same, with a reason why an effect cannot be added."""

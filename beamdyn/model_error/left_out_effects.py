@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from beamdyn.common.results import plain
-from beamdyn.model_error.effects import LARGE_DEFLECTION
 from beamdyn.scene.physics_choice import OfChosenPhysics
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
@@ -35,6 +34,8 @@ class LeftOutEffects:
         Effects that no model here has.
     reasons : dict of str to str
         What the model assumes in place of each effect, and how to include it.
+    shape : tuple of int
+        Shape of the values, which each change has.
     """
 
     changes: dict[str, np.ndarray]
@@ -42,16 +43,22 @@ class LeftOutEffects:
     assumed: dict[str, str]
     not_modelled: tuple[str, ...]
     reasons: dict[str, str]
+    shape: tuple[int, ...] = ()
 
     @property
     def total(self) -> np.ndarray:
         """Size of the sum of all changes; nan where one of them is not known."""
-        return np.abs(sum(self.changes.values(), np.zeros(())))
+        return np.abs(sum(self.changes.values(), np.zeros(self.shape)))
+
+    @property
+    def total_of_known(self) -> np.ndarray:
+        """Size of the sum of the changes that are known."""
+        return np.abs(sum(map(np.nan_to_num, self.changes.values()), np.zeros(self.shape)))
 
     def at(self, index: Any) -> LeftOutEffects:
         """The same for some of the values."""
         changes = {name: change[index] for name, change in self.changes.items()}
-        return LeftOutEffects(changes, self.not_known, self.assumed, self.not_modelled, self.reasons)
+        return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape)
 
     # In words -----------------------------------------------------------------------------------------
 
@@ -91,21 +98,23 @@ class LeftOutEffects:
         The parameter `where` is as for `sentence`.
         """
         limit = LARGE_MODEL_ERROR if tolerance is None else tolerance
-        total = self.total
-        if np.isfinite(total).any() and np.nanmax(total) > limit:
-            largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
-            change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
-            size = say_size(np.nanmax(total))
-            yield (
-                f"{where and where + ' '}the model error, {size}, exceeds {say_size(limit)}: "
-                f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
-            )
-        elif LARGE_DEFLECTION in self.not_known and not np.isfinite(self.changes[LARGE_DEFLECTION]).all():
-            why = self.not_known[LARGE_DEFLECTION]
-            yield (
-                f"{where and where + ' '}the model error may exceed {say_size(limit)}: what "
-                f"{LARGE_DEFLECTION}, left out, changes is not known: {why}"
-            )
+        at_least = float(self.total_of_known.max(initial=0.0))
+        begin = f"{where and where + ' '}the model error"
+        if at_least > limit:
+            yield f"{begin}, {self._say_total(at_least)}, exceeds {say_size(limit)}: {self._say_largest()}"
+        for name, why in self.not_known.items():
+            if name in self.changes and np.isnan(self.changes[name]).any() and at_least <= limit:
+                what = f"what {name}, left out, changes is not known: {why}"
+                yield f"{begin} may exceed {say_size(limit)}: {what}"
+
+    def _say_total(self, size: float) -> str:
+        where = self.total_of_known == size
+        return f"{'at least ' if np.isnan(self.total[where]).any() else ''}{say_size(size)}"
+
+    def _say_largest(self) -> str:
+        largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
+        change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
+        return f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
 
 
 def _largest(change: np.ndarray) -> float:

@@ -56,7 +56,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
         return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
-    found = _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+    found = _gather(simple, change, None if model.scene.physics.large_deflection else bent, eigenvalue.shape)
     return _say_lost_modes(found, np.array([vibrate(s) for s, _ in found_modes]))
 
 
@@ -105,9 +105,12 @@ def nothing_known(scene: Scene) -> LeftOutEffects:
 
 
 def _gather(
-    simple: Simple, change: Change, bent: Callable[[], tuple[np.ndarray, str]] | None
+    simple: Simple,
+    change: Change,
+    bent: Callable[[], tuple[np.ndarray, str]] | None,
+    shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """All effects: of each that can be added, the change by its equations; and that by large deflection."""
+    """All effects on values of a shape: by the equations of each; and that of large deflection."""
     additions, not_known, not_modelled = list_effects(simple.scene)
     changes = {}
     if bent is not None:
@@ -118,7 +121,7 @@ def _gather(
     assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}
     if bent is None:
         assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}
-    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene))
+    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene), shape)
 
 
 def without_large_deflection(model: Model) -> Model:

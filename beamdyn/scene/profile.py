@@ -263,7 +263,9 @@ def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
 def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
     """Sort breakpoints and merge those that differ by rounding."""
     ends = np.unique(breakpoints)
-    return tuple(ends[np.diff(ends, prepend=-1.0) > _SHORTEST_SEGMENT].tolist())
+    inner = ends[1:-1][np.diff(ends)[:-1] > _SHORTEST_SEGMENT]
+    inner = inner[ends[-1] - inner > _SHORTEST_SEGMENT]
+    return (float(ends[0]), *inner.tolist(), float(ends[-1]))
 
 
 def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:

@@ -38,6 +38,8 @@ class _CriticalAnswer(Protocol):
 
 Found = TypeVar("Found", bound=_CriticalAnswer)
 
+_UNRESOLVED = "its critical speed is not resolved"
+
 
 def find_with_chosen_physics(scene: Scene, find: Callable[[Scene], Found], tolerance: float | None) -> Found:
     """Find a critical point with the effects that change it by more than the tolerance.
@@ -74,7 +76,8 @@ def _choose(scene: Scene, find: Callable[[Scene], _CriticalAnswer], tolerance: f
         assumed = {added.name: f"it is estimated {added.assumed}" for added in additions if added.assumed}
         # Where rotation bends the beam from rest on, it does not buckle.
         sizes[LARGE_DEFLECTION] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
-        return Judged(sizes | dict.fromkeys(not_known, math.nan), assumed | not_known)
+        unresolved = {name: _UNRESOLVED for name, size in sizes.items() if math.isnan(size)}
+        return Judged(sizes | dict.fromkeys(not_known, math.nan), unresolved | assumed | not_known)
 
     def count(candidate: Scene) -> int:
         found = find(candidate).model

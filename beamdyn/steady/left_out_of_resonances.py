@@ -63,7 +63,8 @@ def left_out_of_resonances(scene: Scene, crossings: Sequence[CrossingOfLine], mo
     def of_speeds(change: np.ndarray) -> np.ndarray:
         return (size * np.take_along_axis(change, nearest, axis=1)).sum(axis=1) / detuning
 
-    return replace(effects, changes={name: of_speeds(change) for name, change in effects.changes.items()})
+    changes = {name: of_speeds(change) for name, change in effects.changes.items()}
+    return replace(effects, changes=changes, shape=speeds.shape)
 
 
 def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:

@@ -80,6 +80,16 @@ def test_a_locus_does_not_depend_on_its_speeds() -> None:
     np.testing.assert_allclose(together, apart, rtol=1e-10)  # both stated errors
 
 
+def test_speeds_just_past_the_fold_are_found_beside_others() -> None:
+    """The bent branch begins at 178.701 rad/s; it is followed to all speeds, then refused below."""
+    scene = harvester(5.0, bd.Physics(large_deflection=True, branch="bent"))
+    together = bd.frequency_locus(scene, [178.71, 200.0, 250.0], 1, bd.Ritz(10)).frequency[:, 0]
+    apart = [bd.natural_modes(scene, v, 1, bd.Ritz(10)).frequency[0] for v in (178.71, 200.0, 250.0)]
+    np.testing.assert_allclose(together, apart, rtol=1e-9)  # near the fold errors grow as its distance falls
+    with pytest.raises(ArithmeticError, match=r"turns back at 178\.701 rad/s"):
+        bd.frequency_locus(scene, [178.6, 250.0], 1, bd.Ritz(10))
+
+
 def test_critical_speed_is_that_of_a_straight_beam() -> None:
     assert bd.critical_speed(harvester(0.0)) == bd.critical_speed(harvester(0.0, bd.Physics()))
     assert bd.critical_speed(harvester(5.0)) == math.inf

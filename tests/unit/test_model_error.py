@@ -183,6 +183,31 @@ def test_warning_above_one_percent_or_the_tolerance() -> None:
     assert text == ("the model error, 0.6 %, exceeds 0.1 %: a, left out, changes the answer by +0.6 %; why")
 
 
+def test_an_unknown_effect_does_not_silence_a_large_one() -> None:
+    changes = {"large deflection": np.array([0.3, 0.1]), "shear": np.array([np.nan, 1e-5])}
+    effects = LeftOutEffects(changes, {"shear": "another mode"}, {}, (), {}, (2,))
+    (text,) = effects.warnings()
+    assert text.startswith("the model error, at least 30 %, exceeds 1 %: large deflection, left out")
+    (text,) = LeftOutEffects(
+        {"shear": changes["shear"]}, {"shear": "another mode"}, {}, (), {}, (2,)
+    ).warnings()
+    assert text == "the model error may exceed 1 %: what shear, left out, changes is not known: another mode"
+
+
+@pytest.mark.parametrize("command", [("modes", "--speed", "2 rad/s"), ("locus", "--speeds", "0:2:3 rad/s")])
+def test_nothing_left_to_compute(tmp_path: Path, capsys: pytest.CaptureFixture[str], command) -> None:
+    """With large deflection, and data for nothing else."""
+    file = tmp_path / "scene.toml"
+    file.write_text(
+        '[beam]\nlength = "1 m"\nmass_per_length = "1 kg/m"\nbending_stiffness = "1 N m2"\n'
+        '[mount]\nradius = "0.5 m"\nsetting_angle = "45 deg"\n[physics]\nlarge_deflection = true\n'
+    )
+    assert main([command[0], str(file), *command[1:]]) == 0
+    assert "nothing that can be computed; not known: second plane of bending" in capsys.readouterr().out
+    modes = bd.natural_modes(bd.load_scene(file), 2.0, 2)
+    np.testing.assert_array_equal(modes.model_error, [0.0, 0.0])
+
+
 def test_sentence_begins_with_the_largest() -> None:
     changes = {"small": np.array([1e-5, -3e-5]), "large": np.array([0.094, 0.01])}
     said = LeftOutEffects(changes, {"x": "give y"}, {}, ("torsion",), {}).sentence(where="at 5 rad/s")

@@ -45,6 +45,12 @@ def test_values_and_modes(scene: bd.Scene) -> None:
     np.testing.assert_allclose(products, 1.0, rtol=1e-6)  # that of predicted modes, 1e-7
 
 
+def test_either_sense_of_rotation() -> None:
+    found, each = solve_both(OUTWARD, np.linspace(-4.0, 2.0, 301))
+    error = np.abs(found.eigenvalue**2 - each.eigenvalue**2) / np.abs(each.eigenvalue**2)
+    assert (error <= found.rounding + each.rounding).all()
+
+
 def test_growing_modes_grow() -> None:
     inward = replace(OUTWARD, mount=bd.Mount(2.0, 0.0, 0.4))
     found, each = solve_both(inward, SPEEDS)

@@ -182,6 +182,18 @@ def test_the_rule(sizes: dict[str, float], included: tuple[str, ...]) -> None:
     assert choice_of(chosen).included == included
 
 
+@pytest.mark.parametrize("unknown", [SECOND, SHEAR])
+def test_a_size_that_is_not_known_adds_nothing(unknown: str) -> None:
+    """Wherever it stands among the others, which are added by their own."""
+    every = {SECOND: 0.0, ROTARY: 0.2, SHEAR: 0.0, STRETCH: 0.0, LARGE: 0.0} | {unknown: math.nan}
+
+    def judge(scene: bd.Scene) -> Judged:
+        return Judged(dict(every), {unknown: "not resolved"})
+
+    chosen = choose_by(bd.Scene(STRIP, physics="auto"), judge, lambda _: 1, 1e-3, np.array([1.0]))
+    assert choice_of(chosen).included == (ROTARY,)
+
+
 def test_what_an_effect_brings_up_is_added_after_it() -> None:
     """With the second plane come modes in which shear matters."""
 
