@@ -19,6 +19,7 @@ from beamdyn.cli.values import (
     parse_speeds,
     speed_or_final,
 )
+from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
 from beamdyn.common.edge.program import NoAnswer
 
@@ -291,6 +292,7 @@ def _unstable(result: Modes) -> str:
     if not unstable:
         return ""
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
-    critical = critical_point(result.scene).speed
-    where = f"; the critical speed is {critical:.6g} rad/s" if critical <= result.speed else ""
-    return f"unstable at {result.speed:g} rad/s: {which}{where}"
+    critical = critical_point(result.scene)
+    said = f"; the critical speed is {critical.speed:.6g} rad/s" if critical.speed <= result.speed else ""
+    straight = ", were the beam straight" if any(OUTSIDE in said for said in critical.warnings) else ""
+    return f"unstable at {result.speed:g} rad/s: {which}{said}{straight}"

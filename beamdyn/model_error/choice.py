@@ -22,9 +22,9 @@ from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
-from beamdyn.model_error.large_deflection import bends
+from beamdyn.model_error.large_deflection import EXCLUDED, bends
 from beamdyn.model_error.left_out_effects import LeftOutEffects
-from beamdyn.model_error.of_modes import left_out_of_modes, vibrate
+from beamdyn.model_error.of_modes import left_out_of_modes, vibrate, without_large_deflection
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
 from beamdyn.scene.scene import Scene
@@ -105,7 +105,12 @@ def choose_physics(
         found = solve(candidate)
         s = found.eigen.eigenvalue[:, :modes]
         effects = left_out_of_modes(found.model, some, s)
-        return judged_by(candidate, effects, vibrate(s), _rough_size(found.model, some))
+        counts = vibrate(s)
+        if (
+            candidate.physics.large_deflection
+        ):  # then others are judged on the straight beam, where it is stable
+            counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
+        return judged_by(candidate, effects, counts, _rough_size(found.model, some))
 
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
@@ -137,11 +142,13 @@ def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: 
     """
     sizes = {name: _size(change, counts) for name, change in effects.changes.items()}
     sizes |= dict.fromkeys(effects.not_known.keys() - sizes.keys(), math.nan)
-    if LARGE_DEFLECTION in sizes and not math.isfinite(sizes[LARGE_DEFLECTION]):
+    if LARGE_DEFLECTION in sizes and (rough == math.inf or not math.isfinite(sizes[LARGE_DEFLECTION])):
         sizes[LARGE_DEFLECTION] = rough
     additions, _, _ = list_effects(scene)
     assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
     addable = {a.name for a in additions} - assumed.keys()
+    if effects.not_known.get(LARGE_DEFLECTION) not in EXCLUDED:
+        addable.add(LARGE_DEFLECTION)
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
     return Judged(sizes, nothing | assumed | refused)
@@ -154,11 +161,14 @@ def _size(change: np.ndarray, counts: np.ndarray) -> float:
 
 
 def _rough_size(model: Model, speeds: np.ndarray) -> float:
-    """A generous size of large deflection, by the static deflection; nan if the straight beam buckles."""
+    """A generous size of large deflection, by the static deflection; nan if the beam stays straight.
+
+    Where the straight beam is unstable, though rotation bends it before, nothing of it is right: inf.
+    """
     if model.scene.physics.large_deflection or not bends(model):
         return math.nan
     ratio = np.linalg.norm(model.static_tips(speeds), axis=1) / model.scene.beam.length
-    return float(_ROUGH * np.max(ratio) ** 2)
+    return math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
 
 
 def warn_of_peak(scene: Scene, deflection: float) -> Iterator[str]:

@@ -17,6 +17,7 @@ _BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch
 TWO_PLANES = "it is solved in one plane of bending"
 HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
+EXCLUDED = TWO_PLANES, HINGED, OBLIQUE  # why it cannot be added
 _NOT_FOUND = "the equilibrium was not found"
 _EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
 

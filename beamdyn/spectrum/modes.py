@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced
+from beamdyn.common.announced import OUTSIDE, announced
 from beamdyn.common.checks import ascending, count, real, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
@@ -29,11 +29,13 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.model_error.choice import choose_physics
+from beamdyn.model_error.large_deflection import bends
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
+    list_range,
     warn_of_left_out,
     warn_of_static_deflection,
     warn_of_strain,
@@ -206,7 +208,7 @@ def natural_modes(
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
     vectors, status = _with_positive_tip(equations.tips, solution.eigen.vector[0]), _status(s)
     deflection, strain = static_load(solution.model, speeds)
-    warnings = _warnings(scene, speeds, deflection, strain, solution.error, status[None], tolerance)
+    warnings = _warnings(solution.model, speeds, deflection, strain, solution.error, status[None], tolerance)
     return Modes(
         speed=float(speeds[0]),
         frequency=_frequency(s, status),
@@ -282,7 +284,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _warnings(
-    scene: Scene,
+    model: Model,
     speeds: np.ndarray,
     deflection: np.ndarray,
     strain: np.ndarray,
@@ -290,6 +292,7 @@ def _warnings(
     status: np.ndarray,
     tolerance: float | None,
 ) -> Iterator[str]:
+    scene = model.scene
     yield from warn_of_left_out(scene)
     unstable = np.isin(status, ("divergence", "flutter"))
     if unstable.any():
@@ -298,10 +301,21 @@ def _warnings(
     yield from warn_of_strain(strain.max(initial=0))
     if not scene.physics.large_deflection:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
+        yield from _warn_of_straight(deflection, speeds, model)
     if tolerance is not None:
         yield from warn_of_missed_tolerance(error.max(), tolerance)
     elif error.max() > 1e-6:
         yield f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
+
+
+def _warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[str]:
+    """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
+    lost = np.isnan(deflection)
+    if lost.any() and bends(model):
+        yield (
+            f"at {list_range(speeds[lost])} the straight beam is unstable; the rotation bends it before: "
+            f"the answer is {OUTSIDE}"
+        )
 
 
 def _provenance(solution: EstimatedModes, start: float) -> Provenance:
@@ -448,7 +462,7 @@ def frequency_locus(
         plane_share=_track_shares(solution, order[:, :modes]),
         static_deflection=deflection,
         axial_strain=strain,
-        warnings=tuple(_warnings(scene, speeds, deflection, strain, error, status, tolerance)),
+        warnings=tuple(_warnings(solution.model, speeds, deflection, strain, error, status, tolerance)),
         provenance=_provenance(solution, start),
         scene=scene,
         model=solution.model,
