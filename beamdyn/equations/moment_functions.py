@@ -38,7 +38,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
-_NODES = 16  # on each cell, through which the quotients are interpolated
+NODES = 16  # on each cell, through which the quotients are interpolated
 _RESOLVED = 1e-9  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
 _PHASE = 12.0  # largest change of phase of the highest polynomial within a cell [rad]
 _SHORTEST = 1e-10  # cell that is halved, as x/L
@@ -90,7 +90,7 @@ class MomentSpaces(FieldsOnly):
     def _are_coarse(self, ends: np.ndarray) -> np.ndarray:
         """Whether each cell is to be halved."""
         coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
-        xi = gauss_points_on(ends, _NODES)
+        xi = gauss_points_on(ends, NODES)
         for name in _ORDERS:
             for entry in invert(stiffness_tensor(self.beam, name), xi).values():
                 coarse |= ~_are_resolved(entry)
@@ -99,7 +99,7 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def nodes(self) -> ArcQuadrature:
         """Points of all cells through which quotients are interpolated."""
-        return ArcQuadrature(Cells(self.cells, _NODES))
+        return ArcQuadrature(Cells(self.cells, NODES))
 
     def displacements(self, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
         """Displacements by forces (n, N) at the nodes against a stiffness, and their slopes: each (n, N)."""
@@ -112,7 +112,7 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule that integrates products of the functions with properties exactly."""
-        return ArcQuadrature(Cells(self.cells, _NODES + 3 + weight_degree(self.beam) // 2))
+        return ArcQuadrature(Cells(self.cells, NODES + 3 + weight_degree(self.beam) // 2))
 
 
 @lru_cache(maxsize=16)  # fields of a scene, and pairs of them, ask for the same functions
@@ -147,14 +147,14 @@ def invert(tensor: Tensor, xi: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
 
 def _are_resolved(values: np.ndarray) -> np.ndarray:
     """Whether interpolants through the nodes of each cell resolve functions with these values (c, nodes)."""
-    series = np.abs(values @ legendre_series(_NODES).T)
+    series = np.abs(values @ legendre_series(NODES).T)
     return series[:, -2:].max(axis=1) <= _RESOLVED * series.max(axis=1)
 
 
 @cache
 def _interpolation(points: int) -> np.ndarray:
     """Values at Gauss points of the interpolants through fewer: shape (points, nodes)."""
-    return legendre.legvander(gauss_rule(points)[0], _NODES - 1) @ legendre_series(_NODES)
+    return legendre.legvander(gauss_rule(points)[0], NODES - 1) @ legendre_series(NODES)
 
 
 # Functions ----------------------------------------------------------------------------------------
@@ -207,7 +207,7 @@ class MomentSpace(SampledSpace):
         )
         ordered = quotients.swapaxes(0, 1).reshape(-1, xi.size)
         weight = self.spaces.nodes.weights * tensor[direction, direction](xi)
-        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, _NODES)
+        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return at_points.reshape(len(on_cells), -1)
 
