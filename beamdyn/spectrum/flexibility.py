@@ -16,7 +16,7 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 
 _EPS = float(np.finfo(float).eps)
-_DEGREES = (0, 8, 16, 32, 64)
+_DEGREES = (0, 8, 16, 32, 64, 128)
 _EXCESS = 1e-10  # relative, of the bound over 1/EI
 _HALVINGS = 40  # of a segment on which no degree suffices
 
