@@ -25,7 +25,9 @@ from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import Split, _flexibility, _nondimensional
+from beamdyn.spectrum.bounds import _nondimensional
+from beamdyn.spectrum.flexibility import bound_flexibility
+from beamdyn.spectrum.split import Split
 from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
 from benchmarks.cases.reference.of_scene import exact, exact_critical_speed, relative_errors
 from benchmarks.cases.scenes import time_unit
@@ -168,7 +170,7 @@ class Prover:
 
     def __init__(self, scene: bd.Scene) -> None:
         scaled, self.time = _nondimensional(scene)
-        flexibility = _flexibility(scaled.beam.bending_stiffness)
+        flexibility = bound_flexibility(scaled.beam.bending_stiffness)
         self.splits = [Split(scaled, size, 0.0, flexibility) for size in (32, 64)]
 
     def is_stable(self, speed: float) -> bool | None:

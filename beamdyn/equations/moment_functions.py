@@ -39,8 +39,9 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
-_NODES = 16  # on each cell, through which the quotients are interpolated
+NODES = 16  # on each cell, through which the quotients are interpolated
 _RESOLVED = 1e-9  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
+_ROUNDING = 10 * float(np.finfo(float).eps)  # of a sum of polynomials
 _PHASE = 12.0  # largest change of phase of the highest polynomial within a cell [rad]
 _SHORTEST = 1e-10  # cell that is halved, as x/L
 _DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
@@ -92,17 +93,17 @@ class MomentSpaces(FieldsOnly):
     def _are_coarse(self, ends: np.ndarray) -> np.ndarray:
         """Whether each cell is to be halved."""
         coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
-        xi = gauss_points_on(ends, _NODES)
+        xi = gauss_points_on(ends, NODES)
         for name in _ORDERS:
             values = {entry: p(xi) for entry, p in stiffness_tensor(self.beam, name).items()}
-            for entry in invert(values).values():
-                coarse |= ~_are_resolved(entry)
+            for (i, _), entry in invert(values).items():
+                coarse |= ~_are_resolved(entry, _rounding_of(values[i, i]))
         return coarse & (np.diff(ends) > _SHORTEST)
 
     @cached_property
     def nodes(self) -> ArcQuadrature:
         """Points of all cells through which quotients are interpolated."""
-        return ArcQuadrature(Cells(self.cells, _NODES))
+        return ArcQuadrature(Cells(self.cells, NODES))
 
     @cached_property
     def at_nodes(self) -> Sampler:
@@ -125,7 +126,7 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule that integrates products of the functions with properties exactly."""
-        return ArcQuadrature(Cells(self.cells, _NODES + 3 + weight_degree(self.beam) // 2))
+        return ArcQuadrature(Cells(self.cells, NODES + 3 + weight_degree(self.beam) // 2))
 
     @cached_property
     def at_points(self) -> Sampler:
@@ -162,16 +163,21 @@ def invert(values: Values) -> Values:
     }
 
 
-def _are_resolved(values: np.ndarray) -> np.ndarray:
+def _rounding_of(values: np.ndarray) -> np.ndarray:
+    """Relative rounding error (c,) of a stiffness (c, nodes), whose terms may be as large as its largest."""
+    return _ROUNDING * np.abs(values).max() / np.abs(values).min(axis=1)
+
+
+def _are_resolved(values: np.ndarray, rounding: np.ndarray) -> np.ndarray:
     """Whether interpolants through the nodes of each cell resolve functions with these values (c, nodes)."""
-    series = np.abs(values @ legendre_series(_NODES).T)
-    return series[:, -2:].max(axis=1) <= _RESOLVED * series.max(axis=1)
+    series = np.abs(values @ legendre_series(NODES).T)
+    return series[:, -2:].max(axis=1) <= np.maximum(_RESOLVED, rounding) * series.max(axis=1)
 
 
 @cache
 def _interpolation(points: int) -> np.ndarray:
     """Values at Gauss points of the interpolants through fewer: shape (points, nodes)."""
-    return legendre.legvander(gauss_rule(points)[0], _NODES - 1) @ legendre_series(_NODES)
+    return legendre.legvander(gauss_rule(points)[0], NODES - 1) @ legendre_series(NODES)
 
 
 # Functions ----------------------------------------------------------------------------------------
@@ -228,7 +234,7 @@ class MomentSpace(SampledSpace):
         ordered = quotients.swapaxes(0, 1).reshape(-1, quotients.shape[-1])
         own = stiffness_tensor(self.spaces.beam, stiffness)[direction, direction]
         weight = self.spaces.nodes.weights * self.spaces.at_nodes(own)
-        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, _NODES)
+        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return at_points.reshape(len(on_cells), -1)
 

@@ -11,7 +11,9 @@ from scipy.linalg import eigh
 
 import beamdyn as bd
 from beamdyn.common.checks import InvalidValue
-from beamdyn.spectrum.bounds import Split, _flexibility, _reciprocal, frequency_bounds
+from beamdyn.spectrum.bounds import frequency_bounds
+from beamdyn.spectrum.flexibility import bound_flexibility, bound_reciprocal
+from beamdyn.spectrum.split import Split
 from benchmarks.cases.enclosure import (
     NondimensionalScene,
     encloses,
@@ -57,13 +59,13 @@ def test_eigenvalues_of_the_neglected_functions_stay_below_their_traces(seed: in
 
 
 def _split(case: NondimensionalScene, functions: int) -> Split:
-    flexibility = _flexibility(case.scene.beam.bending_stiffness)
+    flexibility = bound_flexibility(case.scene.beam.bending_stiffness)
     return Split(case.scene, functions, case.gamma, flexibility)
 
 
 @pytest.mark.parametrize("stiffness", [(1.0,), (1.0, -0.9), (0.7, 0.1, -0.3, 0.2)])
 def test_approximate_flexibility_is_barely_above_the_exact_one(stiffness: tuple[float, ...]) -> None:
-    excess = np.array(_reciprocal(np.array(stiffness)))
+    excess = np.array(bound_reciprocal(np.array(stiffness)))
     t = np.linspace(-1, 1, 1001)
     product = legendre.legval(t, stiffness) * legendre.legval(t, excess)
     assert (product >= 1).all()
