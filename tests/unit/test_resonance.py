@@ -14,7 +14,7 @@ import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import choose_model
 from beamdyn.scene.motion import Motion, MotionSample
-from beamdyn.steady.resonance import _bracket
+from beamdyn.modal.line_roots import bracket
 from benchmarks.cases.scenes import HARVESTER
 
 
@@ -202,7 +202,7 @@ def test_roots_between_two_nodes_are_bracketed() -> None:
         return (x - 3.4) ** 2 - 1e-6
 
     x = np.arange(8.0)
-    assert [(a < r < b) for (a, b), r in zip(_bracket(dips, x, dips(x)), (3.399, 3.401), strict=True)]
+    assert [(a < r < b) for (a, b), r in zip(bracket(dips, x, dips(x)), (3.399, 3.401), strict=True)]
 
 
 @pytest.mark.parametrize("changes", [{}, {"gravity": 9.81}])
