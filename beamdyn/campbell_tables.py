@@ -11,6 +11,7 @@ from rich.text import Text
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.equations.directions import first_drawn
 
 if TYPE_CHECKING:
     from beamdyn.campbell_diagram.crossings import LineCrossing
@@ -79,9 +80,7 @@ def _has_flap(result: Campbell) -> bool:
 
 
 def _share(result: Campbell, crossing: LineCrossing) -> list[str]:
-    """Share of flap, or else of the direction of bending, in the energy of a mode; none of one plane alone."""
-    from beamdyn.equations.directions import first_drawn
-
+    """Share of flap, or else of the direction of bending, in the energy of a mode; none of one plane."""
     if not _two_planes(result):
         return []
     scene = result.loci[result.labels.index(crossing.label)].scene
@@ -123,7 +122,13 @@ def _bounds_table(result: Campbell) -> Group:
         for mode, (low, high, width) in enumerate(zip(found.lower, found.upper, found.width, strict=True), 1):
             known = [f"{low:.10g}", f"{high:.10g}", f"{width:.0e}"] if low > 0 else ["-", f"{high:.10g}", "-"]
             rows.append((*([label] if several else []), str(mode), *known))
-    heads = *(["scene"] if several else []), "from the lowest", "at least [Hz]", "at most [Hz]", "relative width"
+    heads = (
+        *(["scene"] if several else []),
+        "from the lowest",
+        "at least [Hz]",
+        "at most [Hz]",
+        "relative width",
+    )
     at = f"{factor * result.bounds[0][1].speed:.6g} {result.unit}"
     return table(f"Guaranteed bounds at {at}, of the model", heads, rows, [0] if several else [])
 

@@ -18,12 +18,13 @@ from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
 from beamdyn.spectrum.modes import Locus, frequency_locus
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
-from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
+from beamdyn.steady.left_out_of_resonances import left_out_of_crossings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +38,7 @@ Scenes: TypeAlias = "Scene | Sequence[Scene] | Mapping[str, Scene]"
 
 @dataclass(frozen=True)
 class Campbell(StatesModelError):
-    """Natural frequencies over speed, lines that may excite them, where they cross, and how far apart they are.
+    """Natural frequencies over speed, lines that may excite them, their crossings and their margins.
 
     `left_out`, `model_error` and `left_out_effects`, computed when asked for, are what the physics left out
     would change in the speeds of the crossings (k,).
@@ -48,7 +49,8 @@ class Campbell(StatesModelError):
         One a scene.
     names : tuple of tuple of str
         Names of the modes of each scene: "flap 1", "edge 1" by the direction in which they mostly bend at the
-        first speed; "mode 1" where the bending angle is no whole number of quarter turns.
+        first speed; "mode 1" where the bending angle is no whole number of quarter turns, and of a beam in
+        one plane that does not point outward.
     loci : tuple of Locus
         Natural frequencies of each scene, tracked, with errors and confidence.
     lines : tuple of Line
@@ -92,7 +94,10 @@ class Campbell(StatesModelError):
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]
-            effects.append(left_out_of_resonances(locus.scene, own, locus.frequency.shape[1]))
+            modes = locus.frequency.shape[1]
+            effects.append(
+                left_out_of_crossings(locus.model, own, modes) if own else nothing_known(locus.scene)
+            )
             sizes.append(len(own))
         return _join(effects, sizes)
 
@@ -316,8 +321,9 @@ def _with_operation(
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
     """Names of the modes by the direction in which each mostly bends at the first speed."""
-    words = [word for _, word in name_directions(locus.scene.mount)]
-    if "flap" not in words:
+    words, mount = [word for _, word in name_directions(locus.scene.mount)], locus.scene.mount
+    is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0  # it points outward
+    if "flap" not in words or not is_blade:
         return tuple(f"mode {i}" for i in range(1, locus.frequency.shape[1] + 1))
     chosen = [words[0 if locus.scene.physics.planes == 1 else k] for k in locus.plane_share[0].argmax(axis=1)]
     return tuple(f"{word} {chosen[: i + 1].count(word)}" for i, word in enumerate(chosen))
@@ -357,13 +363,12 @@ def _bound(
     return bounded, refused
 
 
-def _warnings(
-    named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence[Line]
-) -> Iterator[str]:
+def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence[Line]) -> Iterator[str]:
     for label, names, locus in named:
         yield from (f"{_prefix(label)}{warning}" for warning in locus.warnings)
         for line, mode in coincident(locus, lines):
-            yield f"{_prefix(label)}{names[mode]} and {line.name} coincide at every speed, which is no crossing"
+            both = f"{names[mode]} and {line.name}"
+            yield f"{_prefix(label)}{both} coincide at every speed, which is no crossing"
 
 
 def _prefix(label: str) -> str:

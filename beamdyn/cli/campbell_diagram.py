@@ -108,7 +108,13 @@ def campbell(
         write_text(crossings, csv_text(crossings_of_lines_csv(result)))
     warnings = *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
     deliver(
-        result, outputs, question, campbell_tables(result), campbell_csv(result), lambda: _draw(result), warnings
+        result,
+        outputs,
+        question,
+        campbell_tables(result),
+        campbell_csv(result),
+        lambda: _draw(result),
+        warnings,
     )
 
 
@@ -128,7 +134,9 @@ def _parse_rated(text: str | None, top_text: str, top: float) -> float | None:
         return None
     rated = parse_positive("--rated", text, "rad/s")
     if rated > top * (1 + 1e-12):
-        raise ValueError(f'--rated = "{text}": it is above --top-speed = "{top_text}"; give a higher top speed')
+        raise ValueError(
+            f'--rated = "{text}": it is above --top-speed = "{top_text}"; give a higher top speed'
+        )
     return min(rated, top)
 
 

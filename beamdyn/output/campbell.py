@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,11 +16,13 @@ from beamdyn.output.plots import set_up_axes
 from beamdyn.output.plots_by_plane import draw_by_plane, style_by_plane
 
 _FACTOR = {"rad/s": 1.0, "rpm": 30 / np.pi}
-_MOST_ABOVE = 2.5  # highest frequency shown, over that of the fastest line at the top speed
+_MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
 _HEADROOM = 1.06
+_MOST_HIDDEN = 2  # modes above the picture that the legend names
 _APART = 0.042  # of the height: least distance of two labels
 _SAME = 0.03  # of the height: distance of two labels of one name below which one of them will do
-_GREY = "0.45"
+_GREY, _DARK = "0.45", "0.1"  # of per-rev lines, and of the motion's
+_PER_REV = re.compile(r"\d+P")  # names of per-rev lines
 _MARKS: tuple[dict[str, Any], ...] = (
     {"marker": "o", "color": "black", "markerfacecolor": "white", "markersize": 6},
     {"marker": "s", "color": "black", "markerfacecolor": "white", "markersize": 6},
@@ -104,26 +107,27 @@ def plot_campbell(
     first, last = scenes[0].speeds[[0, -1]]
     top = _top(scenes, lines, last)
     ax.set(xlim=(factor * first, factor * last), ylim=(0, top))
+    at_right, above = _draw_lines(ax, factor, lines, first, last, top)
+    rows = _name_at_top(ax, factor, above, last - first)
+    _name_at_right(ax, [*at_right, *_draw_modes(ax, factor, scenes, top)], top)
     _mark_operation(ax, factor, unit, rated, operating)
-    at_right = [*_draw_lines(ax, factor, lines, first, last, top), *_draw_modes(ax, factor, scenes, top)]
-    _name_at_right(ax, at_right, top)
     _mark_crossings(ax, factor, crossings, _MARKS if operating is None else _INSIDE, top)
+    _name_hidden(ax, scenes, top)
     if len(scenes) == 1 and scenes[0].label:
-        ax.set_title(scenes[0].label, fontsize=12, pad=20)
+        ax.set_title(scenes[0].label, fontsize=12, pad=6 + 12 * rows)
     return _add_legend(ax)
 
 
 def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> float:
-    """Top of the axis of frequencies [Hz]: above the modes that lines can meet, and the first beyond."""
+    """Top of the axis of frequencies [Hz]: above the modes that are not far above all lines."""
     fastest = max(lines.values(), default=0.0) * last / (2 * np.pi)
     shown = np.concatenate([curves.frequency.ravel() for curves in scenes])
     shown = shown[np.isfinite(shown)]
     if not shown.size:
         return max(fastest, 1.0)
     highest = [np.nanmax(f) for curves in scenes for f in curves.frequency.T if np.isfinite(f).any()]
-    beyond = min((f for f in highest if f > fastest), default=max(highest))
-    within = [f for f in highest if not fastest or f <= max(_MOST_ABOVE * fastest, beyond)]
-    return _HEADROOM * max(within)
+    within = [f for f in highest if not fastest or f <= _MOST_ABOVE * fastest]
+    return _HEADROOM * max(within, default=min(highest))
 
 
 # What is drawn ------------------------------------------------------------------------------------
@@ -131,31 +135,33 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], first: float, last: float, top: float
-) -> Iterator[_Label]:
-    """Draw the lines; name those that leave through the top, and yield the labels of the others."""
-    above = []
+) -> tuple[list[_Label], list[tuple[str, str, float]]]:
+    """Draw the lines; labels of those that end at the right, and name, colour, speed where others leave."""
+    at_right, above = [], []
+    ends = np.array([first, last])
     for name, multiple in lines.items():
-        per_rev = name.endswith("P")
-        style: dict[str, Any] = {"color": _GREY, "linewidth": 0.9, "linestyle": "-" if per_rev else "-."}
-        ends = np.array([first, last])
-        ax.plot(factor * ends, multiple * ends / (2 * np.pi), zorder=1.5, **style)
-        height = multiple * last / (2 * np.pi)
-        if height <= top:
-            yield _Label(name, height, _GREY)
+        per_rev = _PER_REV.fullmatch(name)
+        colour, dashes = (_GREY, "-") if per_rev else (_DARK, "-.")
+        y = multiple * ends / (2 * np.pi)
+        ax.plot(factor * ends, y, dashes, color=colour, linewidth=0.9 if per_rev else 1.2, zorder=1.5)
+        if y[1] <= top:
+            at_right.append(_Label(name, y[1], colour))
         else:
-            above.append((name, 2 * np.pi * top / multiple))
-    _name_at_top(ax, factor, above, last - first)
+            above.append((name, colour, 2 * np.pi * top / multiple))
+    return at_right, above
 
 
-def _name_at_top(ax: Axes, factor: float, above: Sequence[tuple[str, float]], width: float) -> None:
-    """Name lines where they leave through the top: those that are close to one another in two rows."""
-    end, row = [-np.inf, -np.inf], 0
-    for name, speed in sorted(above, key=lambda pair: pair[1]):
-        half = 0.006 * (len(name) + 2) * width
-        row = next((r for r in (0, 1) if speed - half > end[r]), 1 - row)
-        end[row] = speed + half
+def _name_at_top(ax: Axes, factor: float, above: Sequence[tuple[str, str, float]], width: float) -> int:
+    """Name lines where they leave through the top, in as many rows as needed: the number of rows."""
+    ends: list[float] = []
+    for name, colour, speed in sorted(above, key=lambda line: line[2]):
+        half = 0.006 * (len(name) + 1) * width
+        row = next((r for r, end in enumerate(ends) if speed - half > end), len(ends))
+        ends[row : row + 1] = [speed + half]
         place = {"xytext": (0, 3 + 11 * row), "textcoords": "offset points", "ha": "center", "va": "bottom"}
-        ax.annotate(name, (factor * speed, 1.0), xycoords=("data", "axes fraction"), fontsize=9, color=_GREY, **place)
+        at = factor * speed, 1.0
+        ax.annotate(name, at, xycoords=("data", "axes fraction"), fontsize=9, color=colour, **place)
+    return len(ends)
 
 
 def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_Label]:
@@ -184,6 +190,20 @@ def _name_inside(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str,
         place = {"xytext": (4, 3), "textcoords": "offset points"}
         halo = [withStroke(linewidth=3, foreground="white")]
         ax.annotate(name, (x[where], y[where]), color=colour, fontsize=9, path_effects=halo, **place)
+
+
+def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
+    """Name the modes above the picture in the legend, with their least frequency where it is one scene."""
+    hidden = {
+        name: np.nanmin(y)
+        for curves in scenes
+        for name, y in zip(curves.names, curves.frequency.T, strict=True)
+        if np.isfinite(y).any() and np.nanmin(y) > top
+    }
+    if hidden:
+        named = [f"{name} ({f:.4g} Hz)" if len(scenes) == 1 else name for name, f in hidden.items()]
+        shown, more = named[:_MOST_HIDDEN], ", ..." * (len(named) > _MOST_HIDDEN)
+        ax.plot([], [], " ", label=f"above: {', '.join(shown)}{more}")
 
 
 def _name_at_right(ax: Axes, labels: Sequence[_Label], top: float) -> None:
