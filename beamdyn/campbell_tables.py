@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _PER_RAD = {"rad/s": 1.0, "rpm": 30 / np.pi}
 _DIGITS = 10  # most digits of a speed or frequency
+_SLACK = 1e-9  # relative error of a frequency, which may leave its narrow bounds by as much
 
 
 def campbell_tables(result: Campbell) -> list[Group]:
@@ -119,18 +120,22 @@ def _bounds_table(result: Campbell) -> Group:
     factor, several = _PER_RAD[result.unit], len(result.labels) > 1
     rows = []
     for label, found in result.bounds:
-        for mode, (low, high, width) in enumerate(zip(found.lower, found.upper, found.width, strict=True), 1):
+        for low, high, width in zip(found.lower, found.upper, found.width, strict=True):
+            name = _name_within(result, label, found.speed, low, high)
             known = [f"{low:.10g}", f"{high:.10g}", f"{width:.0e}"] if low > 0 else ["-", f"{high:.10g}", "-"]
-            rows.append((*([label] if several else []), str(mode), *known))
-    heads = (
-        *(["scene"] if several else []),
-        "from the lowest",
-        "at least [Hz]",
-        "at most [Hz]",
-        "relative width",
-    )
+            rows.append((*([label] if several else []), name, *known))
+    heads = *(["scene"] if several else []), "mode", "at least [Hz]", "at most [Hz]", "relative width"
     at = f"{factor * result.bounds[0][1].speed:.6g} {result.unit}"
-    return table(f"Guaranteed bounds at {at}, of the model", heads, rows, [0] if several else [])
+    return table(f"Guaranteed bounds at {at}, of the model", heads, rows, range(len(heads) - 3))
+
+
+def _name_within(result: Campbell, label: str, speed: float, low: float, high: float) -> str:
+    """Name of the mode whose frequency at a speed lies between two bounds; "-" where none does."""
+    i = result.labels.index(label)
+    locus = result.loci[i]
+    at = np.abs(locus.speeds - speed).argmin()
+    inside = (low * (1 - _SLACK) <= locus.frequency[at]) & (locus.frequency[at] <= high * (1 + _SLACK))
+    return result.names[i][inside.argmax()] if inside.any() else "-"
 
 
 def campbell_csv(result: Campbell) -> Iterator[Sequence[object]]:

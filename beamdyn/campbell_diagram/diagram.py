@@ -29,6 +29,8 @@ from beamdyn.steady.left_out_of_resonances import left_out_of_crossings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from beamdyn.output.campbell import Curves
+
 UNITS = ("rad/s", "rpm")
 _MOST_ORDERS = 100
 _SAME = 1e-9  # relative distance of an operating speed from another speed, below which they are one
@@ -120,7 +122,7 @@ class Campbell(StatesModelError):
             operating=self.operating,
         )
 
-    def _curves(self, i: int) -> Any:
+    def _curves(self, i: int) -> Curves:
         from beamdyn.output.campbell import Curves
 
         locus, label, names = self.loci[i], self.labels[i], self.names[i]

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from beamdyn.campbell_diagram.diagram import Campbell
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.scene.scene import Scene
 
 SceneFiles = Annotated[tuple[Path, ...], Parameter(name="SCENE.toml", negative=())]
@@ -87,16 +88,15 @@ def campbell(
     """
     from beamdyn import campbell
     from beamdyn.campbell_tables import campbell_csv, campbell_tables, crossings_of_lines_csv
-    from beamdyn.common.edge.html_report import Question
     from beamdyn.common.edge.rendering import csv_text
     from beamdyn.common.files import write_text
 
     outputs.check(*scenes, crossings=crossings)
     speeds, unit = _parse_top(top_speed)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
-    question = Question.on_file(
-        "beamdyn campbell", scenes[0], top_speed=top_speed, rated=rated, operating=operating,
-        per_rev=per_rev, labels=labels, **options, physics=physics,
+    question = _question(
+        scenes, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
+        **options, physics=physics,
     )  # fmt: skip
     by_label = _load(scenes, labels, physics)
     range_ = None if operating is None else _parse_range(operating)
@@ -116,6 +116,15 @@ def campbell(
         lambda: _draw(result),
         warnings,
     )
+
+
+def _question(paths: Sequence[Path], **options: object) -> Question:
+    """The command on each of its files, for the head of a report."""
+    from beamdyn.common.edge.html_report import Question
+
+    each = [Question.on_file("beamdyn campbell", path, **options) for path in paths]
+    title = f"beamdyn campbell: {', '.join(map(str, paths))}"
+    return Question(title, "\n\n".join(question.inputs for question in each))
 
 
 def _parse_top(text: str) -> tuple[Any, str]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
+from matplotlib.transforms import ScaledTranslation
 
 from beamdyn.common.pictures import COLOURS
 from beamdyn.output.plots import set_up_axes
@@ -20,6 +21,7 @@ _MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at t
 _HEADROOM = 1.06
 _MOST_HIDDEN = 2  # modes above the picture that the legend names
 _APART = 0.042  # of the height: least distance of two labels
+_LONGEST = 36  # letters of an entry of the legend above which it has two columns
 _SAME = 0.03  # of the height: distance of two labels of one name below which one of them will do
 _GREY, _DARK = "0.45", "0.1"  # of per-rev lines, and of the motion's
 _PER_REV = re.compile(r"\d+P")  # names of per-rev lines
@@ -172,7 +174,7 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
             style = style_by_plane(i if len(scenes) == 1 else k)
             draw_by_plane(ax, factor * curves.speeds, y, dashes, style)
             if np.isfinite(y[-1]) and y[-1] <= top:
-                yield _Label(name, float(y[-1]), style["color"])
+                yield _Label(name + _changed(curves, i), float(y[-1]), style["color"])
             else:
                 _name_inside(ax, factor * curves.speeds, y, name, style["color"], top)
         if len(scenes) > 1:
@@ -180,6 +182,13 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
     directions = next((curves.directions for curves in scenes if curves.directions), ())
     for dashes, direction in zip(("-", "--"), directions, strict=False):
         ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=f"mostly {direction}")
+
+
+def _changed(curves: Curves, mode: int) -> str:
+    """What a mode mostly is at the last speed, in brackets, if that is not what it was named after."""
+    if curves.solid is None or curves.directions is None or curves.solid[0, mode] == curves.solid[-1, mode]:
+        return ""
+    return f" ({curves.directions[0 if curves.solid[-1, mode] else 1]})"
 
 
 def _name_inside(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str, top: float) -> None:
@@ -286,7 +295,8 @@ def _add_legend(ax: Axes) -> Axes:
     """Add a legend below the axes, where it covers nothing."""
     handles, labels = ax.get_legend_handles_labels()
     if labels:
-        columns = 3 if max(map(len, labels)) <= 36 else 2
-        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.12)}
-        ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, **place)
+        columns = 3 if max(map(len, labels)) <= _LONGEST else 2
+        below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)  # inch: for the x label
+        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
+        ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
     return ax

@@ -169,7 +169,8 @@ def test_results_are_written_and_drawn(tmp_path) -> None:
     assert found.plot().get_yscale() == "log"
     crossings = bd.resonance_speeds(ROLLING, 150.0)
     crossings.save(tmp_path / "crossings.json")
-    labels = [text.get_text() for text in crossings.plot().get_legend().get_texts()]
+    drawn = crossings.plot()
+    labels = [text.get_text() for text in (*drawn.get_legend().get_texts(), *drawn.texts)]
     assert {"road +", "road -", "forced", "parametric", "mode 1"} <= set(labels)
     pyplot.close("all")
 
