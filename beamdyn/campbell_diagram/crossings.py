@@ -109,7 +109,7 @@ def find_crossings(
         if (mode := _tracked_mode(locus, root, frequencies[root.place])) is None:
             continue  # one of the further modes, which are only there for the tracking
         node = _node(locus, root.speed)
-        error = locus.error[node : node + 2, mode].max() * frequencies[root.place]
+        error = float(locus.error[node : node + 2, mode].max() * frequencies[root.place])
         along, across = share[root.place].tolist()
         found.append(
             LineCrossing(
@@ -119,7 +119,7 @@ def find_crossings(
                 name=names[mode],
                 speed=root.speed,
                 frequency=float(frequencies[root.place] / (2 * np.pi)),
-                error=float(error / abs(root.slope * root.speed)) + ROUNDING,
+                error=error / abs(root.slope * root.speed) + float(ROUNDING),
                 confidence=float(locus.confidence[: node + 2, mode].min()),
                 plane_share=(along, across),
                 operating=bool(low <= root.speed <= high),

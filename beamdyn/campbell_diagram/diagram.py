@@ -237,6 +237,7 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
     """The scenes by their labels."""
     if isinstance(scenes, Scene):
         return {"": scenes}
+    by_label: dict[str, Any]
     if isinstance(scenes, Mapping):
         by_label = {**scenes}
         for label in by_label:

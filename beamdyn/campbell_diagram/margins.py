@@ -89,6 +89,6 @@ def _nearest(
         if not np.isfinite(ratio).any():
             continue  # unstable, or free to turn at the frequency 0
         size = np.where(np.isfinite(ratio), np.abs(ratio), np.inf)
-        s, n = np.unravel_index(size.argmin(), size.shape)
+        s, n = divmod(int(size.argmin()), len(lines))
         speed, here = float(locus.speeds[at[s]]), float(frequency[s])
         yield Margin(label, mode + 1, name, where, lines[n], speed, here, float(ratio[s, n]))

@@ -242,7 +242,7 @@ def draw(result: bd.Campbell):
     ax = result.plot(figure.subplots())
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure.canvas.draw()
+        figure.draw_without_rendering()
     return ax
 
 
@@ -291,7 +291,7 @@ def test_many_close_labels_are_moved_apart() -> None:
     figure = Figure(figsize=(8.5, 6.0), layout="constrained")
     names = tuple(f"mode {i}" for i in range(8))
     ax = plot_campbell([Curves(speeds, near, names)], {"3P": 3.0}, {}, figure.subplots())
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     assert len(ax.texts) == 9 and not overlapping(ax)
 
 
