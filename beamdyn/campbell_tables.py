@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _PER_RAD = {"rad/s": 1.0, "rpm": 30 / np.pi}
 _DIGITS = 10  # most digits of a speed or frequency
-_SLACK = 1e-9  # relative error of a frequency, which may leave its narrow bounds by as much
+_NEAR = 1e-3  # relative distance of a frequency from its upper bound, which is close
 
 
 def campbell_tables(result: Campbell) -> list[Group]:
@@ -121,21 +121,21 @@ def _bounds_table(result: Campbell) -> Group:
     rows = []
     for label, found in result.bounds:
         for low, high, width in zip(found.lower, found.upper, found.width, strict=True):
-            name = _name_within(result, label, found.speed, low, high)
-            known = [f"{low:.10g}", f"{high:.10g}", f"{width:.0e}"] if low > 0 else ["-", f"{high:.10g}", "-"]
+            name, least, wide = _name_below(result, label, found.speed, high), f"{low:.10g}", f"{width:.0e}"
+            known = [least, f"{high:.10g}", wide] if 0 < low <= high else ["-", f"{high:.10g}", "-"]
             rows.append((*([label] if several else []), name, *known))
     heads = *(["scene"] if several else []), "mode", "at least [Hz]", "at most [Hz]", "relative width"
     at = f"{factor * result.bounds[0][1].speed:.6g} {result.unit}"
     return table(f"Guaranteed bounds at {at}, of the model", heads, rows, range(len(heads) - 3))
 
 
-def _name_within(result: Campbell, label: str, speed: float, low: float, high: float) -> str:
-    """Name of the mode whose frequency at a speed lies between two bounds; "-" where none does."""
+def _name_below(result: Campbell, label: str, speed: float, high: float) -> str:
+    """Name of the mode whose frequency at a speed is at an upper bound; "-" where none is near."""
     i = result.labels.index(label)
     locus = result.loci[i]
-    at = np.abs(locus.speeds - speed).argmin()
-    inside = (low * (1 - _SLACK) <= locus.frequency[at]) & (locus.frequency[at] <= high * (1 + _SLACK))
-    return result.names[i][inside.argmax()] if inside.any() else "-"
+    distance = np.abs(locus.frequency[np.abs(locus.speeds - speed).argmin()] / high - 1)
+    near = np.flatnonzero(distance < _NEAR)
+    return result.names[i][near[distance[near].argmin()]] if near.size else "-"
 
 
 def campbell_csv(result: Campbell) -> Iterator[Sequence[object]]:

@@ -356,11 +356,13 @@ def _lines_of_motion(locus: Locus) -> list[Line]:
 def _bound(
     named: Sequence[tuple[str, Sequence[str], Locus]], speed: float
 ) -> tuple[list[tuple[str, FrequencyBounds]], list[str]]:
-    """Guaranteed bounds of each scene at a speed, and why others have none."""
+    """Guaranteed bounds of each scene at a speed; what limits them, and why others have none."""
     bounded, refused = [], []
     for label, names, locus in named:
         try:
-            bounded.append((label, frequency_bounds(locus.scene, float(speed), len(names))))
+            found = frequency_bounds(locus.scene, float(speed), len(names))
+            bounded.append((label, found))
+            refused += [f"{_prefix(label)}{warning}" for warning in found.warnings]
         except ValueError as error:
             refused.append(f"{_prefix(label)}no guaranteed bounds: {error}")
     return bounded, refused
