@@ -12,6 +12,9 @@ from beamdyn._version import __version__ as __version__
 
 # The public names by their module.
 _NAMES = {
+    "campbell_diagram.crossings": ("LineCrossing",),
+    "campbell_diagram.diagram": ("Campbell", "campbell"),
+    "campbell_diagram.margins": ("Margin",),
     "common.results": ("load",),
     "config": ("ConfigError", "load_scene"),
     "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
@@ -73,6 +76,9 @@ __all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
+    from beamdyn.campbell_diagram.crossings import LineCrossing
+    from beamdyn.campbell_diagram.diagram import Campbell, campbell
+    from beamdyn.campbell_diagram.margins import Margin
     from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.results import load
     from beamdyn.config import load_scene

@@ -15,8 +15,9 @@ from beamdyn.app.inputs import DRAGS, TABLES, read
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.cautions import critical_label, describe_choice, notes_of, warnings_of
 from beamdyn.common.app.screens import Screen
+from beamdyn.output.campbell import Curves, plot_campbell
 from beamdyn.output.notes import note_below
-from beamdyn.output.plots import mark_critical, plot_campbell
+from beamdyn.output.plots import mark_critical
 from beamdyn.result_rows import locus_csv
 from beamdyn.result_tables import crossings_table, locus_table
 from beamdyn.spectrum.critical import CriticalPoint
@@ -85,7 +86,9 @@ def draw(answer: Frequencies, _: float = 0.0) -> Figure:
         answer.crossings.plot(ax)
     else:  # crossings of other frequencies than these
         lines = {line.name: line.multiple for line in answer.crossings.lines}
-        plot_campbell(answer.locus.speeds, answer.locus.frequency, lines, {}, ax)
+        names = tuple(f"mode {i}" for i in range(1, answer.locus.frequency.shape[1] + 1))
+        curves = Curves(answer.locus.speeds, answer.locus.frequency, names)
+        plot_campbell([curves], lines, {}, ax)
     mark_critical(ax, answer.critical.speed, critical_label(answer.critical))
     return note_below(figure, notes_of(answer.locus))
 

@@ -1,6 +1,7 @@
 """The command ``beamdyn``.  What is heavy is imported by the commands that need it."""
 
 from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
+    campbell_diagram,
     decks,
     equilibria,
     frequencies,

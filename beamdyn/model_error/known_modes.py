@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -10,6 +11,7 @@ from scipy.optimize import linear_sum_assignment
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
 from beamdyn.modal.eigen import Eigen
+from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.model import Model
 from beamdyn.modal.uncoupled import solver_of
 from beamdyn.model_error.pencils import KEPT
@@ -66,10 +68,14 @@ class Simple:
             embedded[equations.blocks[name]] = vectors[place]
         return embedded
 
+    @cached_property
+    def _solver(self) -> Eigensolver:
+        return solver_of(self.equations)
+
     def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Eigenvalues (m,) and modes (n, m) of these equations, each the nearest to one that is given."""
-        solver = solver_of(self.equations)
-        found: Eigen = solver.solve(np.array([speed]), min(len(eigenvalue) + _EXTRA_MODES, solver.size))
+        count = min(len(eigenvalue) + _EXTRA_MODES, self._solver.size)
+        found: Eigen = self._solver.solve(np.array([speed]), count)
         s, v = found.eigenvalue[0], found.vector[0]
         _, order = linear_sum_assignment(np.abs(eigenvalue[:, None] - s[None, :]))
         return s[order], v[:, order]

@@ -126,51 +126,6 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
     return add_legend(ax)
 
 
-def plot_campbell(
-    speeds: np.ndarray,
-    frequency: np.ndarray,
-    lines: Mapping[str, float],
-    crossings: Mapping[str, Sequence[tuple[float, float]]],
-    ax: Axes | None = None,
-) -> Axes:
-    """Draw natural frequencies, excitation lines and their crossings over speed: Campbell's diagram.
-
-    Parameters
-    ----------
-    speeds : ndarray, shape (S,)
-        Angular speeds [rad/s].
-    frequency : ndarray, shape (S, m)
-        Natural frequencies [Hz]; nan leaves a gap.
-    lines : mapping of str to float
-        Excitation lines: their frequencies as multiples of the speed.
-    crossings : mapping of str to sequence of (float, float)
-        Speed [rad/s] and natural frequency [Hz] of crossings of each kind.
-    ax : Axes, optional
-        Where to draw; new axes if not given.
-
-    Returns
-    -------
-    Axes
-    """
-    ax = _plot_over_speed(speeds, frequency, "frequency [Hz]", ax, None, None)
-    fastest = max(lines.values(), default=np.inf) * np.abs(speeds).max() / (2 * np.pi)
-    top = 1.15 * min(np.nanmax(frequency), max(fastest, np.nanmax(frequency[:, 0])))  # where lines can cross
-    for i, (name, multiple) in enumerate(lines.items(), np.shape(frequency)[1]):
-        ax.plot(speeds, multiple * speeds / (2 * np.pi), label=name, linewidth=1.2, **_line_style(i))
-    for marker, (kind, points) in zip("os^v", crossings.items(), strict=False):
-        if points:
-            ax.plot(
-                *zip(*points, strict=True),
-                marker,
-                color="black",
-                markerfacecolor="white",
-                label=kind,
-                zorder=3,
-            )
-    ax.set_ylim(0, top)
-    return add_legend(ax)
-
-
 def plot_response(
     speeds: np.ndarray,
     amplitude: np.ndarray,

@@ -46,7 +46,7 @@ def plot_locus_by_plane(
     names = labels or number_modes(np.shape(frequency)[1])
     columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, names, strict=True)
     for i, (y, solid, label) in enumerate(columns):
-        _draw_by_plane(ax, np.asarray(speeds), y, solid, _style_by_plane(i))
+        draw_by_plane(ax, np.asarray(speeds), y, solid, style_by_plane(i))
         _name_colour(ax, label, i)
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
     return _name_planes(ax, [f"mostly {direction}" for direction in directions])
@@ -82,13 +82,13 @@ def plot_shapes_by_plane(
     scaled = shapes / np.where(largest == 0, 1.0, largest)
     ax = set_up_shapes(ax)
     for i, (both, label) in enumerate(zip(scaled, labels, strict=True)):
-        ax.plot(x, both[0], "-", **_style_by_plane(i))
-        ax.plot(x, both[1], "--", **_style_by_plane(i))
+        ax.plot(x, both[0], "-", **style_by_plane(i))
+        ax.plot(x, both[1], "--", **style_by_plane(i))
         _name_colour(ax, label, i)
     return _name_planes(ax, directions)
 
 
-def _draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
+def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
     """Draw a line whose dashes change from sample to sample; its pieces meet at a sample."""
     starts = [0, *(np.flatnonzero(np.diff(solid)) + 1).tolist()]
     isolated = is_isolated(y)
@@ -99,7 +99,7 @@ def _draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, st
             line.set(marker=".", markevery=alone)
 
 
-def _style_by_plane(i: int) -> dict[str, Any]:
+def style_by_plane(i: int) -> dict[str, Any]:
     """Colour of line i, and its width, which changes when the colours are used up."""
     cycle, colour = divmod(i, len(COLOURS))
     return {"color": COLOURS[colour], "linewidth": max(1.8 - 0.6 * cycle, 0.6)}
@@ -107,7 +107,7 @@ def _style_by_plane(i: int) -> dict[str, Any]:
 
 def _name_colour(ax: Axes, label: str, i: int) -> None:
     """Name line i in the legend by its colour, as its dashes may change."""
-    style = _style_by_plane(i)
+    style = style_by_plane(i)
     ax.plot([], [], label=label, color=style["color"], linewidth=3 * style["linewidth"])
 
 

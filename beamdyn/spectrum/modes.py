@@ -375,6 +375,8 @@ class Locus(StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
+    ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
+    place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
@@ -466,6 +468,8 @@ def frequency_locus(
         provenance=_provenance(solution, start),
         scene=scene,
         model=solution.model,
+        ascending=solution.eigen.eigenvalue,
+        place=order[:, :modes],
     )
 
 

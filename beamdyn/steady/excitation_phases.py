@@ -6,13 +6,19 @@ motion's `road_multiple`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
-from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, fourier_coefficients, is_resolved
+from beamdyn.steady.harmonic_balance import (
+    Pair,
+    PeriodicSystem,
+    fourier_coefficients,
+    generate_harmonics,
+    is_resolved,
+)
 
 _STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")  # of a motion
 _GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
@@ -128,3 +134,25 @@ def name_line(motion: Motion, harmonic: Pair) -> Line:
         f"{abs(n) if abs(n) > 1 else ''} {name}".strip() for n, name in ((k, "road"), (j, "rotation")) if n
     )
     return Line((" - " if j * k < 0 else " + ").join(parts) or "static", multiple)
+
+
+def excitation_lines(
+    system: PeriodicSystem, motion: Motion | None, order: int
+) -> tuple[list[Line], list[Line]]:
+    """Lines of the load and of the stiffness, up to an order."""
+    motion = check_steady_state(motion)
+
+    def generate_lines(start: Iterable[Pair], interactions: int) -> list[Line]:
+        levels = generate_harmonics(start, system.coupling, interactions)
+        return distinct_lines(name_line(motion, h) for level in levels for h in level)
+
+    return generate_lines(system.load_harmonics, order - 1), generate_lines([(0, 0)], order)
+
+
+def distinct_lines(lines: Iterable[Line]) -> list[Line]:
+    """One line of each frequency, ascending, without the static one."""
+    distinct: dict[float, Line] = {}
+    for line in lines:
+        if line.multiple > 1e-12:
+            distinct.setdefault(round(line.multiple, 12), line)
+    return [distinct[multiple] for multiple in sorted(distinct)]

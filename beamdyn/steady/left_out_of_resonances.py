@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from beamdyn.modal.choice import choose_model
+from beamdyn.modal.model import Model
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.of_modes import left_out_of_modes, nothing_known
 from beamdyn.scene.motion import Line
@@ -52,6 +53,12 @@ def left_out_of_resonances(scene: Scene, crossings: Sequence[CrossingOfLine], mo
         return nothing_known(scene)
     speeds = np.array([c.speed for c in crossings])
     model = choose_model(scene, "ritz", speeds, modes + _FURTHER_MODES, 1e-6)
+    return left_out_of_crossings(model, crossings, modes)
+
+
+def left_out_of_crossings(model: Model, crossings: Sequence[CrossingOfLine], modes: int) -> LeftOutEffects:
+    """As `left_out_of_resonances`, of crossings (at least one) that were found with a model."""
+    speeds = np.array([c.speed for c in crossings])
     at = np.concatenate([speeds, speeds * (1 + _STEP), speeds * (1 - _STEP)])
     here, above, below = model.solver.solve(at, modes + _FURTHER_MODES).eigenvalue.reshape(3, len(speeds), -1)
     effects = left_out_of_modes(model, speeds, here)

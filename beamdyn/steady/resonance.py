@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations_with_replacement
@@ -10,7 +10,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
@@ -19,17 +18,17 @@ from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.error_estimate import solve_with_error
+from beamdyn.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import UncoupledSolver
 from beamdyn.model_error.choice import choose_physics
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.motion import Line, Motion
+from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
-from beamdyn.steady.excitation_phases import check_steady_state, name_line, periodic_system
-from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, generate_harmonics
+from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
 from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
 
 if TYPE_CHECKING:
@@ -38,8 +37,6 @@ if TYPE_CHECKING:
 _HIGHEST_ORDER = 20  # that may be asked for: ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
 _BENT_NODES = 100  # the same where each takes an equilibrium, about which the loci are smooth
-_ROUNDING = 4 * np.finfo(float).eps
-_COINCIDENT = 1e-8  # largest distance of a line from a frequency over the speeds, over it: rounding
 _FURTHER_MODES = 2  # of other parts, which may come below those that are sought
 
 
@@ -138,14 +135,15 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
-        from beamdyn.output.plots import plot_campbell
+        from beamdyn.output.campbell import Curves, plot_campbell
 
         lines = {line.name: line.multiple for line in self.lines}
         marked = {
             kind: [(c.speed, c.frequency) for c in self if c.kind == kind]
             for kind in ("forced", "parametric")
         }
-        return plot_campbell(self.speeds, self.frequency, lines, marked, ax)
+        names = tuple(f"mode {i}" for i in range(1, self.frequency.shape[1] + 1))
+        return plot_campbell([Curves(self.speeds, self.frequency, names)], lines, marked, ax)
 
 
 @announced
@@ -201,7 +199,7 @@ def resonance_speeds(
     sought = [(part.loci, each) for part in parts for each in part.resonances(order)]
     crossings = [c for loci, each in sought for c in loci.crossings(*each)]
     names = str(model.discretization), str(model.coarser.discretization)
-    forced, parametric = (_distinct(line for p in parts for line in p.lines[kind]) for kind in (0, 1))
+    forced, parametric = (distinct_lines(line for p in parts for line in p.lines[kind]) for kind in (0, 1))
     return Crossings(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
         lines=tuple(forced),
@@ -256,19 +254,6 @@ def _softest_spring(scene: Scene) -> tuple[str, float]:
     return name, spring
 
 
-def _excitation_lines(
-    system: PeriodicSystem, motion: Motion | None, order: int
-) -> tuple[list[Line], list[Line]]:
-    """Lines of the load and of the stiffness, up to an order."""
-    motion = check_steady_state(motion)
-
-    def generate_lines(start: Iterable[Pair], interactions: int) -> list[Line]:
-        levels = generate_harmonics(start, system.coupling, interactions)
-        return _distinct(name_line(motion, h) for level in levels for h in level)
-
-    return generate_lines(system.load_harmonics, order - 1), generate_lines([(0, 0)], order)
-
-
 @dataclass(frozen=True)
 class _Part:
     """Modes that no term couples with others, and the lines of their loads and of their stiffness.
@@ -300,7 +285,7 @@ def _find_parts(model: Model, top: float, modes: int, order: int) -> list[_Part]
     motion = model.scene.motion
     system = periodic_system(model.equations, motion, np.array([top]))
     return [
-        _Part(loci, *(_excitation_lines(system.part(loci.places), motion, n) for n in (order, order + 1)))
+        _Part(loci, *(excitation_lines(system.part(loci.places), motion, n) for n in (order, order + 1)))
         for loci in _split(model, top, modes)
     ]
 
@@ -354,15 +339,6 @@ def _warn_of_bending(model: Model, crossings: Sequence[Crossing]) -> Iterator[st
         speeds = np.array(sorted(c.speed for c in crossings))
         deflection = np.linalg.norm(model.static_tips(speeds), axis=1)
         yield from warn_of_static_deflection(deflection, model.scene.beam.length, speeds)
-
-
-def _distinct(lines: Iterable[Line]) -> list[Line]:
-    """One line of each frequency, ascending, without the static one."""
-    distinct: dict[float, Line] = {}
-    for line in lines:
-        if line.multiple > 1e-12:
-            distinct.setdefault(round(line.multiple, 12), line)
-    return [distinct[multiple] for multiple in sorted(distinct)]
 
 
 def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
@@ -426,9 +402,8 @@ class _Loci:
         def detuning(speed: float) -> float:
             return float(self.frequencies(np.array([speed]))[0, indices].sum()) - line.multiple * speed
 
-        for a, b in _bracket(detuning, self.speeds, self._detunings(line, indices)):
-            speed = brentq(detuning, a, b, xtol=_ROUNDING * b, rtol=_ROUNDING)  # pyright: ignore[reportArgumentType]
-            yield self._crossing(kind, line, indices, float(speed), (detuning(b) - detuning(a)) / (b - a))
+        for speed, slope in find_roots(detuning, self.speeds, self._detunings(line, indices)):
+            yield self._crossing(kind, line, indices, speed, slope)
 
     def count_crossings(self, line: Line, indices: tuple[int, ...]) -> int:
         """Count the crossings of a line by the changes of sign over the speeds of the locus."""
@@ -438,8 +413,7 @@ class _Loci:
 
     def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
         """Whether a line equals a natural frequency, or the sum of two, at every speed: a hinged beam's."""
-        distance, own = self._detunings(line, indices), self.values[:, indices].sum(axis=1)
-        return bool(np.abs(distance).max() <= _COINCIDENT * own.max())
+        return coincides(self._detunings(line, indices), self.values[:, indices].sum(axis=1))
 
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:
         """A sentence on a line that equals a natural frequency at every speed."""
@@ -464,7 +438,7 @@ class _Loci:
             speed=speed,
             frequency=float(omega[indices[0]] / (2 * np.pi)),
             kind=kind,
-            error=float(self._error(speed, omega[list(indices)]).sum() / abs(slope * speed)) + _ROUNDING,
+            error=float(self._error(speed, omega[list(indices)]).sum() / abs(slope * speed)) + ROUNDING,
             second_mode=numbered[1][0] if len(numbered) > 1 else None,
             plane_share=shares[0],
             second_plane_share=shares[1] if len(numbered) > 1 else None,
@@ -495,19 +469,3 @@ class _Loci:
         """Share of the kinetic energy of a mode (n, 1) in the two directions."""
         along, across = plane_share(self.model.equations, vector[None])[0, 0].tolist()
         return along, across
-
-
-def _bracket(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
-    """Bracket the roots of a function f with values y at x, also pairs of roots between two nodes."""
-    for k in range(len(x) - 1):
-        if y[k] * y[k + 1] < 0 or (y[k + 1] == 0 and y[k] != 0):
-            yield float(x[k]), float(x[k + 1])
-    size = np.abs(y)
-    dips = (
-        (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:]) & (y[1:-1] * y[:-2] > 0) & (y[1:-1] * y[2:] > 0)
-    )
-    for k in np.flatnonzero(dips) + 1:
-        a, b, sign = float(x[k - 1]), float(x[k + 1]), np.sign(y[k])
-        minimum = minimize_scalar(lambda v, s=sign: s * f(v), bounds=(a, b), method="bounded")
-        if minimum.fun < 0:
-            yield from ((a, float(minimum.x)), (float(minimum.x), b))

@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import choose_model
+from beamdyn.modal.line_roots import bracket
 from beamdyn.scene.motion import Motion, MotionSample
-from beamdyn.steady.resonance import _bracket
 from benchmarks.cases.scenes import HARVESTER
 
 
@@ -169,7 +169,8 @@ def test_results_are_written_and_drawn(tmp_path) -> None:
     assert found.plot().get_yscale() == "log"
     crossings = bd.resonance_speeds(ROLLING, 150.0)
     crossings.save(tmp_path / "crossings.json")
-    labels = [text.get_text() for text in crossings.plot().get_legend().get_texts()]
+    drawn = crossings.plot()
+    labels = [text.get_text() for text in (*drawn.get_legend().get_texts(), *drawn.texts)]
     assert {"road +", "road -", "forced", "parametric", "mode 1"} <= set(labels)
     pyplot.close("all")
 
@@ -202,7 +203,7 @@ def test_roots_between_two_nodes_are_bracketed() -> None:
         return (x - 3.4) ** 2 - 1e-6
 
     x = np.arange(8.0)
-    assert [(a < r < b) for (a, b), r in zip(_bracket(dips, x, dips(x)), (3.399, 3.401), strict=True)]
+    assert [(a < r < b) for (a, b), r in zip(bracket(dips, x, dips(x)), (3.399, 3.401), strict=True)]
 
 
 @pytest.mark.parametrize("changes", [{}, {"gravity": 9.81}])

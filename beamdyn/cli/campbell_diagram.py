@@ -1,0 +1,193 @@
+"""The command of Campbell diagrams."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from beamdyn.cli.program import app, deliver
+from beamdyn.cli.values import (
+    Discretization,
+    ModeCount,
+    PhysicsOption,
+    Text,
+    load_with,
+    parse_positive,
+    parse_quantity,
+)
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from beamdyn.campbell_diagram.diagram import Campbell
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.scene.scene import Scene
+
+SceneFiles = Annotated[tuple[Path, ...], Parameter(name="SCENE.toml", negative=())]
+
+_SPEEDS = 301
+_SIZE = (8.5, 6.0)  # of the picture [inch]
+
+
+@app.command
+def campbell(
+    scenes: SceneFiles,
+    /,
+    *,
+    top_speed: Text,
+    rated: Text | None = None,
+    operating: Text | None = None,
+    per_rev: Text = "6",
+    modes: ModeCount = 4,
+    labels: Text | None = None,
+    bounds: Flag = False,
+    discretization: Discretization = "ritz",
+    tolerance: float | None = None,
+    crossings: Path | None = None,
+    physics: PhysicsOption = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Campbell diagram: natural frequencies over rotor speed, per-rev lines, crossings and margins.
+
+    Several scenes are drawn over one another. The speeds of the answer have the unit of --top-speed: rpm or
+    rad/s. The CSV file has the frequencies over speed.
+
+    Parameters
+    ----------
+    scenes
+        The scenes.
+    top_speed
+        Top speed of the diagram, with its unit, e.g. "15 rpm".
+    rated
+        Rated speed, at which margins are stated, with its unit, e.g. "12.1 rpm".
+    operating
+        Operating range, over which margins are stated and in which crossings are marked: lowest:highest with
+        a unit, e.g. "6.9:12.1 rpm".
+    per_rev
+        Per-rev lines: "6" for 1P to 6P, or a list of orders, e.g. "3, 6, 9".
+    modes
+        Number of modes, from the lowest.
+    labels
+        Names of the scenes, separated by commas; default: those of the files.
+    bounds
+        Also give guaranteed bounds of the frequencies at the rated speed, or else the top speed.
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    tolerance
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+    crossings
+        Write the crossings into this file: .csv.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scenes.
+    outputs
+        Output files.
+    """
+    from beamdyn import campbell
+    from beamdyn.campbell_tables import campbell_csv, campbell_tables, crossings_of_lines_csv
+    from beamdyn.common.edge.rendering import csv_text
+    from beamdyn.common.files import write_text
+
+    outputs.check(*scenes, crossings=crossings)
+    speeds, unit = _parse_top(top_speed)
+    options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
+    question = _question(
+        scenes, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
+        **options, physics=physics,
+    )  # fmt: skip
+    by_label = _load(scenes, labels, physics)
+    range_ = None if operating is None else _parse_range(operating)
+    result = campbell(
+        by_label, speeds, per_rev=_parse_orders(per_rev), rated=_parse_rated(rated, top_speed, speeds[-1]),
+        operating=range_, unit=unit, bounds=bounds, **options,
+    )  # fmt: skip
+    if crossings is not None:
+        write_text(crossings, csv_text(crossings_of_lines_csv(result)))
+    warnings = *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
+    deliver(
+        result,
+        outputs,
+        question,
+        campbell_tables(result),
+        campbell_csv(result),
+        lambda: _draw(result),
+        warnings,
+    )
+
+
+def _question(paths: Sequence[Path], **options: object) -> Question:
+    """The command on each of its files, for the head of a report."""
+    from beamdyn.common.edge.html_report import Question
+
+    each = [Question.on_file("beamdyn campbell", path, **options) for path in paths]
+    title = f"beamdyn campbell: {', '.join(map(str, paths))}"
+    return Question(title, "\n\n".join(question.inputs for question in each))
+
+
+def _parse_top(text: str) -> tuple[Any, str]:
+    """Speeds [rad/s] up to the top one, and the unit of speeds in the answer."""
+    import numpy as np
+
+    from beamdyn.common.edge.units import unit_as_written
+
+    top = parse_positive("--top-speed", text, "rad/s")
+    unit, _ = unit_as_written(text, "rad/s")
+    return np.linspace(0.0, top, _SPEEDS), "rpm" if unit == "rpm" else "rad/s"
+
+
+def _parse_rated(text: str | None, top_text: str, top: float) -> float | None:
+    if text is None:
+        return None
+    rated = parse_positive("--rated", text, "rad/s")
+    if rated > top * (1 + 1e-12):
+        raise ValueError(
+            f'--rated = "{text}": it is above --top-speed = "{top_text}"; give a higher top speed'
+        )
+    return min(rated, top)
+
+
+def _parse_range(text: str) -> tuple[float, float]:
+    """Lowest and highest operating speed [rad/s]."""
+    numbers, _, unit = text.strip().rpartition(" ")
+    ends = numbers.split(":")
+    if len(ends) != 2:
+        raise ValueError(f'--operating = "{text}": give lowest:highest and a unit, e.g. "6.9:12.1 rpm"')
+    low, high = (parse_quantity("--operating", f"{part.strip()} {unit}", "rad/s") for part in ends)
+    if not 0 <= low < high:
+        raise ValueError(f'--operating = "{text}": it must begin at 0 or above and end above its beginning')
+    return low, high
+
+
+def _parse_orders(text: str) -> Sequence[int]:
+    """Orders of the per-rev lines: 1 to a number, or those of a list."""
+    parts = [part.strip() for part in text.split(",")]
+    orders = [int(part) for part in parts if part.isdecimal() and int(part) > 0]
+    if len(orders) < len(parts):
+        raise ValueError(
+            f'--per-rev = "{text}": give the highest order, e.g. "6" for 1P to 6P, or a list of orders from '
+            'one on, e.g. "3, 6, 9"'
+        )
+    return orders if len(parts) > 1 else range(1, orders[0] + 1)
+
+
+def _load(paths: Sequence[Path], labels: str | None, physics: PhysicsOption) -> dict[str, Scene]:
+    """The scenes by their labels."""
+    names = [path.stem for path in paths] if labels is None else [part.strip() for part in labels.split(",")]
+    if len(names) != len(paths) or not all(names):
+        raise ValueError(f'--labels = "{labels}": give one label for each of {len(paths)} scenes')
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if twice:
+        remedy = "give --labels, one for each" if labels is None else "give each its own"
+        raise ValueError(f'two scenes have the label "{twice[0]}": {remedy}')
+    return {name: load_with(path, physics) for name, path in zip(names, paths, strict=True)}
+
+
+def _draw(result: Campbell) -> Figure:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=_SIZE, layout="constrained")
+    result.plot(figure.subplots())
+    return figure
