@@ -56,6 +56,7 @@ from beamdyn.modal.eigen import Solver
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
@@ -132,7 +133,8 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     ------
     ValueError
         If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
-        rotary inertia, damping, springs at the root, or planes that the twist or the bending angle couples.
+        rotary inertia, damping, springs at the root, or planes that the twist, the bending angle or the
+        precone couples.
     """
     start = perf_counter()
     check_scene(scene)
@@ -446,11 +448,13 @@ def _assemble_forms(beam: Beam, space: Space) -> np.ndarray:
 def _split_coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Parts of c_j per omega^2, the sums of the absolute values of their terms, and per -z: (4,) each."""
     tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
+    tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
     root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
-    tilt = sin(psi) ** 2 * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
-    tension = tip.mass * tip.offset * np.array([1.0, tip.offset, -root])
-    ends = np.concatenate([tilt, tension])
-    spin = np.array([1.0, -root, -(cos(psi) ** 2), ends.sum()])
+    out = tension * sin(psi) ** 2 - turning
+    tilt = out * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
+    pull = tip.mass * tip.offset * np.array([tension, tension * tip.offset, -root])
+    ends = np.concatenate([tilt, pull])
+    spin = np.array([tension, -root, -(cos(psi) ** 2 + turning * sin(psi) ** 2), ends.sum()])
     terms = np.append(np.abs(spin[:3]), np.abs(ends).sum())
     return spin, terms, np.array([0.0, 0.0, 1.0, tip.inertia])
 
