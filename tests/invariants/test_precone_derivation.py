@@ -62,13 +62,13 @@ def test_loads(quantity, sign):
     assert_equal(ours(sign).vectors.get(quantity, nothing), derived(sign).load[quantity])
 
 
-def test_no_precone_is_the_same_to_the_bit():
-    """Nothing is computed anew: each term has the coefficient, and the matrix, that it had."""
-    scene = replace(flat.scene(), mount=bd.Mount(1.0, pi, flat.scene().mount.bending_angle, precone=0.0))
-    without = replace(scene, mount=bd.Mount(1.0, pi, flat.scene().mount.bending_angle))
-    terms, before = (assemble_equations(s, PowerSeries()).terms for s in (scene, without))
-    assert [t.name for t in terms] == [t.name for t in before]
+def test_no_precone_adds_no_term_and_changes_no_factor():
+    """The factors by the precone are then 1 to the bit."""
+    mount = replace(flat.scene().mount, setting_angle=pi)
+    terms = assemble_equations(replace(flat.scene(), mount=mount), PowerSeries()).terms
     assert not any("planes" in t.name for t in terms)
+    assert {t.factor for t in terms if t.name == "centrifugal stiffening"} == {1.0}
+    assert {abs(t.factor) for t in terms if t.name == "twisting by inertia"} == {0.5}
 
 
 # Stretch ------------------------------------------------------------------------------------------
