@@ -134,7 +134,9 @@ def say_tension(scene: SampledScene) -> str:
 
 def say_softening(scene: SampledScene) -> str:
     """Say why rotation pulls the beam further from its axis."""
-    return "it bends in the plane of rotation" if IN_PLANE.is_met(scene) else "the precone has it bend outward"
+    return (
+        "it bends in the plane of rotation" if IN_PLANE.is_met(scene) else "the precone has it bend outward"
+    )
 
 
 def say_static_load(scene: SampledScene) -> str:

@@ -121,7 +121,9 @@ def _check_large_deflection(scene: Scene) -> None:
         bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
         raise InvalidValue("mount.root_stiffness", 0.0, bound, "give a soft one", "N m/rad")
     if scene.mount.precone:
-        bound = "with physics.large_deflection there is none: precone bends a beam out of one plane of bending"
+        bound = (
+            "with physics.large_deflection there is none: precone bends a beam out of one plane of bending"
+        )
         remedy = "give 0, or leave large_deflection out"
         raise InvalidValue("mount.precone", scene.mount.precone, bound, remedy, "rad")
     if min(map(abs, exact_cos_sin(scene.mount.bending_angle))) != 0:

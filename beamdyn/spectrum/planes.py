@@ -70,7 +70,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
 
 
 def _refuse_coupled_planes(scene: Scene, speed: float) -> None:
-    """Refuse two planes of bending that the twist couples, or an angle of the mount at a speed other than 0."""
+    """Refuse two planes of bending that the twist couples, or, at a speed, an angle of the mount."""
     bound = "bounds of two planes are known where nothing couples them"
     if _quarter_turns(scene.beam) is None:
         remedy = "leave it out, or model one plane"

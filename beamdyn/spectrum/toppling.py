@@ -25,7 +25,7 @@ mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If 
 With shear, of which u' has a part, S = int N / 2 - 2 int I33, and r is at least N / (kappa G A) everywhere.
 
 Precone eta multiplies all but B23 by cos^2 eta <= 1, and adds sin^2 eta I to the form, which is not negative;
-B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge, and for a short bend, are not used then.
+B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge and for a short bend are not used then.
 """
 
 from __future__ import annotations

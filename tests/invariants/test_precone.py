@@ -47,9 +47,7 @@ CASES = {
     "twisted": mounted(blade(twist=TWIST), 0.3, FLAP, 0.2),
     "tapered": mounted(blade(*TAPER, twist=TWIST), 1.0, 0.4, -0.5),
     "tip body": mounted(blade(twist=TWIST, tip=BODY), 1.0, 0.4, 0.4),
-    "stocky": mounted(
-        blade(twist=TWIST, tip=BODY, **STOCKY), 1.0, 0.4, 0.4, shear=True, rotary_inertia=True
-    ),
+    "stocky": mounted(blade(twist=TWIST, tip=BODY, **STOCKY), 1.0, 0.4, 0.4, shear=True, rotary_inertia=True),
     "on springs": mounted(blade(twist=TWIST, tip=BODY), 0.6, 1.2, 0.7, 3.0, 8.0),
     "past its critical speed": mounted(blade(second=1.0), 0.0, EDGE, 1.3),
 }

@@ -98,7 +98,7 @@ def coefficient(function, *directions, h=1.0):
 
 
 def test_stretch_and_deflection_are_coupled_by_mass():
-    """A unit mass with s along the beam and u along e: second derivatives of its energies give all factors."""
+    """A unit mass with s along the beam and u along e: second derivatives of its energies are the factors."""
     c, s = np.cos(0.7), np.sin(0.7)
     equations = assemble_equations(stretched(), PowerSeries())
     bending, stretch = equations.blocks["bending"], equations.blocks["stretch"]

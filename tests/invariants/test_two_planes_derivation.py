@@ -154,8 +154,11 @@ class Derived:
     load: dict
 
 
+IN_PLANE = QQ(0), QQ(1)  # components along b1 and b3 of the axis of rotation
+
+
 @cache
-def derive(axis=(QQ(0), QQ(1))):
+def derive(axis=IN_PLANE):
     """Lagrange's equations in axes that turn by -omega and whose origin accelerates.
 
     The axis of rotation has the given components along b1 and b3.

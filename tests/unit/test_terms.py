@@ -64,7 +64,9 @@ SCENES = {
     "precone": turned_up(1.0),
     "precone, in the plane": turned_up(0.0, planes=1),
     "precone, flapwise": turned_up(math.pi / 2, planes=1, stretch=True),
-    "precone, spin-up": replace(turned_up(0.4, stretch=True, rotary_inertia=True), motion=BLADE_SPIN_UP.motion),
+    "precone, spin-up": replace(
+        turned_up(0.4, stretch=True, rotary_inertia=True), motion=BLADE_SPIN_UP.motion
+    ),
     "on a spring": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.1)),
     "on a hinge": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.0)),
     "the other plane on a spring": replace(HARVESTER, mount=bd.Mount(0.2, second_root_stiffness=0.1)),

@@ -14,10 +14,10 @@ B > 0, is held in the plane of rotation; a section, -R < 0, is turned out of it.
 twist, bending in both planes turns them about the beam by int (u2' u3'' - u3' u2'')/2, on which their product
 of inertia works.  Derivation: docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
 
-**Precone** eta turns the beam out of the plane of rotation.  With C, S = cos eta, sin eta the axis of rotation
-is S b1 + C b3: tension has C^2, spin softening d_i d_j + S^2 n_i n_j, that energy C^2, beside -S^2 u'^T B u', and
-there are Coriolis forces between the two directions and a load by rotation along b3.  Derivation:
-tests/invariants/test_precone_derivation.py.
+**Precone** eta turns the beam out of the plane of rotation.  With C, S = cos eta, sin eta the axis of
+rotation is S b1 + C b3: tension has C^2, spin softening d_i d_j + S^2 n_i n_j, that energy C^2, beside
+-S^2 u'^T B u', and there are Coriolis forces between the two directions and a load by rotation along b3.
+Derivation: tests/invariants/test_precone_derivation.py.
 """
 
 from __future__ import annotations
@@ -216,7 +216,9 @@ class TransverseField(Field):
         "angular acceleration": Explanation("ω' c Q2", "the speed varies", (why.ACCELERATES, why.IN_PLANE)),
         "root acceleration": Explanation("-(c aO2 + s aO3) P2", why.say_static_load, (why.LOADED,)),
         "Coriolis coupling of planes": Explanation(
-            "2 ω sin(η) S23 q3'", "the precone has rotation about the beam", (why.TURNS, why.PRECONED, why.BOTH)
+            "2 ω sin(η) S23 q3'",
+            "the precone has rotation about the beam",
+            (why.TURNS, why.PRECONED, why.BOTH),
         ),
         "Euler coupling of planes": Explanation(
             "ω' sin(η) S23 q3",

@@ -9,8 +9,8 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.scene.profile import Profile
 from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged
-from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
+from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies
 
 
 def squared_frequencies(

@@ -17,7 +17,6 @@ With s = i lambda, A y + s D y + s^2 B y = 0.
 
 from __future__ import annotations
 
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, eigs, splu
@@ -68,9 +67,7 @@ def _lowest(left: sp.csc_array, turning: sp.csc_array, right: sp.csc_array, coun
     wanted = 2 * count + 6
     start = np.random.default_rng(1).normal(size=2 * n)
     values, vectors = eigs(operator, wanted, v0=start, ncv=6 * wanted, tol=0)
-    found = sorted(
-        ((1 / value).imag, k) for k, value in enumerate(values) if (1 / value).imag > 0
-    )[:count]
+    found = sorted(((1 / value).imag, k) for k, value in enumerate(values) if (1 / value).imag > 0)[:count]
     return np.array([_refined(left, turning, right, at, vectors[:n, k]) for at, k in found])
 
 
@@ -91,5 +88,3 @@ def _refined(
     if abs(s.real) > 1e-9 * abs(s):
         raise ArithmeticError(f"an eigenvalue that should be imaginary is {s}")
     return float(s.imag)
-
-
