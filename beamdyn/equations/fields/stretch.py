@@ -89,7 +89,7 @@ def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
 
 
 def _coupling(trial: Trial) -> Iterator[Term]:
-    """Yield the coupling, by the mass M12 (15), with a deflection in the plane of rotation, or any by precone."""
+    """Yield the coupling, by the mass M12 (15), with a deflection in the plane, or by precone any."""
     b, s, beam = trial.field.name, Stretch.name, trial.beam
     by_beam = trial.spaces.product(beam.mass_per_length, _CONDITIONS, trial.conditions) * beam.length
     M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(_CONDITIONS).end(0), trial.centre)

@@ -34,7 +34,7 @@ def coned_frequencies(
     blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-10
 ) -> tuple[np.ndarray, float]:
     """The lowest lambda on the first mesh that changes none of them by more than `rtol`, and that change."""
-    before, pieces = _solve(blade, gamma, count, 1), 2
+    before, pieces, change = _solve(blade, gamma, count, 1), 2, np.inf
     while pieces <= _FINEST:
         found = _solve(blade, gamma, count, pieces)
         change = float(np.max(np.abs(found / before - 1)))
