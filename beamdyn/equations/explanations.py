@@ -132,6 +132,13 @@ def say_tension(scene: SampledScene) -> str:
     return f"the root accelerates along the beam by {_enumerate(sources)}"
 
 
+def say_softening(scene: SampledScene) -> str:
+    """Say why rotation pulls the beam further from its axis."""
+    return (
+        "it bends in the plane of rotation" if IN_PLANE.is_met(scene) else "the precone has it bend outward"
+    )
+
+
 def say_static_load(scene: SampledScene) -> str:
     """Say what accelerates the root in the direction of bending."""
     sources = [source for name in _transverse(scene) for source in scene.sources(name)]
@@ -166,6 +173,8 @@ def _has_different_inertias(scene: SampledScene) -> bool:
     if tip is None:
         return False
     inertia = centrifugal_inertia(tip, scene.scene.modelled_beam.tip_twist)
+    if scene.scene.mount.precone:
+        return bool(inertia[:planes, :planes].any())
     c, s = exact_cos_sin(scene.scene.mount.bending_angle)
     out_of_plane = np.array([s, c]) if planes == 2 else np.array([s or 1.0, 0.0])
     return bool((inertia @ out_of_plane)[:planes].any())
@@ -206,6 +215,10 @@ OUT_OF_PLANE = Condition(
     lambda s: s.scene.physics.planes == 2 or exact_cos_sin(s.scene.mount.bending_angle)[1] != 0,
     "the bending angle is 0: the beam bends in the plane of rotation",
 )
+PRECONED = Condition(lambda s: s.scene.mount.precone != 0, "no precone: the beam is in the plane of rotation")
+BOTH = Condition(lambda s: s.scene.physics.planes == 2, "the beam bends in one plane")
+SOFTENED = Condition(lambda s: PRECONED.is_met(s) or IN_PLANE.is_met(s), IN_PLANE.otherwise)
+TILTED = Condition(lambda s: PRECONED.is_met(s) or OUT_OF_PLANE.is_met(s), OUT_OF_PLANE.otherwise)
 DAMPED = Condition(lambda s: s.scene.damping_ratio > 0, "no damping: the damping ratio is 0")
 TIP_BODY = Condition(lambda s: s.scene.beam.tip is not None, "no tip body")
 TIP_INERTIA = Condition(

@@ -32,6 +32,8 @@ class RootMotion:
         Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2].
     root_across : ndarray
         Acceleration c a_O3 - s a_O2 in the direction across, minus gravity [m/s2].
+
+    The axes are those of the beam, which the precone turns.
     """
 
     unity: np.ndarray
@@ -49,7 +51,7 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
     Parameters
     ----------
     mount : Mount
-        Radius r, setting angle phi and bending angle psi.
+        Radius r, setting angle phi, bending angle psi and precone eta.
     sample : MotionSample
         Motion of the carrier.
     gravity : float
@@ -69,12 +71,21 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
     tangential = v1 * sin + v2 * cos + sample.acceleration * r
     a1 = cphi * radial - sphi * tangential
     a2 = sphi * radial + cphi * tangential
+    a1, a3 = _turn_by_precone(mount.precone, a1, v3)
     return RootMotion(
         unity=np.ones_like(omega),
         speed=omega,
         acceleration=sample.acceleration,
         speed_squared=omega**2,
         root_axial=a1,
-        root_transverse=cpsi * a2 + spsi * v3,
-        root_across=cpsi * v3 - spsi * a2,
+        root_transverse=cpsi * a2 + spsi * a3,
+        root_across=cpsi * a3 - spsi * a2,
     )
+
+
+def _turn_by_precone(eta: float, a1: np.ndarray, a3: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Components along the beam and across it, from those in the plane of rotation and along its axis."""
+    if not eta:
+        return a1, a3
+    c, s = exact_cos_sin(eta)
+    return c * a1 + s * a3, c * a3 - s * a1

@@ -20,6 +20,7 @@ from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.massless import condense, has_massless
 from beamdyn.modal.springs import (
+    factor_graded,
     find_free_turns,
     insert_free_turns,
     leave_out_slowest,
@@ -162,6 +163,9 @@ class Solver(Eigensolver):
 
     def _solve_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        on_springs = self.pencil.shift and not self.pencil.C.any() and not self._has_massless
+        if on_springs and (graded := factor_graded(self.pencil, speed)):
+            return self._solve_graded(speed, count, *graded)
         stiffness = 1 + speed**2 * self.growth
         T, n = self.basis, self.size
         damping = T.T @ (self.pencil.C + speed * self.pencil.G) @ T
@@ -185,6 +189,18 @@ class Solver(Eigensolver):
         lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
         modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
         return insert_free_turns(turns, *modes, count) if turns.size else modes
+
+    def _solve_graded(
+        self, speed: float, count: int, basis: np.ndarray, condition: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The same of gyroscopic equations on springs, in coordinates in which the stiffness is 1."""
+        M, C = (_transformed(basis, A) for A in (self.pencil.M, speed * self.pencil.G))
+        time = np.sqrt(np.trace(M) / len(M))
+        inverse, y = _solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))
+        s, z = select_lowest(inverse * time, y[: len(M)], count)
+        norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
+        rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
+        return s, basis @ (z / norm), rounding
 
     def _free_turns(self, speed: float) -> np.ndarray:
         """Mass-normalised turns about hinges (n, r) on which neither stiffness nor damping acts."""
@@ -229,6 +245,10 @@ def _shifted_stiffness(pencil: SteadyPencil) -> np.ndarray:
 def _transform_by_inverse(L: np.ndarray, A: np.ndarray) -> np.ndarray:
     """Compute L^-1 A L^-T for triangular L and symmetric A."""
     return _symmetrize(solve_triangular(L, solve_triangular(L, A, lower=True).T, lower=True))
+
+
+def _transformed(basis: np.ndarray, A: np.ndarray) -> np.ndarray:
+    return basis.T @ A @ basis
 
 
 def _symmetrize(A: np.ndarray) -> np.ndarray:

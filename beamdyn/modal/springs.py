@@ -168,6 +168,30 @@ def _lowest_if_definite(A: np.ndarray) -> float:
     return float(values[0]) if values[0] > len(A) * _EPS * values[-1] else 0.0
 
 
+def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float] | None:
+    """Coordinates in which the stiffness at a speed is 1, without the shift, which would cost digits.
+
+    Returns
+    -------
+    tuple, or None
+        The coordinates in columns (n, n), and the condition number of the stiffness with a unit diagonal;
+        None where it is not positive definite beyond rounding.
+    """
+    K = pencil.K0 + speed**2 * pencil.K2
+    diagonal = np.diag(K)
+    if diagonal.min() <= 0:
+        return None
+    scale = 1 / np.sqrt(diagonal)
+    unit = scale[:, None] * K * scale
+    values = np.linalg.eigvalsh(unit)
+    if values[0] < _GRADED:
+        return None
+    L = np.linalg.cholesky(unit)
+    return scale[:, None] * scipy.linalg.solve_triangular(L, np.eye(len(K)), lower=True).T, float(
+        values[-1] / values[0]
+    )
+
+
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
     """Coordinates (n,) in static equilibrium at a speed; nan where the stiffness is not positive definite."""
     K = pencil.K0 + speed**2 * pencil.K2
@@ -179,9 +203,14 @@ def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
 
 
 def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: 1/s (2 n,) and vectors (2 n, 2 n) with q first."""
+    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m) with q first.
+
+    Of the 2 n eigenvalues those are missing that rounding cannot tell from infinite ones.
+    """
     n, zero = len(M), np.zeros_like(M)
     A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
     s, y = scipy.linalg.eig(A, B)
+    finite = np.isfinite(s)
+    s, y = s[finite], y[:, finite]
     least = _EPS * np.abs(s).max()
     return 1 / np.where(np.abs(s) < least, 1j * least, s), y

@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.left_out import list_left_out
 from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
-from beamdyn.model_error.large_deflection import OBLIQUE, TWO_PLANES, comparable
+from beamdyn.model_error.large_deflection import REFUSED, TWO_PLANES, comparable
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.scene import Scene
 
@@ -83,6 +83,6 @@ def _with_large_deflection(scene: Scene, without: Answer, solve: Solve) -> Answe
     try:
         straight, bent = comparable(scene)
     except InvalidValue as error:
-        return Answer(unknown, OBLIQUE if str(error).startswith("mount.bending_angle") else str(error))
+        return Answer(unknown, REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")
     return _change(without, solve(bent, LARGE_DEFLECTION))

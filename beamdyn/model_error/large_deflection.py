@@ -17,7 +17,9 @@ _BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch
 TWO_PLANES = "it is solved in one plane of bending"
 HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
-EXCLUDED = TWO_PLANES, HINGED, OBLIQUE  # why it cannot be added
+PRECONED = "it is solved without precone"
+REFUSED = {"mount.bending_angle": OBLIQUE, "mount.precone": PRECONED}
+EXCLUDED = TWO_PLANES, HINGED, OBLIQUE, PRECONED  # why it cannot be added
 _NOT_FOUND = "the equilibrium was not found"
 _EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
 
@@ -55,7 +57,7 @@ def large_deflection_change(
     try:
         straight, bent = (Model(scene, model.discretization) for scene in comparable(model.scene))
     except InvalidValue as refusal:
-        reason = OBLIQUE if refusal.field == "mount.bending_angle" else HINGED
+        reason = REFUSED.get(refusal.field, HINGED)
         return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), reason
     each = [_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
     reasons = dict.fromkeys(reason for _, reason in each if reason)

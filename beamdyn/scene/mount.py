@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from math import cos, sin
 from typing import Annotated, Any
 
-from beamdyn.common.checks import InvalidValue, angle, not_negative, set_fields
+from beamdyn.common.checks import InvalidValue, angle, not_negative, refuse, set_fields
 from beamdyn.common.described import Described
 from beamdyn.scene.doubts import warn_of_degrees
 
 _SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}
+_PRECONE: Any = {"above": -math.pi / 2, "below": math.pi / 2, "remedy": "0 is in the plane of rotation"}
 _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
 
@@ -34,11 +35,15 @@ class Mount:
         inf is clamped, 0 a hinge; a scene takes finite ones up to 1e16 times EI/L of the beam.
     second_root_stiffness : float
         The same by bending in the direction across, where a second plane is modelled.
+    precone : float
+        Angle eta by which the beam leaves the plane of rotation, positive towards b3 [rad]: less than pi/2
+        either way, and only for a beam that points outward.
 
     Raises
     ------
     ValueError
-        If the radius or a stiffness is negative, or an angle exceeds one turn.
+        If the radius or a stiffness is negative, an angle exceeds one turn, or the precone is that of no
+        outward beam, or a quarter turn or more.
 
     Warns
     -----
@@ -78,11 +83,18 @@ class Mount:
     second_root_stiffness: Annotated[
         float, Described("N m/rad", "k2", "the same for bending in the direction across", **_SPRING)
     ] = math.inf
+    precone: Annotated[
+        float,
+        Described("rad", "eta", "angle of an outward beam out of the plane of rotation", **_PRECONE),
+    ] = 0.0
 
     def __post_init__(self) -> None:
         remedy = "for a beam that points outward give setting_angle = pi instead"
-        angles = {name: angle(name, getattr(self, name)) for name in ("setting_angle", "bending_angle")}
+        angles = {
+            name: angle(name, getattr(self, name)) for name in ("setting_angle", "bending_angle", "precone")
+        }
         set_fields(self, radius=not_negative("radius", self.radius, "m", remedy), **angles)
+        _check_precone(self)
         for name, value in angles.items():
             warn_of_degrees(name, value)
         for name in ("root_stiffness", "second_root_stiffness"):
@@ -92,6 +104,16 @@ class Mount:
     def root_stiffnesses(self) -> tuple[float, float]:
         """Stiffness of the root against rotation in each direction of bending [N m/rad]."""
         return self.root_stiffness, self.second_root_stiffness
+
+
+def _check_precone(mount: Mount) -> None:
+    """Refuse a precone of a beam that does not point outward, or of a quarter turn or more."""
+    bound = "it must be less than 90 deg: such a beam would stand along the axis of rotation"
+    refuse(abs(mount.precone) >= math.pi / 2, "precone", mount.precone, "rad", bound, _PRECONE["remedy"])
+    if mount.precone and exact_cos_sin(mount.setting_angle) != (-1.0, 0.0):
+        bound = "only a beam that points outward has a precone"
+        remedy = "give {other} = 180 deg (pi), or leave the precone out"
+        raise InvalidValue("precone", mount.precone, bound, remedy, "rad", other="setting_angle")
 
 
 def _spring(name: str, value: object) -> float:

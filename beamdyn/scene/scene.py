@@ -120,6 +120,12 @@ def _check_large_deflection(scene: Scene) -> None:
     if scene.mount.root_stiffness == 0:
         bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
         raise InvalidValue("mount.root_stiffness", 0.0, bound, "give a soft one", "N m/rad")
+    if scene.mount.precone:
+        bound = (
+            "with physics.large_deflection there is none: precone bends a beam out of one plane of bending"
+        )
+        remedy = "give 0, or leave large_deflection out"
+        raise InvalidValue("mount.precone", scene.mount.precone, bound, remedy, "rad")
     if min(map(abs, exact_cos_sin(scene.mount.bending_angle))) != 0:
         bound = "with physics.large_deflection it must be a multiple of 90 deg"
         remedy = "bend in the plane of rotation (0) or out of it (90 deg), or leave large_deflection out"

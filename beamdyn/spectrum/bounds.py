@@ -89,7 +89,8 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     ------
     ValueError
         If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
-        rotary inertia, damping, springs at the root, or planes that the twist or the bending angle couples.
+        rotary inertia, damping, springs at the root, or planes that the twist, the bending angle or the
+        precone couples.
     """
     start = perf_counter()
     check_scene(scene)

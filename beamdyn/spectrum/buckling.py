@@ -18,6 +18,11 @@ whatever its slope there, and D does not depend on it: a short bend at the tip g
 If T_22 < 0, or T_22 = 0 and T_12 is not, the tip body topples, however stiff the beam.  If a <= 0 and
 T >= 0, then F >= 0.
 
+**Precone** eta gives N = N_B cos^2 eta + r N_A cos eta.  Over cos^2 eta, F is the form with
+a = -r / cos eta, the coefficients 1 / cos^2 eta in place of c^2 = 1 in the plane of rotation and tan^2 eta in
+place of 0 out of it, J_e - J_1 less tan^2 eta B, and s^2 = 1 - c^2 of either sign: the integral of
+(s^2 x - a) rho A u^2 / x is not negative where s^2 L >= a.
+
 **Two planes.**  Neither bending stiffness nor twist is in F, which in the directions in the plane of
 rotation (c = 1) and out of it (s = 1) falls into two forms of this kind: a critical speed exists if it does
 in either.  A tip body has J_e - J_1 out of the plane, of the axes of its section.
@@ -142,7 +147,7 @@ class _SpinForm:
     inward : float
         a [m].
     cos_squared : float
-        c^2.
+        c^2, above 1 in the plane of rotation with precone.
     tip_mass : float
         m [kg].
     tension_at_root, tension_at_tip : float
@@ -169,18 +174,21 @@ class _SpinForm:
     def of_planes(cls, scene: Scene) -> Iterator[_SpinForm]:
         """Yield the form of a beam in one plane, or those in the plane of rotation and out of it."""
         beam, tip, a = scene.modelled_beam, scene.beam.tip or TipMass(0.0), _inward(scene)
+        cosine, sine = exact_cos_sin(scene.mount.precone)
+        slope2 = (sine / cosine) ** 2  # 0 without precone
+        B = centrifugal_inertia(tip, beam.tip_twist)
         if scene.physics.planes == 1:
             cos2, sin2 = (v**2 for v in exact_cos_sin(scene.mount.bending_angle))
-            tilt = sin2 * (tip.inertia_about_bending_direction - tip.axial_inertia)
-            yield cls.of(beam, a, cos2, sin2, tilt)
+            tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
+            yield cls.of(beam, a / cosine, cos2 + slope2, sin2 - slope2, tilt)
             return
-        n = np.array(plane_components(scene)[1])
-        yield cls.of(beam, a, 1.0, 0.0, 0.0)
-        yield cls.of(beam, a, 0.0, 1.0, float(n @ centrifugal_inertia(tip, beam.tip_twist) @ n))
+        d, n = map(np.array, plane_components(scene))
+        yield cls.of(beam, a / cosine, 1.0 + slope2, -slope2, -slope2 * float(d @ B @ d))
+        yield cls.of(beam, a / cosine, slope2, 1.0 - slope2, (1.0 - slope2) * float(n @ B @ n))
 
     @classmethod
     def of(cls, beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> _SpinForm:
-        """Compute the numbers of a beam that bends in one plane; `tilt` is s^2 (J_e - J_1)."""
+        """Compute the numbers of a beam that bends in one plane; `tilt` is what is said of J_e - J_1."""
         L, tip = beam.length, beam.tip or TipMass(0.0)
         m, eps, reach = tip.mass, tip.offset, L + tip.offset - a
         n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
@@ -205,7 +213,10 @@ class _SpinForm:
         if min(self.tension_at_root, self.tension_at_tip, self.toppling) < 0:
             return False
         flat = self.toppling == 0  # then T_12 is 0, too, and T_11 has the sign of the tension at the tip
-        return self.cos_squared == 0 or (self.inward <= 0 and (flat or self.tip_determinant >= 0))
+        if self.cos_squared == 0:
+            return True
+        pulled = self.inward <= min(0.0, (1 - self.cos_squared) * self.beam.length)
+        return pulled and (flat or self.tip_determinant >= 0)
 
     @property
     def end_mass(self) -> float:
@@ -240,23 +251,26 @@ def _least_turning(scene: Scene) -> float:
         L ** (1 + k) * _integral(mass * weight) for k, weight in ((1, FRACTION), (2, FRACTION * FRACTION))
     )
     reach = L + tip.offset
-    out = np.array(plane_components(scene)[1])
-    tilting = _tilting_resistance(scene) + np.outer(out, out) * (second + tip.mass * reach**2)
-    form = tilting - _inward(scene) * (first + tip.mass * reach) * np.eye(2)
+    d, n = plane_components(scene)
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    by_turn = (cosine**2 - sine**2) * np.outer(n, n) - sine**2 * np.outer(d, d)
+    tilting = _tilting_resistance(scene) + by_turn * (second + tip.mass * reach**2)
+    form = tilting - cosine * _inward(scene) * (first + tip.mass * reach) * np.eye(2)
     least = float(np.linalg.eigvalsh(form[np.ix_(hinges, hinges)])[0])
     size = float(np.abs(tilting).max() + abs(_inward(scene)) * (first + tip.mass * reach))
     return least if abs(least) > _ROUNDING * size else 0.0
 
 
 def _tilting_resistance(scene: Scene) -> np.ndarray:
-    """Form (2, 2) of u3' (B u')_3 of tip body and sections in a rigid turn [kg m2]."""
+    """Form (2, 2) of the spin of tip body and sections in a rigid turn [kg m2]."""
     beam = scene.modelled_beam
     B = centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist)
     for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
         B[i, j] -= beam.length * _integral(inertia)
     n = np.array(plane_components(scene)[1])
     turned = np.outer(n, n @ B)
-    return (turned + turned.T) / 2
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    return cosine**2 * (turned + turned.T) / 2 - sine**2 * B
 
 
 def _integral(profile: Profile) -> float:

@@ -427,6 +427,9 @@ def setting_angle_limits(
         remedy = "leave it out, or ask frequency_locus for the locus at a setting angle"
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
     _refuse_hinge(scene)
+    if scene.mount.precone:
+        bound = "only a beam that points outward has a precone, and the limits are setting angles of others"
+        raise InvalidValue("precone", scene.mount.precone, bound, "leave it out", "rad")
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     unresolved, scene = scene, plain_physics(scene)
     scene = replace(_without_stretch(scene), damping_ratio=0.0)

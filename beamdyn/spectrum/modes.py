@@ -32,6 +32,7 @@ from beamdyn.model_error.choice import choose_physics
 from beamdyn.model_error.large_deflection import bends
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_modes
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
@@ -279,7 +280,8 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
         return deflection, np.full(len(speeds), np.nan)
     n_a, n_b = axial_tension(beam)
     xi = np.linspace(0, 1, 101)
-    force = n_b(xi) - np.cos(mount.setting_angle) * mount.radius * n_a(xi)
+    cosine, _ = exact_cos_sin(mount.precone)
+    force = cosine**2 * n_b(xi) - cosine * np.cos(mount.setting_angle) * mount.radius * n_a(xi)
     return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
 
 

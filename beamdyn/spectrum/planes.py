@@ -38,7 +38,7 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     clamped = min(scene.mount.root_stiffnesses[: scene.physics.planes]) == math.inf
     if not (slender and clamped) or (quarters := _quarter_turns(scene.beam)) is None:
         return ()
-    if spinning and 0.0 not in exact_cos_sin(scene.mount.bending_angle):
+    if spinning and (scene.mount.precone or 0.0 not in exact_cos_sin(scene.mount.bending_angle)):
         return ()
     angle = scene.mount.bending_angle
     across = angle - math.copysign(_QUARTER, angle)
@@ -70,7 +70,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
 
 
 def _refuse_coupled_planes(scene: Scene, speed: float) -> None:
-    """Refuse two planes of bending that the twist couples, or the bending angle at a speed other than 0."""
+    """Refuse two planes of bending that the twist couples, or, at a speed, an angle of the mount."""
     bound = "bounds of two planes are known where nothing couples them"
     if _quarter_turns(scene.beam) is None:
         remedy = "leave it out, or model one plane"
@@ -79,6 +79,9 @@ def _refuse_coupled_planes(scene: Scene, speed: float) -> None:
     if speed and 0.0 not in exact_cos_sin(angle):
         remedy = "give 0 or a quarter turn, or speed = 0, or model one plane"
         raise InvalidValue("bending_angle", angle, bound, remedy, "rad")
+    if speed and scene.mount.precone:
+        remedy = "give 0, or speed = 0, or model one plane"
+        raise InvalidValue("precone", scene.mount.precone, bound, remedy, "rad")
 
 
 def _quarter_turns(beam: Beam) -> int | None:

@@ -44,6 +44,7 @@ from beamdyn.equations.root_motion import root_motion
 from beamdyn.modal.eigen import Solver
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.flexibility import bound_on_cells, bound_traces
@@ -199,10 +200,12 @@ def _search_bound(form: Callable, mass: np.ndarray, k: int, z: float, side: int)
 def _split_coefficients(scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Parts of c_j per omega^2, the sums of the absolute values of their terms, and per -z: (4,) each."""
     tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
+    tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
     root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
-    tilt = sin(psi) ** 2 * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
-    tension = tip.mass * tip.offset * np.array([1.0, tip.offset, -root])
-    ends = np.concatenate([tilt, tension])
-    spin = np.array([1.0, -root, -(cos(psi) ** 2), ends.sum()])
+    out = tension * sin(psi) ** 2 - turning
+    tilt = out * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
+    pull = tip.mass * tip.offset * np.array([tension, tension * tip.offset, -root])
+    ends = np.concatenate([tilt, pull])
+    spin = np.array([tension, -root, -(cos(psi) ** 2 + turning * sin(psi) ** 2), ends.sum()])
     terms = np.append(np.abs(spin[:3]), np.abs(ends).sum())
     return spin, terms, np.array([0.0, 0.0, 1.0, tip.inertia])

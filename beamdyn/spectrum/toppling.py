@@ -23,6 +23,9 @@ mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If 
     A = int |I23| C22^(1/2) + |B23| C22^(1/2) + (int g^2 / EI)^(1/2).
 
 With shear, of which u' has a part, S = int N / 2 - 2 int I33, and r is at least N / (kappa G A) everywhere.
+
+Precone eta multiplies all but B23 by cos^2 eta <= 1, and adds sin^2 eta I to the form, which is not negative;
+B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge and for a short bend are not used then.
 """
 
 from __future__ import annotations
@@ -72,8 +75,10 @@ def strain_limit_comes_first(scene: Scene) -> bool:
 
 
 def topples_in_slender_limit(scene: Scene) -> bool:
-    """Whether sections or a tip body topple whatever the stiffness, in a bend of no length."""
+    """Whether sections or a tip body surely topple whatever the stiffness, in a bend of no length."""
     inertia = _Inertia(scene)
+    if scene.mount.precone:
+        return False  # it is not known
     free_end = inertia.tension[-1] < inertia.moments[-1] * (inertia.components[1] ** 2).sum()
     return inertia.topples and bool(scene.physics.shear or inertia.oblique or free_end)
 
@@ -125,11 +130,16 @@ class _Inertia:
 
     @cached_property
     def body(self) -> float:
-        """Product of inertia B23 of the tip body [kg m2]; 0 within rounding, or in one plane."""
+        """Product of inertia B23 of the tip body [kg m2]; 0 within rounding, or in one plane.
+
+        With precone, it is at least as large as the factor of its work.
+        """
         if self.planes == 1:
             return 0.0
         B = self._turned(centrifugal_inertia(self.beam.tip or TipMass(0.0), self.beam.tip_twist))
-        return float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
+        cosine, sine = exact_cos_sin(self.scene.mount.precone)
+        product = float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
+        return product * max(1.0, abs(cosine**2 - 2 * sine**2))
 
     @cached_property
     def moments(self) -> np.ndarray:
@@ -195,6 +205,8 @@ class _Inertia:
     @property
     def softening_at_hinge(self) -> float:
         """The number r by the argument for a hinge, which soft springs do not harm [s2]; inf if it fails."""
+        if self.scene.mount.precone:
+            return np.inf
         width, shear = self.cells[1], self.scene.physics.shear
         tilting = float(width @ self.moments)
         spare = float(width @ self.tension) / (2 if shear else 1) - 2 * tilting

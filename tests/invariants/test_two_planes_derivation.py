@@ -154,10 +154,16 @@ class Derived:
     load: dict
 
 
+IN_PLANE = QQ(0), QQ(1)  # components along b1 and b3 of the axis of rotation
+
+
 @cache
-def derive():
-    """Lagrange's equations in axes that turn by -omega about b3 and whose origin accelerates."""
-    spin = [ZERO, ZERO, -ONE]
+def derive(axis=IN_PLANE):
+    """Lagrange's equations in axes that turn by -omega and whose origin accelerates.
+
+    The axis of rotation has the given components along b1 and b3.
+    """
+    spin = [-ONE * axis[0], ZERO, -ONE * axis[1]]
     kinetic = total(lambda a, b: dot([rate(p) for p in a], [rate(p) for p in b])) / 2
     gyroscopic = total(lambda a, b: dot([rate(p) for p in a], cross(spin, b)))
     centrifugal = total(lambda a, b: dot(cross(spin, a), cross(spin, b))) / 2

@@ -34,6 +34,11 @@ def turned(setting: float = 0.0, bending: float = 0.0) -> bd.Scene:
     return replace(HARVESTER, mount=bd.Mount(0.215, setting, bending))
 
 
+def turned_up(bending: float, planes: int = 2, **physics: bool) -> bd.Scene:
+    mount = bd.Mount(0.2, math.pi, bending, precone=0.3)
+    return bd.Scene(STRIP, mount, physics=bd.Physics(planes=planes, **physics))
+
+
 HINGED_IN_ONE = replace(in_two_planes(), mount=bd.Mount(0.2, 0.3, 0.4, second_root_stiffness=0.0))
 EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
@@ -56,6 +61,12 @@ SCENES = {
     "two planes, straight tip body": in_two_planes(replace(STRIP, twist=None), math.pi / 2),
     "shear": replace(in_two_planes(shear=True), physics=bd.Physics(shear=True, rotary_inertia=True)),
     "all": replace(COUPLED, beam=STRIP, physics=ALL),
+    "precone": turned_up(1.0),
+    "precone, in the plane": turned_up(0.0, planes=1),
+    "precone, flapwise": turned_up(math.pi / 2, planes=1, stretch=True),
+    "precone, spin-up": replace(
+        turned_up(0.4, stretch=True, rotary_inertia=True), motion=BLADE_SPIN_UP.motion
+    ),
     "on a spring": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.1)),
     "on a hinge": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.0)),
     "the other plane on a spring": replace(HARVESTER, mount=bd.Mount(0.2, second_root_stiffness=0.1)),
@@ -160,7 +171,7 @@ def test_a_motion_of_the_users_own() -> None:
 
 def test_table_and_dictionary() -> None:
     found = bd.terms(COUPLED)
-    assert len(found) == len(list(found)) == 20
+    assert len(found) == len(list(found)) == 22
     assert all(entry.name in str(found) for entry in found)
     assert json.loads(json.dumps(found.to_dict()))["entries"][0]["name"] == "mass"
     assert np.isfinite([entry.largest for entry in found]).all()
@@ -172,4 +183,4 @@ def test_command(capsys, tmp_path) -> None:
     out = capsys.readouterr().out
     assert "centrifugal stiffening" in out and "road + at 7.28319" in out
     written = json.loads(path.read_text())
-    assert len(written["entries"]) == 10 and written["left_out"][0]["name"] == "second plane of bending"
+    assert len(written["entries"]) == 11 and written["left_out"][0]["name"] == "second plane of bending"

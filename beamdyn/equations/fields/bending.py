@@ -40,7 +40,7 @@ class Bending(TransverseField):
     def complete(self, scene: Scene) -> Scene:
         """Add a tip body, damping, springs at the root, and angles at which no term vanishes."""
         body = TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5)
-        mount = Mount(1.0, 1.0, 1.0, root_stiffness=1.0, second_root_stiffness=1.0)
+        mount = Mount(1.0, math.pi, 1.0, root_stiffness=1.0, second_root_stiffness=1.0, precone=0.5)
         return replace(scene, beam=replace(scene.beam, tip=body), mount=mount, damping_ratio=0.5)
 
     def conditions(self, mount: Mount) -> RootConditions:

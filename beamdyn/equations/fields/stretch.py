@@ -15,6 +15,7 @@ from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.shear import SecondShear
 from beamdyn.equations.fields.transverse import TransverseField, Trial, plane_components
 from beamdyn.scene.beam import TipMass
+from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
 
@@ -42,6 +43,11 @@ class Stretch(Field):
         ),
         "Euler coupling of bending": Explanation(
             "-ω' c M21 q1", "the speed varies", (why.ACCELERATES, why.IN_PLANE)
+        ),
+        "spin coupling of stretch": Explanation(
+            "ω² s sin(η) cos(η) M12 q2",
+            "the precone turns the beam out of the plane of rotation",
+            (why.TURNS, why.PRECONED, why.OUT_OF_PLANE),
         ),
         "axial damping": Explanation("2 ζ Λ q1'", "the damping ratio is not 0", (why.DAMPED,)),
         "centrifugal stretching": Explanation("ω² Q1", "the carrier turns", (why.TURNS,)),
@@ -78,19 +84,24 @@ def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
     M = space.gram(beam.mass_per_length, 0) * beam.length + _tip(scene).mass * np.outer(end, end)
     yield Term("stretch mass", s, s, 2, M)
     yield Term("axial stiffness", s, s, 0, space.gram(beam.axial_stiffness, 1) / beam.length)
-    yield Term("axial spin softening", s, s, 0, M, "speed_squared", -1.0)
+    cosine, _ = exact_cos_sin(scene.mount.precone)
+    yield Term("axial spin softening", s, s, 0, M, "speed_squared", -(cosine**2))
 
 
 def _coupling(trial: Trial) -> Iterator[Term]:
-    """Yield the coupling, by the mass M12 (15), with a deflection in the plane of rotation."""
+    """Yield the coupling, by the mass M12 (15), with a deflection in the plane, or by precone any."""
     b, s, beam = trial.field.name, Stretch.name, trial.beam
     by_beam = trial.spaces.product(beam.mass_per_length, _CONDITIONS, trial.conditions) * beam.length
     M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(_CONDITIONS).end(0), trial.centre)
-    c = plane_components(trial.scene)[0][trial.direction]
+    d, n = plane_components(trial.scene)
+    cosine, sine = exact_cos_sin(trial.scene.mount.precone)
+    c, pressed = cosine * d[trial.direction], sine * cosine * n[trial.direction]
     yield Term("Coriolis coupling of stretch", s, b, 1, M12, "speed", 2 * c)
     yield Term("Coriolis coupling of bending", b, s, 1, M12.T, "speed", -2 * c)
     yield Term("Euler coupling of stretch", s, b, 0, M12, "acceleration", c)
     yield Term("Euler coupling of bending", b, s, 0, M12.T, "acceleration", -c)
+    yield Term("spin coupling of stretch", s, b, 0, M12, "speed_squared", pressed)
+    yield Term("spin coupling of stretch", b, s, 0, M12.T, "speed_squared", pressed)
 
 
 def _loads(scene: Scene, spaces: Spaces) -> Iterator[Load]:
@@ -99,7 +110,8 @@ def _loads(scene: Scene, spaces: Spaces) -> Iterator[Load]:
     length, mass, end = beam.length, beam.mass_per_length, space.end(0)
     P = space.load(mass) * length + tip.mass * end
     Q = space.load(mass * FRACTION) * length**2 + tip.mass * (length + tip.offset) * end
-    yield Load("centrifugal stretching", Stretch.name, Q, "speed_squared")
+    cosine, _ = exact_cos_sin(scene.mount.precone)
+    yield Load("centrifugal stretching", Stretch.name, Q, "speed_squared", cosine**2)
     yield Load("axial root acceleration", Stretch.name, P, "root_axial", -1.0)
 
 

@@ -13,12 +13,17 @@ u' = (u2', u3') has the centrifugal potential energy omega^2/2 u3' (B u')_3: a b
 B > 0, is held in the plane of rotation; a section, -R < 0, is turned out of it.  And as no section is free to
 twist, bending in both planes turns them about the beam by int (u2' u3'' - u3' u2'')/2, on which their product
 of inertia works.  Derivation: docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
+
+**Precone** eta turns the beam out of the plane of rotation.  With C, S = cos eta, sin eta the axis of
+rotation is S b1 + C b3: tension has C^2, spin softening d_i d_j + S^2 n_i n_j, that energy C^2, beside
+-S^2 u'^T B u', and there are Coriolis forces between the two directions and a load by rotation along b3.
+Derivation: tests/invariants/test_precone_derivation.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -107,12 +112,28 @@ class Trial:
         return body + self.space.load(inertia, 1)
 
     @cached_property
-    def Q(self) -> np.ndarray:
-        """Load under a unit angular acceleration in the direction of the field [kg m], shape (n,)."""
+    def first_moment(self) -> np.ndarray:
+        """Load under a transverse acceleration that is proportional to x [kg m], shape (n,)."""
         length, tip = self.beam.length, self.tip
         by_mass = self.space.load(self.beam.mass_per_length * FRACTION) * length**2
         reach = length + tip.offset
-        return by_mass + tip.mass * reach * self.centre + self.tilting_load(self.direction)
+        return by_mass + tip.mass * reach * self.centre
+
+    def toppling_load(self, n: tuple[float, float]) -> np.ndarray:
+        """Centrifugal inertia (n,) that tilts the sections [kg m], as rotation presses to the direction n."""
+        body = centrifugal_inertia(self.tip, self.beam.tip_twist)[self.direction] @ np.array(n)
+        load = body * self.rotation
+        if not self.rotates:
+            return load
+        for (i, j), inertia in section_tensor(self.beam, "rotary_inertia").items():
+            if i == self.direction:
+                load = load - n[j] * self.space.load(inertia, 1)
+        return load
+
+    @cached_property
+    def Q(self) -> np.ndarray:
+        """Load under a unit angular acceleration in the direction of the field [kg m], shape (n,)."""
+        return self.first_moment + self.tilting_load(self.direction)
 
     @cached_property
     def P(self) -> np.ndarray:
@@ -176,16 +197,14 @@ class TransverseField(Field):
         "mass": Explanation("M22 q2''", "always"),
         "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),
         "centrifugal stiffening": Explanation("ω² KGB q2", "the carrier turns", (why.TURNS,)),
-        "spin softening": Explanation(
-            "-ω² c² S22 q2", "it bends in the plane of rotation", (why.TURNS, why.IN_PLANE)
-        ),
+        "spin softening": Explanation("-ω² c² S22 q2", why.say_softening, (why.TURNS, why.SOFTENED)),
         "spin of the tip body": Explanation(
             "ω² s² (Je - J1) D Dᵀ q2",
             "the tip body tilts out of the plane of rotation",
-            (why.TIP_BODY, why.TIP_INERTIA, why.OUT_OF_PLANE, why.TURNS),
+            (why.TIP_BODY, why.TIP_INERTIA, why.TILTED, why.TURNS),
         ),
         "spin of sections": Explanation(
-            "-ω² s² R22 q2", "sections tilt out of the plane of rotation", (why.OUT_OF_PLANE, why.TURNS)
+            "-ω² s² R22 q2", "sections tilt out of the plane of rotation", (why.TILTED, why.TURNS)
         ),
         "twisting by inertia": Explanation(
             "ω² H (u2' u3'' - u3' u2'')/2",
@@ -196,6 +215,21 @@ class TransverseField(Field):
         "damping": Explanation("2 ζ Λ q2'", "the damping ratio is not 0", (why.DAMPED,)),
         "angular acceleration": Explanation("ω' c Q2", "the speed varies", (why.ACCELERATES, why.IN_PLANE)),
         "root acceleration": Explanation("-(c aO2 + s aO3) P2", why.say_static_load, (why.LOADED,)),
+        "Coriolis coupling of planes": Explanation(
+            "2 ω sin(η) S23 q3'",
+            "the precone has rotation about the beam",
+            (why.TURNS, why.PRECONED, why.BOTH),
+        ),
+        "Euler coupling of planes": Explanation(
+            "ω' sin(η) S23 q3",
+            "the precone has rotation about the beam, and the speed varies",
+            (why.ACCELERATES, why.PRECONED, why.BOTH),
+        ),
+        "centrifugal bending": Explanation(
+            "-ω² s sin(η) cos(η) Q2",
+            "rotation presses a beam with precone to the plane of rotation",
+            (why.TURNS, why.PRECONED, why.OUT_OF_PLANE),
+        ),
     }
 
     def conditions(self, mount: Mount) -> RootConditions:
@@ -212,8 +246,9 @@ class TransverseField(Field):
         terms = [*self._terms_with(Pair(own, own))]
         for partner in self.partners:
             if partner.is_modelled(scene):
-                above = [*self._terms_with(Pair(Trial(partner, scene, spaces), own))]
-                terms += [*above, *map(_transposed, above)]
+                pair = Pair(Trial(partner, scene, spaces), own)
+                above, skew = [*self._terms_with(pair)], [*_coriolis(pair)]
+                terms += [*above, *map(_transposed, above), *skew, *map(_transposed_skew, skew)]
         deflection = Deflection(own.space, own.P, own.Q, own.tilting_load(1 - self.direction), self.direction)
         turning = own.conditions.held == 1 and self.rotates
         return FieldEquations(own.space.size, (*terms,), (*_loads(own),), deflection, turning)
@@ -223,6 +258,7 @@ class TransverseField(Field):
         yield from self.own_stiffness(pair)
         yield from _tension(pair)
         yield from _spin(pair)
+        yield from _euler_of_turned(pair)
 
 
 def term_of(
@@ -234,6 +270,10 @@ def term_of(
 
 def _transposed(term: Term) -> Term:
     return Term(term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor)
+
+
+def _transposed_skew(term: Term) -> Term:
+    return replace(_transposed(term), factor=-term.factor)
 
 
 def _mass(pair: Pair) -> Iterator[Term]:
@@ -254,28 +294,34 @@ def _tension(pair: Pair) -> Iterator[Term]:
     reach = pair.rows.beam.length + tip.offset
     KGB = pair.integrate(n_b, 1) + tip.mass * reach * tip.offset * pair.tilts
     KGA = pair.integrate(n_a, 1) + tip.mass * tip.offset * pair.tilts
-    yield term_of("centrifugal stiffening", pair, KGB, "speed_squared")
+    cosine, _ = exact_cos_sin(pair.rows.scene.mount.precone)
+    yield term_of("centrifugal stiffening", pair, KGB, "speed_squared", cosine**2)
     yield term_of("tension by root acceleration", pair, KGA, "root_axial", -1.0)
 
 
 def _spin(pair: Pair) -> Iterator[Term]:
     """Work of rotation on masses that move in the plane of rotation, or tilt out of it."""
     d, n = plane_components(pair.rows.scene)
+    cone = exact_cos_sin(pair.rows.scene.mount.precone)
     i, j = pair.directions
-    if d[i] and d[j]:
-        yield term_of("spin softening", pair, pair.translation, "speed_squared", -(d[i] * d[j]))
+    if softening := d[i] * d[j] + cone[1] ** 2 * n[i] * n[j]:
+        yield term_of("spin softening", pair, pair.translation, "speed_squared", -softening)
     if not pair.rotate:
         return
     beam = pair.rows.beam
     body = centrifugal_inertia(pair.rows.tip, beam.tip_twist)
-    for p, q, factor in _tilting_factors(i, j, n):
+    for p, q, factor in _tilting_factors(i, j, n, cone):
         yield term_of("spin of the tip body", pair, body[p, q] * pair.tilts, "speed_squared", factor)
         sections = section_tensor(beam, "rotary_inertia").get((p, q))
         if sections is not None:
             matrix = pair.integrate(sections, 1)
             yield term_of("spin of sections", pair, matrix, "speed_squared", -factor)
     if i != j:
-        yield from _twisting(pair, body, d, n)
+        product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
+        for (p, q), inertia in section_tensor(beam, "rotary_inertia").items():
+            product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
+        matrix = _twist_by_bending(pair, product)
+        yield term_of("twisting by inertia", pair, matrix, "speed_squared", cone[0] ** 2 / 2)
 
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -284,35 +330,98 @@ def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, fl
     return (c, -s), (s, c)
 
 
-def _tilting_factors(i: int, j: int, n: tuple[float, float]) -> Iterator[tuple[int, int, float]]:
-    """Coefficients of B_pq in the matrix of u3' (B u')_3 for fields in directions i, j: p, q, factor != 0."""
+def _tilting_factors(
+    i: int, j: int, n: tuple[float, float], cone: tuple[float, float]
+) -> Iterator[tuple[int, int, float]]:
+    """Coefficients of B_pq in the matrix of the spin for fields in directions i, j: p, q, factor != 0.
+
+    It is that of C^2 u3' (B u')_3 - S^2 u'^T B u', with the cosine and sine C, S of the precone.
+    """
     B = np.zeros((2, 2))
     for q in range(2):
-        B[q, j] += n[i] * n[q] / 2
-        B[q, i] += n[j] * n[q] / 2
+        B[q, j] += cone[0] ** 2 * n[i] * n[q] / 2
+        B[q, i] += cone[0] ** 2 * n[j] * n[q] / 2
+    B[i, j] -= cone[1] ** 2
     for p, q in ((0, 0), (1, 1), (0, 1)):
         factor = B[p, q] if p == q else B[0, 1] + B[1, 0]
         if factor:
             yield p, q, float(factor)
 
 
-def _twisting(pair: Pair, body: np.ndarray, d: tuple[float, float], n: tuple[float, float]) -> Iterator[Term]:
-    """Work of rotation on sections and tip body that bending in both planes turns about the beam."""
-    beam = pair.rows.beam
-    product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
-    for (p, q), inertia in section_tensor(beam, "rotary_inertia").items():
-        product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
-    matrix = pair.integrate(product, 1, 2) - pair.integrate(product, 2, 1)
-    sign = 0.5 if pair.directions == (0, 1) else -0.5
-    yield term_of("twisting by inertia", pair, matrix, "speed_squared", sign)
+def _twist_by_bending(pair: Pair, inertia: Profile) -> np.ndarray:
+    """Integrate inertia (v' w'' - v'' w') for fields v along e1 and w along e2, or the other way round."""
+    matrix = pair.integrate(inertia, 1, 2) - pair.integrate(inertia, 2, 1)
+    return matrix if pair.directions == (0, 1) else -matrix
+
+
+# What the part of the rotation about the beam adds, in both directions ----------------------------
+
+
+def _coriolis(pair: Pair) -> Iterator[Term]:
+    """Skew coupling of the directions, by Coriolis and Euler forces."""
+    _, sine = exact_cos_sin(pair.rows.scene.mount.precone)
+    i, j = pair.directions
+    if not sine or i == j:
+        return
+    mass = pair.translation + _moment_along(pair.rows.tip) * pair.tilts
+    across = sine if i == 0 else -sine
+    yield _of_planes("Coriolis", pair, 1, mass, "speed", 2 * across)
+    yield _of_planes("Euler", pair, 0, mass, "acceleration", across)
+
+
+def _euler_of_turned(pair: Pair) -> Iterator[Term]:
+    """Work of Euler forces on sections and tip body that bending tilts and turns about the beam."""
+    _, sine = exact_cos_sin(pair.rows.scene.mount.precone)
+    if not sine or not pair.rotate or pair.rows.scene.physics.planes == 1:
+        return
+    (i, j), beam, tip = pair.directions, pair.rows.beam, pair.rows.tip
+    body = _quarter_turned(centrifugal_inertia(tip, beam.tip_twist))
+    yield _of_planes("Euler", pair, 0, body[i, j] * pair.tilts, "acceleration", -sine)
+    polar = ONE.scaled(tip.axial_inertia)
+    for (p, q), rotary in section_tensor(beam, "rotary_inertia").items():
+        factor = sine * _quarter_turned(_unit_entry(p, q))[i, j]
+        yield _of_planes("Euler", pair, 0, pair.integrate(rotary, 1), "acceleration", factor)
+        if p == q:
+            polar = polar + rotary.scaled(beam.length).outboard_integral()
+    if i != j:
+        yield _of_planes("Euler", pair, 0, _twist_by_bending(pair, polar), "acceleration", -sine / 2)
+
+
+def _of_planes(
+    force: str, pair: Pair, order: int, matrix: np.ndarray, quantity: Quantity, factor: float
+) -> Term:
+    rows, columns = pair.rows.field.name, pair.columns.field.name
+    return Term(f"{force} coupling of planes", rows, columns, order, matrix, quantity, factor)
+
+
+def _moment_along(tip: TipMass) -> float:
+    """Second moment of mass of the tip body along the beam [kg m2]: no matter how it is turned about it."""
+    return (tip.inertia + tip.inertia_about_bending_direction - tip.axial_inertia) / 2
+
+
+def _quarter_turned(B: np.ndarray) -> np.ndarray:
+    """The symmetric part of B T (2, 2) with a quarter turn T about the beam."""
+    turned = B @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    return (turned + turned.T) / 2
+
+
+def _unit_entry(p: int, q: int) -> np.ndarray:
+    matrix = np.zeros((2, 2))
+    matrix[p, q] = 1.0
+    return matrix
 
 
 def _loads(trial: Trial) -> Iterator[Load]:
-    name, (d, _) = trial.field.name, plane_components(trial.scene)
+    name, (d, n) = trial.field.name, plane_components(trial.scene)
+    cosine, sine = exact_cos_sin(trial.scene.mount.precone)
     i = trial.direction
-    yield Load("angular acceleration", name, trial.Q, "acceleration", d[i])
+    yield Load("angular acceleration", name, trial.Q, "acceleration", cosine * d[i])
     across = trial.tilting_load(1 - i)
     if across.any():
-        yield Load("angular acceleration", name, across, "acceleration", d[1 - i])
+        yield Load("angular acceleration", name, across, "acceleration", cosine * d[1 - i])
+    if sine:
+        pressed = n[i] * trial.first_moment + trial.toppling_load(n)
+        if pressed.any():
+            yield Load("centrifugal bending", name, pressed, "speed_squared", -sine * cosine)
     transverse: tuple[Quantity, Quantity] = "root_transverse", "root_across"
     yield Load("root acceleration", name, trial.P, transverse[i], -1.0)

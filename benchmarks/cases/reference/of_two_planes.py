@@ -10,6 +10,7 @@ import beamdyn as bd
 from beamdyn.scene.profile import Profile
 from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
+from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies
 
 
 def squared_frequencies(
@@ -19,6 +20,15 @@ def squared_frequencies(
     blade, unit = blade_of_scene(scene)
     squares, change = converged(blade, speed * unit, count, rtol)
     return squares / unit**2, change
+
+
+def coned_frequencies_of(
+    scene: bd.Scene, speed: float, count: int = 3, rtol: float = 1e-10
+) -> tuple[np.ndarray, float]:
+    """The lowest angular frequencies [rad/s] of a scene with precone, and how far two meshes differ."""
+    blade, unit = blade_of_scene(scene)
+    found, change = coned_frequencies(blade, speed * unit, count, rtol)
+    return found / unit, change
 
 
 def blade_of_scene(scene: bd.Scene) -> tuple[Blade, float]:
@@ -44,6 +54,7 @@ def blade_of_scene(scene: bd.Scene) -> tuple[Blade, float]:
         body=_body(beam.tip, mass, length),
         planes=physics.planes,
         breakpoints=beam.breakpoints[1:-1],
+        precone=mount.precone,
     )
     return blade, length**2 * math.sqrt(mass / stiffness)
 

@@ -46,6 +46,11 @@ class Body:
         spin = np.array([[0.0, -product / 2], [-product / 2, about_3 - self.axial]])
         return np.array([[about_3, product], [product, about_2]]), spin
 
+    @property
+    def along(self) -> float:
+        """Second moment of mass int x^2 dm along the beam."""
+        return (self.inertia + self.transverse - self.axial) / 2
+
     def product(self, psi: float) -> float:
         """E23."""
         return (self.inertia - self.transverse) * math.cos(psi) * math.sin(psi)
@@ -69,6 +74,9 @@ class Blade:
         Stiffness of the root's rotation springs along e1 and e2: infinite is clamped, 0 a hinge.
     planes
         1: bends along e1 only, and has no twist.
+    precone
+        Angle of the axis out of the plane of rotation, towards b3 [rad]; `hub` stays the distance of the root
+        from the axis of rotation.
     breakpoints
         Where properties may jump or have a kink.
     """
@@ -84,6 +92,7 @@ class Blade:
     body: Body = Body()
     planes: int = 2
     breakpoints: Sequence[float] = ()
+    precone: float = 0.0
 
     def directions(self, x: np.ndarray | float) -> np.ndarray:
         """Unit vectors of the first and second direction of bending in b2, b3: columns, shape (..., 2, 2)."""

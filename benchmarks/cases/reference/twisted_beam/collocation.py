@@ -82,14 +82,25 @@ def _places(mesh: Mesh, planes: int) -> np.ndarray:
 
 def _assemble(blade: Blade, gamma: float, mesh: Mesh, section: Section) -> tuple[sp.csc_array, sp.csc_array]:
     """A and B of A y = lambda^2 B y; unknowns: states at each piece's start and nodes, then the tip's."""
+    still, moving = rates(section, gamma)
+    return assemble(blade, mesh, still, moving, tip_conditions(blade, gamma))
+
+
+def assemble(
+    blade: Blade,
+    mesh: Mesh,
+    still: np.ndarray,
+    moving: np.ndarray,
+    at_tip: tuple[np.ndarray, np.ndarray],
+) -> tuple[sp.csc_array, sp.csc_array]:
+    """The same, from rates (pieces, nodes, 4 d, 4 d) and conditions at the tip."""
     pieces, nodes = mesh.x.shape
     d = 4 * blade.planes
     to_nodes = np.vstack([mesh.inner, mesh.weights])  # the last: to the end of the piece
-    still, moving = rates(section, gamma)
     identity = np.hstack([np.tile(-np.eye(d), (nodes + 1, 1)), np.eye((nodes + 1) * d)])
     wide = pieces * (nodes + 1) * d + d
     left, right = sp.lil_array((wide, wide)), sp.lil_array((wide, wide))
-    root, (tip, tip_inertia) = root_conditions(blade), tip_conditions(blade, gamma)
+    root, (tip, tip_inertia) = root_conditions(blade), at_tip
     left[: d // 2, :d] = root
     for k, h in enumerate(mesh.steps):
         start = k * (nodes + 1) * d

@@ -12,7 +12,6 @@ from benchmarks.cases.reference.twisted_beam.blade import Blade
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # J
-_IN_PLANE = np.diag([1.0, 0.0])  # P
 
 
 @dataclass(frozen=True)
@@ -23,7 +22,7 @@ class Section:
     compliance: np.ndarray
     flexibility: np.ndarray
     rotary: np.ndarray
-    in_plane: np.ndarray  # P
+    in_plane: np.ndarray  # m P
     spin: np.ndarray  # W
     twisting: np.ndarray  # G J / 2
     tension: np.ndarray  # N / gamma^2, shape (pieces, nodes)
@@ -31,6 +30,7 @@ class Section:
 
 def sections_at(blade: Blade, mesh: Mesh) -> Section:
     x, basis, body = mesh.x, blade.basis, blade.body
+    c, s = math.cos(blade.precone), math.sin(blade.precone)
     turned = blade.directions(x)
 
     def matrix(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -40,22 +40,28 @@ def sections_at(blade: Blade, mesh: Mesh) -> Section:
         return basis.T @ full @ basis
 
     rotary = matrix(*(f(x) for f in blade.rotary))
-    spin = np.zeros_like(rotary)
-    spin[..., 0, 1] = spin[..., 1, 0] = -rotary[..., 0, 1] / 2
-    spin[..., 1, 1] = -rotary[..., 1, 1]
-    product = mesh.outboard(rotary[..., 0, 1]) + body.product(blade.tip_angle)
+    spin = s**2 * rotary
+    spin[..., 0, 1] -= c**2 * rotary[..., 0, 1] / 2
+    spin[..., 1, 0] -= c**2 * rotary[..., 0, 1] / 2
+    spin[..., 1, 1] -= c**2 * rotary[..., 1, 1]
+    product = c**2 * (mesh.outboard(rotary[..., 0, 1]) + body.product(blade.tip_angle))
     mass = blade.mass(x)
-    reach = blade.hub + 1 + body.offset
+    reach = c * (blade.hub + c * (1 + body.offset))
     return Section(
         mass=along(mass[..., None, None] * np.eye(2)),
         compliance=along(matrix(*(1 / f(x) for f in blade.stiffness))),
         flexibility=along(matrix(*(f(x) for f in blade.flexibility))),
         rotary=along(rotary),
-        in_plane=along(mass[..., None, None] * _IN_PLANE),
+        in_plane=along(mass[..., None, None] * _pushed(blade)),
         spin=along(spin),
         twisting=along(product[..., None, None] * _TURN / 2),
-        tension=mesh.outboard(mass * (blade.hub + x)) + body.mass * reach,
+        tension=mesh.outboard(mass * c * (blade.hub + c * x)) + body.mass * reach,
     )
+
+
+def _pushed(blade: Blade) -> np.ndarray:
+    """P: by how much of a deflection a point leaves the axis of rotation."""
+    return np.diag([1.0, math.sin(blade.precone) ** 2])
 
 
 def rates(section: Section, gamma: float) -> tuple[np.ndarray, np.ndarray]:
@@ -98,14 +104,32 @@ def root_conditions(blade: Blade) -> np.ndarray:
 def tip_conditions(blade: Blade, gamma: float) -> tuple[np.ndarray, np.ndarray]:
     """C0, C1 of (C0 - lambda^2 C1) y(1) = 0: shapes (2 d, 4 d)."""
     body, basis, d = blade.body, blade.basis, blade.planes
-    inertia, spin = (basis.T @ a @ basis for a in body.moments(blade.tip_angle))
+    kinetic, flat = body.moments(blade.tip_angle)
+    c, s = math.cos(blade.precone), math.sin(blade.precone)
+    tilted = c**2 * flat - s**2 * (2 * body.along * np.eye(2) - kinetic)
+    inertia, spin = (basis.T @ a @ basis for a in (kinetic, tilted))
     one, eps = np.eye(d), body.offset
     follower = np.vstack([one, eps * one])  # the forces on u and p of one that acts on t = u + eps p
     translation = body.mass * follower @ follower.T
-    push = body.mass * follower @ basis.T @ _IN_PLANE @ basis @ follower.T
-    pull = body.mass * (blade.hub + 1 + eps) * eps * one
+    push = body.mass * follower @ basis.T @ _pushed(blade) @ basis @ follower.T
+    pull = body.mass * c * (blade.hub + c * (1 + eps)) * eps * one
     by_deflection = gamma**2 * (block_diag(0 * one, spin + pull) - push)
     by_force = np.kron(np.array([[0.0, 1.0], [1.0, 0.0]]), one)  # Q with u, M with p
     still = np.hstack([by_deflection, by_force])
     moving = np.hstack([translation + block_diag(0 * one, inertia), np.zeros((2 * d, 2 * d))])
     return still, moving
+
+
+def coriolis(blade: Blade, section: Section, gamma: float) -> tuple[np.ndarray, np.ndarray]:
+    """What precone adds to the rates, (pieces, nodes, 4 d, 4 d), and the tip's conditions, times s [1/s].
+
+    With the velocity v, the Coriolis force on a mass m is -2 gamma sin(precone) m T v in Q.
+    """
+    d, body = blade.planes, blade.body
+    across = 2 * gamma * math.sin(blade.precone) * blade.basis.T @ _TURN.T @ blade.basis
+    zero = np.zeros_like(section.mass)
+    by_rates = _blocks([[zero] * 4, [zero] * 4, [zero] * 4, [section.mass @ across, zero, zero, zero]])
+    one = np.eye(d)
+    follower = np.vstack([one, body.offset * one])
+    tip = body.mass * follower @ across @ follower.T + block_diag(0 * one, body.along * across)
+    return by_rates, np.hstack([tip, np.zeros((2 * d, 2 * d))])
