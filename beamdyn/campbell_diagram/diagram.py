@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.campbell_diagram.crossings import LineCrossing, coincident, find_crossings
 from beamdyn.campbell_diagram.margins import Margin, margins_at_rated, margins_in_range
-from beamdyn.common.checks import InvalidValue, ascending, count, kind, one_of, positive, real
+from beamdyn.common.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
 from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import DiscretizationChoice
@@ -193,7 +193,7 @@ def campbell(
         If an argument is out of its range.
     """
     start = perf_counter()
-    by_label, orders = _check_scenes(scenes), _check_orders(per_rev)
+    by_label, orders, bounds = _check_scenes(scenes), _check_orders(per_rev), flag("bounds", bounds)
     one_of("unit", unit, UNITS)
     speeds = _check_speeds(speeds)
     rated, operating = _check_operation(speeds, rated, operating)
@@ -256,10 +256,9 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:
     """Orders of the lines, ascending."""
-    try:
-        orders = [count("per_rev", n, most=_MOST_ORDERS) for n in per_rev]
-    except TypeError:
-        raise InvalidValue("per_rev", per_rev, "give whole numbers, such as range(1, 7)") from None
+    if isinstance(per_rev, str | bytes | set | dict) or not isinstance(per_rev, Iterable):
+        raise InvalidValue("per_rev", per_rev, "give whole numbers, such as range(1, 7)")
+    orders = [count("per_rev", n, most=_MOST_ORDERS) for n in per_rev]
     if not orders:
         raise InvalidValue("per_rev", per_rev, "there is no order in it; give some, such as range(1, 7)")
     return sorted(set(orders))
@@ -392,7 +391,7 @@ def _join(effects: Sequence[LeftOutEffects], sizes: Sequence[int]) -> LeftOutEff
     }
     words = {part: {k: v for e in effects for k, v in getattr(e, part).items()} for part in _IN_WORDS}
     not_modelled = tuple(dict.fromkeys(name for e in effects for name in e.not_modelled))
-    return replace(effects[0], changes=changes, not_modelled=not_modelled, **words)
+    return replace(effects[0], changes=changes, not_modelled=not_modelled, shape=(sum(sizes),), **words)
 
 
 _IN_WORDS = "not_known", "assumed", "reasons"

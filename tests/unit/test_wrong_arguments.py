@@ -69,7 +69,7 @@ CALLS = {
     "Mount": (
         bd.Mount,
         {"radius": 0.2, "setting_angle": 0.0, "bending_angle": 0.0}
-        | {"root_stiffness": 1.0, "second_root_stiffness": math.inf},
+        | {"root_stiffness": 1.0, "second_root_stiffness": math.inf, "precone": 0.0},
     ),
     "Physics": (
         bd.Physics,
@@ -151,6 +151,17 @@ CALLS = {
         | {"tolerance": 1e-3, "workers": 1, "executor": None, "store": None, "progress": None}
         | {"discretization": "ritz", "chunk": 40},
     ),
+    "campbell": (
+        bd.campbell,
+        {"scenes": [SCENE], "speeds": [0.0, 5.0], "modes": 2, "per_rev": [1, 2], "rated": 4.0}
+        | {
+            "operating": (3.0, 5.0),
+            "unit": "rpm",
+            "bounds": False,
+            "discretization": "ritz",
+            "tolerance": 0.1,
+        },
+    ),
     "terms": (bd.terms, {"scene": MOVING}),
     "tradeoff": (
         bd.tradeoff,
@@ -165,6 +176,7 @@ SAID_AS = {"driver": "load"}  # in messages
 ALLOWED = {
     **{f"Physics.{name}": {"truth", "numpy's truth"} for name in SWITCHES},
     "sweep.store": {"text"},
+    "campbell.bounds": {"truth", "numpy's truth"},
     "sweep.progress": {"class"},
     "tradeoff.progress": {"class"},
     "load_scene.path": {"text"},
@@ -207,6 +219,7 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere = {"Crossing", "GaussCollocation", "Line", "MotionSample", "Polynomial", "Profile"}
     made_elsewhere |= {"OmittedEffect"}  # in the terms of a scene
     made_elsewhere |= {"EquilibriumBranch", "JudgedEffect", "PhysicsChoice"}  # parts of results
+    made_elsewhere |= {"LineCrossing", "Margin"}  # parts of a diagram
     made_elsewhere |= {"IgnoredProperty", "PropertyStep", "ShapeCheck"}  # parts of decks
     made_elsewhere |= {"load"}  # reads files: tests/unit/test_load.py
     assert rest == made_elsewhere | {"Discretization", "Motion", "Rotation"}  # the last are base classes
