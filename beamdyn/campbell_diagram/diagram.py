@@ -256,9 +256,11 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:
     """Orders of the lines, ascending."""
-    if isinstance(per_rev, str | bytes | set | dict) or not isinstance(per_rev, Iterable):
-        raise InvalidValue("per_rev", per_rev, "give whole numbers, such as range(1, 7)")
-    orders = [count("per_rev", n, most=_MOST_ORDERS) for n in per_rev]
+    try:
+        given = () if isinstance(per_rev, str | bytes | set | dict) else tuple(per_rev)
+    except TypeError:
+        raise InvalidValue("per_rev", per_rev, "give whole numbers, such as range(1, 7)") from None
+    orders = [count("per_rev", n, most=_MOST_ORDERS) for n in given]
     if not orders:
         raise InvalidValue("per_rev", per_rev, "there is no order in it; give some, such as range(1, 7)")
     return sorted(set(orders))
