@@ -19,6 +19,8 @@ Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles below which two equilibria are one [rad]
 _PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
 
+_FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
+
 
 class NoEquilibrium(ArithmeticError):
     """The beam has no equilibrium on the branch at this speed."""
@@ -118,6 +120,16 @@ class Pushed:
         return self.load.elastica.at(q).inertia_of("root_transverse")
 
 
+def check_reach(load: SteadyLoad, speeds: np.ndarray) -> None:
+    """Raise NoEquilibrium for speeds [rad/s] at which the beam bends too sharply for any basis."""
+    most = _FASTEST * math.sqrt(load.scale)
+    if np.abs(speeds).max(initial=0.0) > most:
+        raise NoEquilibrium(
+            f"equilibria are sought up to {most:.4g} rad/s, {_FASTEST:g} times the first angular frequency "
+            "at rest"
+        )
+
+
 def follow_to(
     load: SteadyLoad, speeds: np.ndarray, q: np.ndarray | None = None, start: float = 0.0
 ) -> np.ndarray:
@@ -135,8 +147,9 @@ def follow_to(
     Raises
     ------
     NoEquilibrium
-        If the branch turns back before a speed.
+        If the branch turns back before a speed, or a speed is too large.
     """
+    check_reach(load, speeds)
     q = np.zeros(load.elastica.size) if q is None else q
     squares = speeds**2
     found = np.tile(q, (len(speeds), 1))
