@@ -19,6 +19,7 @@ from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shi
 from beamdyn.scene.scene import Scene
 
 _LOST = "it turns a mode into others"
+_UNSTABLE = "it is judged on the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
 _AMONG = 4  # modes with the effect for each one without, among which that is sought
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
@@ -56,13 +57,15 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
         return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
-    found = _gather(simple, change, None if model.scene.physics.large_deflection else bent, eigenvalue.shape)
-    return _say_lost_modes(found, np.array([vibrate(s) for s, _ in found_modes]))
+    found = _gather(model.scene, simple, change, None if model.scene.physics.large_deflection else bent, eigenvalue.shape)
+    judged_on = np.array([vibrate(s) for s, _ in found_modes])
+    found = _say_not_known(found, judged_on, _LOST)
+    return _say_not_known(found, vibrate(eigenvalue) & ~judged_on, _UNSTABLE)
 
 
-def _say_lost_modes(effects: LeftOutEffects, vibrate: np.ndarray) -> LeftOutEffects:
-    """Name the effects that have no estimate at a mode that vibrates."""
-    lost = {name: _LOST for name, change in effects.changes.items() if np.isnan(change[vibrate]).any()}
+def _say_not_known(effects: LeftOutEffects, modes: np.ndarray, why: str) -> LeftOutEffects:
+    """Name the effects that have no estimate at a mode of a selection (S, m), and why."""
+    lost = {name: why for name, change in effects.changes.items() if np.isnan(change[modes]).any()}
     return replace(effects, not_known=lost | effects.not_known)
 
 
@@ -93,7 +96,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
         return np.array(np.nan if does else 0.0), NO_CRITICAL_SPEED if does else ""
 
-    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+    return _gather(model.scene, simple, change, None if model.scene.physics.large_deflection else bent)
 
 
 def nothing_known(scene: Scene) -> LeftOutEffects:
@@ -105,12 +108,13 @@ def nothing_known(scene: Scene) -> LeftOutEffects:
 
 
 def _gather(
+    scene: Scene,
     simple: Simple,
     change: Change,
     bent: Callable[[], tuple[np.ndarray, str]] | None,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """All effects on values of a shape: by the equations of each; and that of large deflection."""
+    """All effects that a scene leaves out on values of a shape: by the equations of each; and by bending."""
     additions, not_known, not_modelled = list_effects(simple.scene)
     changes = {}
     if bent is not None:
@@ -121,7 +125,7 @@ def _gather(
     assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}
     if bent is None:
         assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}
-    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene), shape)
+    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(scene), shape)
 
 
 def without_large_deflection(model: Model) -> Model:
