@@ -9,6 +9,7 @@ from beamdyn.equations.directions import name_directions
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
+_SHEAR_DATA = "shear_stiffness or poissons_ratio"
 _CHOSEN = 'physics is "auto": an analysis adds it where it matters'
 
 
@@ -54,7 +55,7 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     yield from _second_plane(scene)
     physics, beam = scene.physics, scene.beam
     if not physics.shear:
-        given = _how(physics, "shear=True", beam.shear_stiffness is not None, "shear_stiffness or poissons_ratio")
+        given = _how(physics, "shear=True", beam.shear_stiffness is not None, _SHEAR_DATA)
         yield OmittedEffect("shear deformation", f"sections stay normal to the axis; {given}", "shear")
     if not physics.rotary_inertia:
         given = _how(physics, "rotary_inertia=True", beam.rotary_inertia is not None, "rotary_inertia")
@@ -75,7 +76,8 @@ def _second_plane(scene: Scene) -> Iterator[OmittedEffect]:
     if scene.physics.planes == 2:
         return
     beam = scene.beam
-    given = _how(scene.physics, "planes=2", beam.second_bending_stiffness is not None, "second_bending_stiffness")
+    has_data = beam.second_bending_stiffness is not None
+    given = _how(scene.physics, "planes=2", has_data, "second_bending_stiffness")
     across = name_directions(scene.mount)[1][0]
     yield OmittedEffect("second plane of bending", f"the beam is rigid {across}; {given}", "planes")
     if beam.twist is not None:

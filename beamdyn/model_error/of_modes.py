@@ -57,7 +57,8 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
         return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
-    found = _gather(model.scene, simple, change, None if model.scene.physics.large_deflection else bent, eigenvalue.shape)
+    bending = None if model.scene.physics.large_deflection else bent
+    found = _gather(model.scene, simple, change, bending, eigenvalue.shape)
     judged_on = np.array([vibrate(s) for s, _ in found_modes])
     found = _say_not_known(found, judged_on, _LOST)
     return _say_not_known(found, vibrate(eigenvalue) & ~judged_on, _UNSTABLE)
