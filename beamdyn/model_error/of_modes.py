@@ -16,6 +16,7 @@ from beamdyn.model_error.known_modes import Simple, find_alike
 from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 _LOST = "it turns a mode into others"
@@ -102,7 +103,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 
 def nothing_known(scene: Scene) -> LeftOutEffects:
     """The effects that a scene leaves out, where there is no value that they could change."""
-    additions, not_known, not_modelled = list_effects(scene)
+    additions, not_known, not_modelled = list_effects(replace(scene, physics=_straight(scene.physics)))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION]
     unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
     return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
@@ -133,8 +134,11 @@ def without_large_deflection(model: Model) -> Model:
     """The model of the straight beam, for which the other effects are estimated."""
     if not model.scene.physics.large_deflection:
         return model
-    physics = replace(model.scene.physics, large_deflection=False, branch="straight")
-    return Model(replace(model.scene, physics=physics), model.discretization)
+    return Model(replace(model.scene, physics=_straight(model.scene.physics)), model.discretization)
+
+
+def _straight(physics: Physics) -> Physics:
+    return replace(physics, large_deflection=False, branch="straight")
 
 
 def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray:

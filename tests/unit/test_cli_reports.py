@@ -1,4 +1,4 @@
-"""`--report FILE.html` of every command that has tables and a picture."""
+"""`--report FILE.html` of every command that has an answer."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from brakes.config.mechanism import parse_mechanism
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
 BLADE, ROLLING = EXAMPLES / "blade.toml", EXAMPLES / "rolling_harvester.toml"
+LEANING = EXAMPLES / "harvester_45deg.toml"
 DRUM, FORKLIFT = EXAMPLES / "drum.toml", EXAMPLES / "forklift.toml"
 CLAMP, OWN = EXAMPLES / "calipers" / "toggle-clamp.toml", EXAMPLES / "calipers" / "own-caliper.toml"
 
@@ -43,6 +44,11 @@ COMMANDS = {
         1,
     ),
     "tradeoff": (beamdyn.cli, BLADE, ["--budget", "0.5 s"], 1),
+    "critical": (beamdyn.cli, BLADE, [], 0),
+    "limits": (beamdyn.cli, ROLLING, ["--top-speed", "100 rad/s"], 0),
+    "terms": (beamdyn.cli, BLADE, [], 0),
+    "equilibrium": (beamdyn.cli, LEANING, ["--speed", "50 rad/s"], 1),
+    "branches": (beamdyn.cli, LEANING, ["--top-speed", "50 rad/s"], 1),
     "drum": (brakes.cli, DRUM, [], 1),
     "drum --sweep": (brakes.cli, DRUM, ["--sweep", "friction=0.1:0.5:3"], 1),
     "forklift": (brakes.cli, FORKLIFT, [], 1),
