@@ -5,6 +5,7 @@ import io
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,6 +47,7 @@ def test_python_warns_once_where_the_number_is_asked_for(name):
 
 def test_analyses_of_the_plain_beam_warn_without_the_remedy_that_is_none_there():
     auto = replace(SCENE, physics="auto")
+    analyse: Any
     for analyse in (bd.frequency_bounds, bd.setting_angle_limits):
         with pytest.warns(OutsideLinearTheory) as said:
             analyse(auto, 100.0)
