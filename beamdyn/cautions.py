@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.edge.file_words import as_in_files
-from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
-from beamdyn.result_tables import where_worst
+from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR, MODEL_ERROR, StatesModelError, say_size
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,12 +24,7 @@ def warnings_of(result: Any, tolerance: float | None = None) -> list[str]:
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
     if isinstance(result, StatesModelError):
-        yield from result.left_out_effects.warnings(tolerance, _worst_place(result))
-
-
-def _worst_place(result: Any) -> str:
-    """Where the model error is largest, of a result that has several places."""
-    return where_worst(result) if hasattr(result, "left_out_speeds") else ""
+        yield from result.model_warnings(tolerance)
 
 
 def describe_choice(result: Result) -> list[str]:
@@ -44,8 +38,8 @@ def notes_of(result: Any) -> list[str]:
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
-    outside = [said for said in getattr(result, "warnings", ()) if OUTSIDE in said]
-    return [*outside, *(said.partition(";")[0] for said in _of_model_error(result))]
+    outside = [s for s in getattr(result, "warnings", ()) if OUTSIDE in s or MODEL_ERROR in s]
+    return [said.partition(";")[0] for said in (*outside, *_of_model_error(result))]
 
 
 def critical_label(point: CriticalPoint) -> str:

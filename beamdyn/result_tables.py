@@ -19,7 +19,7 @@ from beamdyn.equations.directions import (
     modelled_directions,
     words_of_directions,
 )
-from beamdyn.scene.validity import list_range
+from beamdyn.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:
     from beamdyn.model_error.left_out_effects import LeftOutEffects
@@ -73,7 +73,11 @@ def _model_line(sentence: str) -> Text:
 
 def _model_error_cell(effects: LeftOutEffects, mode: int) -> str:
     """Relative model error of a mode with one digit; with a question mark where the beam lacks data."""
-    size, more = effects.total[mode], " + ?" if effects.not_known.keys() - effects.changes.keys() else ""
+    return _say_model_error(float(effects.total[mode]), effects.lack_data)
+
+
+def _say_model_error(size: float, lacks_data: bool) -> str:
+    more = " + ?" if lacks_data else ""
     return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
 
@@ -91,7 +95,8 @@ def _share_cells(scene: Scene, share: np.ndarray) -> list[str]:
 def locus_table(result: Locus) -> Group:
     """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
 
-    Below it stands what the model leaves out; digits beyond the model error are dimmed.
+    Below it stands what the model leaves out; digits beyond the model error are dimmed, and the largest one
+    stands beside them where that takes no further table.
     """
     size, shown = np.abs(result.eigenvalue) * result.error, _select_speeds(result)
     beyond = model_error_at(result, shown) * np.abs(result.frequency[shown])
@@ -110,20 +115,31 @@ def locus_table(result: Locus) -> Group:
         f"Natural frequencies{_direction_note(result.scene)}, by {result.provenance.method}"
         f"{_selection_note(shown, result.speeds)}"
     )
-    blocks = [speeds | block for block in _blocks(modes | quality, _WIDTH - _column_width(*speeds.items()))]
+    width, of_model = (
+        _WIDTH - _column_width(*speeds.items()),
+        {"model error": _model_error_cells(result, shown)},
+    )
+    packed = _blocks(modes | quality, width)
+    wider = _blocks(modes | of_model | quality, width)
+    blocks = [speeds | block for block in (packed if len(wider) > len(packed) else wider)]
     tables = (zip(*block.values(), strict=True) for block in blocks)
     titles = (title, *["The same speeds, further columns"] * (len(blocks) - 1))
     made = (table(t, [*b], rows, ()) for t, b, rows in zip(titles, blocks, tables, strict=True))
-    return Group(*made, _model_line(result.left_out_effects.sentence(where=where_worst(result))))
+    return Group(*made, _left_out_over_speeds(result, "mode"))
 
 
-def where_worst(result: Locus | SteadyResponse | Sweep) -> str:
-    """Where the model error is largest, "at 100 rad/s"; at which speeds where it is not known."""
-    total = result.model_error
-    if not np.isfinite(total).any():
-        return f"at {list_range(result.left_out_speeds)}" if len(result.left_out_speeds) else ""
-    worst = np.nanargmax(total) // (total.size // len(total))
-    return f"at {result.left_out_speeds[worst]:.6g} rad/s"
+def _model_error_cells(result: Locus, indices: np.ndarray) -> list[str]:
+    """Largest relative model error of the modes that vibrate, at speeds of some indices, with one digit."""
+    error, lacks = model_error_at(result, indices), result.left_out_effects.lack_data
+    vibrating = np.isin(result.status[indices], ("stable", "neutral"))
+    each = (known[counts] for known, counts in zip(error, vibrating, strict=True))
+    return [_say_model_error(float(sizes.max()), lacks) if len(sizes) else "-" for sizes in each]
+
+
+def _left_out_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> Text:
+    """The line on the model below a table over speeds, with the place of each effect."""
+    effects, speeds = result.left_out_effects, result.left_out_speeds
+    return _model_line(effects.sentence(what, where_worst(effects, speeds), speeds))
 
 
 def model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
@@ -233,7 +249,7 @@ _ASSUMED_ERROR = 5e-4  # relative error assumed for the digits of a deflection w
 
 
 def transient_table(run: Transient, window: tuple[float, float] | None = None) -> Group:
-    """Table of a transient: its largest deflections, errors and warnings."""
+    """Table of a transient: its largest deflections and errors, and what the model leaves out."""
     start, end = run.path.start, run.path.end
     windows = {"whole run": (start, end)}
     if window is not None:
@@ -249,8 +265,7 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
         rows,
     )
     left_out = _model_line(run.left_out_effects.sentence("", "of the largest deflection"))
-    warnings = (as_in_files(w) for w in (*run.warnings, *run.left_out_effects.warnings()))
-    return Group(shown, Text(_describe_errors(run)), left_out, *(Text(f"warning: {w}") for w in warnings))
+    return Group(shown, Text(_describe_errors(run)), left_out)
 
 
 def _directions(scene: Scene) -> list[tuple[str, int | None]]:
@@ -345,7 +360,7 @@ def steady_table(result: SteadyResponse) -> Group:
     made = table(
         title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
     )
-    return Group(made, _model_line(result.left_out_effects.sentence("", where_worst(result))))
+    return Group(made, _left_out_over_speeds(result))
 
 
 def largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
@@ -366,7 +381,7 @@ def sweep_table(result: Sweep) -> Group:
     heads = ("speed [rad/s]", *(f"{name} [mm]" for name in ("largest tip deflection", *words)), "status")
     rows = _rows(columns, shown)
     made = table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
-    return Group(made, _model_line(result.left_out_effects.sentence("", where_worst(result))))
+    return Group(made, _left_out_over_speeds(result))
 
 
 def sweep_lines(result: Sweep) -> dict[str, np.ndarray]:

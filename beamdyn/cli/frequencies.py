@@ -7,7 +7,7 @@ from math import isinf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.program import app, deliver, warn
+from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     Discretization,
     ModeCount,
@@ -20,8 +20,7 @@ from beamdyn.cli.values import (
     speed_or_final,
 )
 from beamdyn.common.announced import OUTSIDE
-from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes, write
-from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -151,6 +150,7 @@ def critical(
     discretization: Discretization = "ritz",
     physics: PhysicsOption = None,
     json: Path | None = None,
+    report: Path | None = None,
     force: Flag = False,
 ) -> None:
     """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed.
@@ -165,22 +165,24 @@ def critical(
         auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     json
         Write the result with its error estimate and provenance into this file.
+    report
+        Write inputs, result and warnings into this file, which needs no other: .html.
     force
-        Overwrite a file that exists.
+        Overwrite files that exist.
     """
     from beamdyn import critical_point
-    from beamdyn.cautions import describe_choice, warnings_of
-    from beamdyn.common.edge.tables import console
+    from beamdyn.cautions import warnings_of
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import critical_answer
 
-    outputs = Outputs(json=json, force=force)
+    outputs = Outputs(json=json, report=report, force=force)
     outputs.check(scene)
     result = critical_point(load_with(scene, physics), discretization)
-    write(result, outputs)
-    console().print(critical_answer(result), *describe_choice(result), sep="\n")
-    if isinf(result.error):  # there is one, perhaps, but it was not found or not resolved
-        raise NoAnswer("; ".join(result.warnings))
-    warn(warnings_of(result))
+    question = Question.on_file("beamdyn critical", scene, discretization=discretization, physics=physics)
+    # With an infinite error there is one, perhaps, but it was not found or not resolved.
+    refusal = "; ".join(result.warnings) if isinf(result.error) else ""
+    warnings = [] if refusal else warnings_of(result)
+    deliver(result, outputs, question, [critical_answer(result)], warnings=warnings, refusal=refusal)
 
 
 @app.command
@@ -192,6 +194,7 @@ def limits(
     discretization: Discretization = "ritz",
     physics: PhysicsOption = None,
     json: Path | None = None,
+    report: Path | None = None,
     force: Flag = False,
 ) -> None:
     """Setting angles that separate a first frequency that falls with speed from one that rises.
@@ -208,24 +211,27 @@ def limits(
         auto: the plain beam; the limits belong to linear theory, and nothing is added.
     json
         Write the result with its error estimate and provenance into this file.
+    report
+        Write inputs, result and warnings into this file, which needs no other: .html.
     force
-        Overwrite a file that exists.
+        Overwrite files that exist.
     """
     from math import isnan
 
     from beamdyn import setting_angle_limits
-    from beamdyn.common.edge.tables import console
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.result_tables import limits_table
 
-    outputs = Outputs(json=json, force=force)
+    outputs = Outputs(json=json, report=report, force=force)
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
     result = setting_angle_limits(load_with(scene, physics), top, discretization)
-    write(result, outputs)
+    question = Question.on_file(
+        "beamdyn limits", scene, top_speed=top_speed, discretization=discretization, physics=physics
+    )
     if isnan(result.first) or isnan(result.second):
-        raise NoAnswer(result.warnings[0])
-    console().print(limits_table(result))
-    warn(result.warnings)
+        deliver(result, outputs, question, [], refusal=result.warnings[0])
+    deliver(result, outputs, question, [limits_table(result)], warnings=result.warnings)
 
 
 @app.command
@@ -235,6 +241,7 @@ def terms(
     *,
     physics: PhysicsOption = None,
     json: Path | None = None,
+    report: Path | None = None,
     force: Flag = False,
 ) -> None:
     """Terms of the equations of motion: which of them the scene has, and why.
@@ -247,22 +254,24 @@ def terms(
         auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     json
         Write the list into this file.
+    report
+        Write inputs and the list into this file, which needs no other: .html.
     force
-        Overwrite a file that exists.
+        Overwrite files that exist.
     """
     from beamdyn.common.edge.file_words import as_in_files
-    from beamdyn.common.edge.tables import console, table
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.edge.tables import table
     from beamdyn.equations.terms import terms
 
-    outputs = Outputs(json=json, force=force)
+    outputs = Outputs(json=json, report=report, force=force)
     outputs.check(scene)
     result = terms(load_with(scene, physics))
-    write(result, outputs)
     heads = ("", "term", "symbol", "largest", "reason")
-    console().print(table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4)))
-    console().print(result.excited())
-    for effect in result.left_out:
-        console().print(as_in_files(f"Left out: {effect.name}: {effect.reason}."))
+    shown = table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4))
+    left_out = [as_in_files(f"Left out: {effect.name}: {effect.reason}.") for effect in result.left_out]
+    question = Question.on_file("beamdyn terms", scene, physics=physics)
+    deliver(result, outputs, question, [shown, result.excited(), *left_out])
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:

@@ -45,8 +45,8 @@ def deliver(
     outputs: Outputs,
     question: Question,
     tables: Sequence[RenderableType],
-    rows: Iterable[Sequence[object]],
-    draw: Callable[[], Figure],
+    rows: Iterable[Sequence[object]] = (),
+    draw: Callable[[], Figure] | None = None,
     warnings: Sequence[str] = (),
     refusal: str = "",
 ) -> None:
@@ -74,7 +74,7 @@ def deliver(
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
 
-    draw = noted(draw, result)
+    draw = None if draw is None else noted(draw, result)
     refusals = [refusal] if refusal else []
     tables = [*tables, *describe_choice(result)]
     # The files of a long computation do not depend on who reads the tables.

@@ -80,6 +80,7 @@ def simulate(
     outputs
         Output files.
     """
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
     from beamdyn.result_rows import transient_csv
     from beamdyn.result_tables import transient_table
@@ -96,7 +97,8 @@ def simulate(
     with naming_option("t_end", "--t-end", t_end):
         run = simulate(loaded, end, modes, tolerance, method, discretization)
     _write_close_up(run, span or (0.0, end), series, animation, outputs.force)
-    deliver(run, outputs, question, [transient_table(run, span)], transient_csv(run), on_axes(run.plot))
+    tables, rows = [transient_table(run, span)], transient_csv(run)
+    deliver(run, outputs, question, tables, rows, on_axes(run.plot), warnings_of(run))
 
 
 @app.command

@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from typing import ParamSpec, TypeVar
 
 OUTSIDE = "outside linear theory"  # in each sentence that says so
-_REMEDY = 'Scene(..., physics="auto") adds what matters'
+_REMEDY = '; Scene(..., physics="auto") adds what matters'
 
 Arguments = ParamSpec("Arguments")
 Answer = TypeVar("Answer")
@@ -26,23 +26,31 @@ def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answ
 
     So a script that reads one number of the result is told, too.  An analysis that calls another warns once.
     """
+    return _announcing(analysis, _REMEDY)
 
+
+def announced_of_plain_beam(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
+    """The same for an analysis of the plain beam alone, to which physics "auto" adds nothing."""
+    return _announcing(analysis, "")
+
+
+def _announcing(analysis: Callable[Arguments, Answer], remedy: str) -> Callable[Arguments, Answer]:
     @functools.wraps(analysis)
     def announcing(*given: Arguments.args, **named: Arguments.kwargs) -> Answer:
         with unannounced():
             result = analysis(*given, **named)
-        announce(getattr(result, "warnings", ()))
+        announce(getattr(result, "warnings", ()), remedy)
         return result
 
     return announcing
 
 
-def announce(sentences: tuple[str, ...]) -> None:
+def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
     """Issue what a result says of lying outside linear theory, as warnings for the caller of the caller."""
     if not _within_another.get():
         for sentence in sentences:
             if OUTSIDE in sentence:
-                warnings.warn(f"{sentence}; {_REMEDY}", OutsideLinearTheory, stacklevel=3)
+                warnings.warn(f"{sentence}{remedy}", OutsideLinearTheory, stacklevel=3)
 
 
 @contextmanager

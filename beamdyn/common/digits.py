@@ -41,6 +41,12 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
     return f"{value:.{decimals}f}" if lead > -4 and decimals >= 0 else f"{value:.{decimals + lead}e}"
 
 
+def percent(value: float, sign: str = "") -> str:
+    """A relative number in percent with two digits, never with a positive exponent; a sign "+" is kept."""
+    digits = f"{100 * value:{sign}.2g}"
+    return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
+
+
 def count_sure(text: str, error: float) -> int:
     """Number of characters of a number's text up to the last digit whose half unit is not below an error.
 

@@ -9,6 +9,7 @@ from beamdyn.equations.directions import name_directions
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
+_SHEAR_DATA = "shear_stiffness or poissons_ratio"
 _CHOSEN = 'physics is "auto": an analysis adds it where it matters'
 
 
@@ -54,17 +55,17 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     yield from _second_plane(scene)
     physics, beam = scene.physics, scene.beam
     if not physics.shear:
-        given = _how("shear=True", beam.shear_stiffness is not None, "shear_stiffness or poissons_ratio")
+        given = _how(physics, "shear=True", beam.shear_stiffness is not None, _SHEAR_DATA)
         yield OmittedEffect("shear deformation", f"sections stay normal to the axis; {given}", "shear")
     if not physics.rotary_inertia:
-        given = _how("rotary_inertia=True", beam.rotary_inertia is not None, "rotary_inertia")
+        given = _how(physics, "rotary_inertia=True", beam.rotary_inertia is not None, "rotary_inertia")
         reason = f"sections turn without inertia; {given}"
         yield OmittedEffect("rotary inertia of sections", reason, "rotary_inertia")
     if not physics.stretch:
-        given = _how("stretch=True", beam.axial_stiffness is not None, "axial_stiffness")
+        given = _how(physics, "stretch=True", beam.axial_stiffness is not None, "axial_stiffness")
         yield OmittedEffect("stretch", f"the beam is inextensible; {given}", "stretch")
     if not physics.large_deflection:
-        given = _how("large_deflection=True", True, "")
+        given = f"Physics(large_deflection=True) includes it{_without_exclusive(physics)}"
         reason = f"the equations are linear about the straight beam; {given}"
         yield OmittedEffect("large deflection", reason, "large_deflection")
     yield from _NEVER
@@ -75,13 +76,23 @@ def _second_plane(scene: Scene) -> Iterator[OmittedEffect]:
     if scene.physics.planes == 2:
         return
     beam = scene.beam
-    given = _how("planes=2", beam.second_bending_stiffness is not None, "second_bending_stiffness")
+    has_data = beam.second_bending_stiffness is not None
+    given = _how(scene.physics, "planes=2", has_data, "second_bending_stiffness")
     across = name_directions(scene.mount)[1][0]
     yield OmittedEffect("second plane of bending", f"the beam is rigid {across}; {given}", "planes")
     if beam.twist is not None:
         yield OmittedEffect("twist", f"sections stand as at the root; {given}", "planes")
 
 
-def _how(switch: str, given: bool, needed: str) -> str:
-    """How to include an effect."""
+def _without_exclusive(physics: Physics) -> str:
+    """What large deflection takes the place of, ", without shear"; empty if nothing."""
+    given = {"a second plane": physics.planes == 2, "shear": physics.shear, "stretch": physics.stretch}
+    names = [name for name, is_given in given.items() if is_given]
+    return f", without {' and '.join(names)}" if names else ""
+
+
+def _how(physics: Physics, switch: str, given: bool, needed: str) -> str:
+    """How to include an effect, or that it is not combined with large deflection."""
+    if physics.large_deflection and not switch.startswith("rotary_inertia"):
+        return "it cannot be combined with large deflection"
     return f"Physics({switch}) includes it" + ("" if given else f", with {needed} of the beam")

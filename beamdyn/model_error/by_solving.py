@@ -62,7 +62,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
         not_known=not_known | {name: each.reason for name, each in found.items() if each.reason},
         assumed={name: note for name, note in notes.items() if note},
         not_modelled=not_modelled,
-        reasons={effect.name: effect.reason for effect in list_left_out(base)},
+        reasons={effect.name: effect.reason for effect in list_left_out(scene)},
         shape=np.shape(without.values),
     )
 

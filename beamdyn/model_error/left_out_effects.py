@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.digits import percent
 from beamdyn.common.results import plain
 from beamdyn.scene.physics_choice import OfChosenPhysics
+from beamdyn.scene.validity import list_range
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
 _NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
-_MANY_TIMES = 10.0  # relative change above which percent say little
+_MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and all digits, say little
+MODEL_ERROR = "the model error"  # in each sentence that warns of it
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,11 @@ class LeftOutEffects:
         """Size of the sum of the changes that are known."""
         return np.abs(sum(map(np.nan_to_num, self.changes.values()), np.zeros(self.shape)))
 
+    @property
+    def lack_data(self) -> bool:
+        """Whether the beam lacks the data of an effect, which is not in the sum then."""
+        return bool(self.not_known.keys() - self.changes.keys())
+
     def at(self, index: Any) -> LeftOutEffects:
         """The same for some of the values."""
         changes = {name: change[index] for name, change in self.changes.items()}
@@ -62,7 +70,7 @@ class LeftOutEffects:
 
     # In words -----------------------------------------------------------------------------------------
 
-    def sentence(self, what: str = "mode", where: str = "") -> str:
+    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> str:
         """One line: the largest change by each effect, what is not known, and what is not modelled.
 
         Parameters
@@ -71,18 +79,45 @@ class LeftOutEffects:
             What the last axis of the values counts; "" where there is one value.
         where : str
             Where the values hold, said first: "at 100 rad/s".
+        speeds : ndarray, optional
+            Speeds [rad/s] of the first axis: what holds elsewhere than `where` is said with its own.
         """
-        parts = [", ".join(self._say_changes(what)) or "nothing that can be computed"]
+        parts = [", ".join(self._say_changes(what, where, speeds)) or "nothing that can be computed"]
         if self.not_known:
-            parts.append(f"not known: {', '.join(f'{n} ({why})' for n, why in self.not_known.items())}")
+            parts.append(f"not known: {', '.join(self._say_not_known(where, speeds))}")
         if self.not_modelled:
             parts.append(f"not modelled: {', '.join(self.not_modelled)}")
         return f"left out{where and ' ' + where}: {'; '.join(parts)}"
 
-    def _say_changes(self, what: str) -> Iterator[str]:
+    def _say_not_known(self, where: str, speeds: np.ndarray | None) -> Iterator[str]:
+        """The effects that are not known, those of one reason together."""
+        reasons: dict[str, list[str]] = {}
+        for name, why in self.not_known.items():
+            place = self._where_unknown(name, speeds)
+            full = why if not place or place == where else f"{why}; {place}"
+            reasons.setdefault(full, []).append(name)
+        yield from (f"{', '.join(names)} ({why})" for why, names in reasons.items())
+
+    def _where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
+        """The speeds at which a change is not known; empty if these are not given, or none is known."""
+        change = self.changes.get(name)
+        if speeds is None or change is None or not len(speeds):
+            return ""
+        unknown = np.isnan(change).reshape(len(change), -1).any(axis=1)
+        return f"at {list_range(speeds[unknown])}" if unknown.any() else ""
+
+    def _where_largest(self, name: str, speeds: np.ndarray | None) -> str:
+        change = self.changes[name]
+        if speeds is None or abs(_largest(change)) < _NEGLIGIBLE:
+            return ""
+        first = int(np.nanargmax(np.abs(change))) // (change.size // len(change))
+        return f"at {speeds[first]:.6g} rad/s"
+
+    def _say_changes(self, what: str, where: str, speeds: np.ndarray | None) -> Iterator[str]:
         known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
-            notes = [self._say_mode(name, what), self.assumed.get(name, "")]
+            place = self._where_largest(name, speeds)
+            notes = [self._say_mode(name, what), place if place != where else "", self.assumed.get(name, "")]
             note = ", ".join(filter(None, notes))
             yield f"{name} {say_change(_largest(known[name]))}{note and f' ({note})'}"
 
@@ -92,20 +127,26 @@ class LeftOutEffects:
             return ""
         return f"{what} {np.nanargmax(np.abs(change)) % change.shape[-1] + 1}"
 
-    def warnings(self, tolerance: float | None = None, where: str = "") -> Iterator[str]:
+    def warnings(
+        self, tolerance: float | None = None, where: str = "", speeds: np.ndarray | None = None
+    ) -> Iterator[str]:
         """Yield a warning if the changes exceed a tolerance, or 1 %, and if they may, being unknown.
 
-        The parameter `where` is as for `sentence`.
+        The parameters `where` and `speeds` are as for `sentence`.
         """
         limit = LARGE_MODEL_ERROR if tolerance is None else tolerance
         at_least = float(self.total_of_known.max(initial=0.0))
-        begin = f"{where and where + ' '}the model error"
         if at_least > limit:
-            yield f"{begin}, {self._say_total(at_least)}, exceeds {say_size(limit)}: {self._say_largest()}"
+            begin = f"{where and where + ' '}{MODEL_ERROR}, {self._say_total(at_least)}, exceeds"
+            yield f"{begin} {say_size(limit)}: {self._say_largest()}"
+            return
+        unknown: dict[tuple[str, str], list[str]] = {}
         for name, why in self.not_known.items():
-            if name in self.changes and np.isnan(self.changes[name]).any() and at_least <= limit:
-                what = f"what {name}, left out, changes is not known: {why}"
-                yield f"{begin} may exceed {say_size(limit)}: {what}"
+            if name in self.changes and np.isnan(self.changes[name]).any():
+                unknown.setdefault((self._where_unknown(name, speeds) or where, why), []).append(name)
+        for (place, why), names in unknown.items():
+            what = f"what {', '.join(names)}, left out, changes is not known: {why}"
+            yield f"{place and place + ' '}{MODEL_ERROR} may exceed {say_size(limit)}: {what}"
 
     def _say_total(self, size: float) -> str:
         where = self.total_of_known == size
@@ -127,18 +168,14 @@ def say_change(change: float) -> str:
     """A relative change in percent, to two digits, with its sign."""
     if abs(change) < _NEGLIGIBLE:
         return "0 %" if change == 0 else "below 1e-7 %"
-    return f"{change:+.1e} times" if abs(change) >= _MANY_TIMES else f"{_percent(change, '+')} %"
+    if abs(change) < _MANY_TIMES:
+        return percent(change, "+")
+    return f"{change:+.0f} times" if abs(change) < _COUNTLESS else f"{change:+.1e} times"
 
 
 def say_size(size: float) -> str:
     """A relative size in percent, to two digits; in words where it is not known."""
     return "not known" if np.isnan(size) else say_change(size).removeprefix("+")
-
-
-def _percent(value: float, sign: str = "") -> str:
-    """A number in percent with two digits, without an exponent where that is short."""
-    digits = f"{100 * value:{sign}.2g}"
-    return f"{100 * value:{sign}.0f}" if "e+" in digits else digits
 
 
 # Results that carry it ----------------------------------------------------------------------------
@@ -165,9 +202,28 @@ class StatesModelError(OfChosenPhysics):
         """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
         return self.left_out_effects.total
 
+    def model_warnings(self, tolerance: float | None = None) -> list[str]:
+        """Warnings of a model error past a tolerance, or 1 %, and of one that is not known."""
+        speeds = getattr(self, "left_out_speeds", None)
+        where = "" if speeds is None else where_worst(self.left_out_effects, speeds)
+        return [*self.left_out_effects.warnings(tolerance, where, speeds)]
+
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with its model error and what is left out."""
-        effects = self.left_out_effects
+        """The result as plain numbers, lists and strings, with its model error and what is left out.
+
+        Its warnings include those of the model error past 1 %.
+        """
+        effects, values = self.left_out_effects, super().to_dict()
+        values["warnings"] = [*values.get("warnings", ()), *self.model_warnings()]
         judged = {"model_error": self.model_error, "left_out": effects.changes}
         named = {"not_known": effects.not_known, "assumed": effects.assumed}
-        return super().to_dict() | plain(judged | named | {"not_modelled": effects.not_modelled})
+        return values | plain(judged | named | {"not_modelled": effects.not_modelled})
+
+
+def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
+    """Where a model error over speeds (k,) is largest, "at 100 rad/s"; at which where it is not known."""
+    total = effects.total
+    if not np.isfinite(total).any():
+        return f"at {list_range(speeds)}" if len(speeds) else ""
+    worst = np.nanargmax(total) // (total.size // len(total))
+    return f"at {speeds[worst]:.6g} rad/s"

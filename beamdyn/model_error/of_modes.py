@@ -16,9 +16,11 @@ from beamdyn.model_error.known_modes import Simple, find_alike
 from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 _LOST = "it turns a mode into others"
+_UNSTABLE = "it is judged on the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
 _AMONG = 4  # modes with the effect for each one without, among which that is sought
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
@@ -56,13 +58,16 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         changes, reason = large_deflection_change(model, speeds, eigenvalue)
         return np.where(vibrate(eigenvalue), changes, np.nan), reason
 
-    found = _gather(simple, change, None if model.scene.physics.large_deflection else bent, eigenvalue.shape)
-    return _say_lost_modes(found, np.array([vibrate(s) for s, _ in found_modes]))
+    bending = None if model.scene.physics.large_deflection else bent
+    found = _gather(model.scene, simple, change, bending, eigenvalue.shape)
+    judged_on = np.array([vibrate(s) for s, _ in found_modes])
+    found = _say_not_known(found, judged_on, _LOST)
+    return _say_not_known(found, vibrate(eigenvalue) & ~judged_on, _UNSTABLE)
 
 
-def _say_lost_modes(effects: LeftOutEffects, vibrate: np.ndarray) -> LeftOutEffects:
-    """Name the effects that have no estimate at a mode that vibrates."""
-    lost = {name: _LOST for name, change in effects.changes.items() if np.isnan(change[vibrate]).any()}
+def _say_not_known(effects: LeftOutEffects, modes: np.ndarray, why: str) -> LeftOutEffects:
+    """Name the effects that have no estimate at a mode of a selection (S, m), and why."""
+    lost = {name: why for name, change in effects.changes.items() if np.isnan(change[modes]).any()}
     return replace(effects, not_known=lost | effects.not_known)
 
 
@@ -93,24 +98,25 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
         return np.array(np.nan if does else 0.0), NO_CRITICAL_SPEED if does else ""
 
-    return _gather(simple, change, None if model.scene.physics.large_deflection else bent)
+    return _gather(model.scene, simple, change, None if model.scene.physics.large_deflection else bent)
 
 
 def nothing_known(scene: Scene) -> LeftOutEffects:
     """The effects that a scene leaves out, where there is no value that they could change."""
-    additions, not_known, not_modelled = list_effects(scene)
+    additions, not_known, not_modelled = list_effects(replace(scene, physics=_straight(scene.physics)))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION]
     unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
     return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
 
 
 def _gather(
+    scene: Scene,
     simple: Simple,
     change: Change,
     bent: Callable[[], tuple[np.ndarray, str]] | None,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """All effects on values of a shape: by the equations of each; and that of large deflection."""
+    """All effects that a scene leaves out on values of a shape: by the equations of each; and by bending."""
     additions, not_known, not_modelled = list_effects(simple.scene)
     changes = {}
     if bent is not None:
@@ -121,15 +127,18 @@ def _gather(
     assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}
     if bent is None:
         assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}
-    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(simple.scene), shape)
+    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(scene), shape)
 
 
 def without_large_deflection(model: Model) -> Model:
     """The model of the straight beam, for which the other effects are estimated."""
     if not model.scene.physics.large_deflection:
         return model
-    physics = replace(model.scene.physics, large_deflection=False, branch="straight")
-    return Model(replace(model.scene, physics=physics), model.discretization)
+    return Model(replace(model.scene, physics=_straight(model.scene.physics)), model.discretization)
+
+
+def _straight(physics: Physics) -> Physics:
+    return replace(physics, large_deflection=False, branch="straight")
 
 
 def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray:

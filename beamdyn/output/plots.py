@@ -419,13 +419,14 @@ def add_legend(ax: Axes) -> Axes:
     return ax
 
 
-def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None) -> Axes:
-    """Draw a bent beam, by its positions along the straight beam and across it, over its length."""
+def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
+    """Draw a bent beam to one scale: its positions along the straight beam and across it, over its length."""
     ax = _new_axes() if ax is None else ax
     ax.plot(along, across, color=COLOURS[0])
     ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)
     labels = {"xlabel": "along the beam at rest, over its length", "ylabel": "deflection over the length"}
-    ax.set(aspect="equal", **labels)
+    ax.set(title=title, **labels)
+    ax.set_aspect("equal", adjustable="datalim")  # fills the axes, however little the beam bends
     return ax
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from beamdyn.common.digits import percent
 from beamdyn.common.results import Result, plain
 from beamdyn.scene.physics import Physics
 
@@ -96,12 +97,12 @@ class PhysicsChoice:
     def warnings(self) -> Iterator[str]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is."""
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
-        why = "; ".join(f"{e.name}, left out, is worth {_percent(e.size)}: {e.reason}" for e in large)
+        why = "; ".join(f"{e.name}, left out, is worth {_say_size(e.size)}: {e.reason}" for e in large)
         if not self.is_met:
             reason = f": {why}" if why else ""
             yield (
                 f"physics = auto: the tolerance {self.tolerance:g} is not met: what is left out is worth "
-                f"{_percent(self.model_error)}{reason}"
+                f"{_say_size(self.model_error)}{reason}"
             )
         if self.not_known:
             each = "; ".join(f"{name} ({why})" for name, why in self.not_known.items())
@@ -109,14 +110,16 @@ class PhysicsChoice:
 
 
 def _say_included(effect: JudgedEffect) -> str:
-    cost = f"; {effect.time:.2g} times the time, {effect.coordinates:.2g} times the coordinates"
-    return f"{effect.name} ({_percent(effect.size)}{'' if math.isnan(effect.time) else cost})"
+    more = f"{effect.coordinates:.2g}"
+    coordinates = "as many coordinates" if more == "1" else f"{more} times the coordinates"
+    cost = f"; {effect.time:.2g} times the time, {coordinates}"
+    return f"{effect.name} ({_say_size(effect.size)}{'' if math.isnan(effect.time) else cost})"
 
 
-def _percent(size: float) -> str:
+def _say_size(size: float) -> str:
     if math.isnan(size):
         return "an unknown change"
-    return "another answer" if math.isinf(size) else f"{100 * size:.2g} %"
+    return "another answer" if math.isinf(size) else percent(size)
 
 
 class OfChosenPhysics(Result):

@@ -53,11 +53,12 @@ def warn_of_static_deflection(deflection: np.ndarray, length: float, speeds: np.
     """Yield a warning if the static tip deflection [m] at a speed [rad/s] exceeds linear theory."""
     bent = np.abs(deflection) > LARGE_DEFLECTION * length
     if bent.any():
-        yield (
-            f"at {speeds[bent][0]:.6g} rad/s the rotation bends the tip by "
-            f"{abs(deflection[bent][0]) / length:.2g} of the length: past {LARGE_DEFLECTION:g} the answer is "
-            f"{OUTSIDE}"
-        )
+        first, worst = np.abs(speeds[bent]).argmin(), np.abs(deflection[bent]).argmax()
+        most, at = _say_lengths(abs(deflection[bent][worst]) / length), f"{speeds[bent][worst]:.6g} rad/s"
+        begin = f"from {speeds[bent][first]:.6g} rad/s on the rotation bends the tip by up to {most}, at {at}"
+        one = f"at {at} the rotation bends the tip by {most}"
+        said = begin if bent.sum() > 1 else one
+        yield f"{said}: past {LARGE_DEFLECTION:g} of the length the answer is {OUTSIDE}"
 
 
 def warn_of_deflection(
@@ -67,9 +68,14 @@ def warn_of_deflection(
     large = deflection > LARGE_DEFLECTION * length
     if large.any():
         yield (
-            f"the tip moves by {deflection[large].max() / length:.2g} of the length"
-            f"{_at_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} it is {OUTSIDE}"
+            f"the tip moves by {_say_lengths(deflection[large].max() / length)}"
+            f"{_at_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} of the length it is {OUTSIDE}"
         )
+
+
+def _say_lengths(ratio: float) -> str:
+    """A deflection over the length in words: "0.12 of the length", "79 lengths"."""
+    return f"{ratio:.2g} of the length" if ratio < 1 else f"{ratio:.{1 if ratio < 10 else 0}f} lengths"
 
 
 def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> Iterator[str]:

@@ -12,12 +12,14 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import count, real
 from beamdyn.common.results import Provenance, Result
+from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds
+from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 from beamdyn.spectrum.flexibility import bound_flexibility
 from beamdyn.spectrum.head import basis, most_functions, segments_with_functions
 from beamdyn.spectrum.planes import refuse_uncovered, separate_planes
@@ -29,6 +31,7 @@ _PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of t
 _CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
 # The parts of the squared Ritz value that are tried as such a bound.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
+_OF_DEFLECTION = 1e-3  # relative error of a model of which the static deflection is read
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class FrequencyBounds(Result):
     how : str
         Argument by which the bounds are guaranteed.
     warnings : tuple of str
-        Bounds that are missing, and why.
+        Bounds that are missing, and why; that rotation bends the beam too far for the model they are of.
     provenance : Provenance
         Program version, discretization and computing time.
     """
@@ -66,6 +69,7 @@ class FrequencyBounds(Result):
     scene: Scene = field(repr=False)
 
 
+@announced_of_plain_beam
 def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
     """Compute guaranteed lower and upper bounds of the natural frequencies of bending at a steady speed.
 
@@ -111,7 +115,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         upper_squared=upper,
         width=high / low - 1,
         how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
-        warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper)),
+        warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *_warn_of_bending(scene, speed)),
         provenance=Provenance(__version__, method, "its complement", perf_counter() - start),
         scene=scene,
     )
@@ -146,6 +150,13 @@ def _check_input(scene: Scene, speed: float, modes: int) -> None:
             f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
             "degree of its properties, the less"
         )
+
+
+def _warn_of_bending(scene: Scene, speed: float) -> Iterator[str]:
+    """Yield a warning if rotation bends the beam too far for the model whose frequencies are bounded."""
+    speeds = np.array([speed])
+    tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
+    yield from warn_of_static_deflection(np.linalg.norm(tips, axis=1), scene.beam.length, speeds)
 
 
 def _widen(values: np.ndarray, units: int) -> np.ndarray:

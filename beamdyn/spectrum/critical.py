@@ -13,7 +13,7 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import OUTSIDE, announce, announced
+from beamdyn.common.announced import OUTSIDE, announce, announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, positive, within
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import SteadyPencil
@@ -395,7 +395,7 @@ class SettingAngleLimits(Result):
         return iter((self.first, self.second))
 
 
-@announced
+@announced_of_plain_beam
 def setting_angle_limits(
     scene: Scene, top_speed: float, discretization: DiscretizationChoice = "ritz"
 ) -> SettingAngleLimits:

@@ -90,7 +90,9 @@ class Equilibrium(Result):
 
         across = _direction(self.scene)
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
-        return plot_bent_beam(points[:, 0], points[:, 1:] @ across, ax)
+        title = f"equilibrium at {self.speed:.6g} rad/s, {self.branch} branch"
+        stable = "" if self.stable else ", unstable"
+        return plot_bent_beam(points[:, 0], points[:, 1:] @ across, ax, title + stable)
 
 
 def equilibrium(

@@ -383,12 +383,22 @@ class Locus(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
-        return self.left_out_at(_spread(len(self.speeds), _MOST_JUDGED))
+        return self.left_out_at(self._judged)
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds of the locus at which its model error is computed, the ends among them [rad/s], (k,)."""
-        return self.speeds[_spread(len(self.speeds), _MOST_JUDGED)]
+        """Speeds of the locus at which its model error is computed [rad/s], (k,).
+
+        The ends are among them, and those before and after a mode becomes unstable or stable.
+        """
+        return self.speeds[self._judged]
+
+    @property
+    def _judged(self) -> np.ndarray:
+        """Indices of the speeds at which the model error is computed (k,)."""
+        changed = (self.status[1:] != self.status[:-1]).any(axis=1)
+        before = np.flatnonzero(changed)[:_MOST_JUDGED]
+        return np.unique(np.concatenate([_spread(len(self.speeds), _MOST_JUDGED), before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
         """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.digits import percent
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.error_estimate import EstimatedModes
@@ -17,12 +19,13 @@ from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
 from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.scene import Scene
 from beamdyn.tradeoffs.frequencies import sizes_of_eigenvalues, solve_reference
-from beamdyn.tradeoffs.measurements import Diagram, number_of
+from beamdyn.tradeoffs.measurements import Diagram, Measurement, number_of
 from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
 _NOTHING = 1e-10  # relative change of the frequencies below which an effect is left aside
+_BETTER = 0.5  # of the error of the model as given: what is not below it has gained nothing by more physics
 _COMPARED = ("stretch",)  # effects that are modelled to compare with papers only
 
 
@@ -87,8 +90,19 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     measurements, left_out = measure_families(
         families, lambda found: float(np.abs(pick(found, true) / true - 1).max()), resolved, budget
     )
+    of_model = float(np.abs(given.frequency[:modes] / true - 1).max())
+    left_out = [*_say_cut(measurements, of_model, _names(choices)), *left_out]
     reference = f"{full.solution.model.discretization} with {_names(choices)}"
     return Diagram.make(title, what, reference, resolved, measurements, [*skipped, *left_out])
+
+
+def _say_cut(measurements: Sequence[Measurement], of_model: float, names: str) -> Iterator[str]:
+    """Say it where the budget does not last for what would make the error smaller than that of the model."""
+    if min((m.error for m in measurements), default=inf) > _BETTER * of_model:
+        yield (
+            f"{names}: the budget does not last for enough functions; {AS_GIVEN} the model is "
+            f"{percent(of_model)} off, with any setting"
+        )
 
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced
+from beamdyn.common.announced import OUTSIDE, announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.ritz import MOST_FUNCTIONS
@@ -20,6 +20,7 @@ from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
+from beamdyn.spectrum.modes import natural_modes
 from beamdyn.steady.excitation_phases import check_steady_state
 from beamdyn.tradeoffs.frequencies import frequency_diagram
 from beamdyn.tradeoffs.measurements import Diagram
@@ -58,7 +59,8 @@ class Tradeoff(Result):
         Diagrams of frequencies, of frequencies with the error of the model included, transients and steady
         response.
     warnings : tuple of str
-        Diagrams that are missing, and why.
+        How far the model of the scene is off at the speed, where that is more than 1 %; diagrams that are
+        missing, and why.
     provenance : Provenance
         How the result was computed.
     """
@@ -80,7 +82,7 @@ class Tradeoff(Result):
         return ax
 
 
-@announced
+@announced_of_plain_beam
 def tradeoff(
     scene: Scene,
     speed: float | None = None,
@@ -134,11 +136,13 @@ def tradeoff(
         if progress is not None:
             progress(done, len(tasks))
         diagrams.append(task())
+    judged = natural_modes(scene, speed, modes)
+    of_model = (*(said for said in judged.warnings if OUTSIDE in said), *judged.model_warnings())
     return Tradeoff(
         speed=speed,
         t_end=end,
         diagrams=tuple(d for d in diagrams if d.measurements),
-        warnings=(*warn_of_plain(unresolved), *_warnings(scene, diagrams)),
+        warnings=(*warn_of_plain(unresolved), *of_model, *_warnings(scene, diagrams)),
         provenance=Provenance(__version__, f"{modes} modes, budget {budget:g} s", "", perf_counter() - start),
         scene=scene,
     )

@@ -62,13 +62,21 @@ def left_out_of_transient(run: Run, window: tuple[float, float] | None = None) -
     """Find what each effect changes in the largest deflection of a run, or in a window [s]: of shape ()."""
     request, largest = run.request, _peak(run, window)
     speed = find_speed_range(request.motion, request.t_end)[-1]
-    shifts = _shifts_of_frequencies(without_large_deflection(request.model), speed, request.t_end)
+    straight = without_large_deflection(request.model)
+    shifts = _shifts_of_frequencies(straight, speed, request.t_end)
+
+    def find_without() -> Answer:
+        if straight is request.model:
+            return Answer(np.array(largest))
+        return _run_again(request, straight.scene, window)
+
+    without = find_without()  # of the straight beam: effects are not compared with a bent one
 
     def solve(scene: Scene, name: str) -> Answer:
-        if scene.physics == request.scene.physics:
-            return Answer(np.array(largest))
+        if scene.physics == straight.scene.physics:
+            return without
         if (shift := shifts.get(name)) is not None:
-            return Answer(np.array(largest * (1 + shift) ** -2), "", _BY_FREQUENCY)
+            return Answer(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
         if name == LARGE_DEFLECTION and len(run.path.samples[0]) > _SHORT_RUN:
             return _estimate_bent(run, largest, scene, speed)
         return _run_again(request, scene, window)

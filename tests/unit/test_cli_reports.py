@@ -1,4 +1,4 @@
-"""`--report FILE.html` of every command that has tables and a picture."""
+"""`--report FILE.html` of every command that has an answer."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from brakes.config.mechanism import parse_mechanism
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
 BLADE, ROLLING = EXAMPLES / "blade.toml", EXAMPLES / "rolling_harvester.toml"
+LEANING = EXAMPLES / "harvester_45deg.toml"
 DRUM, FORKLIFT = EXAMPLES / "drum.toml", EXAMPLES / "forklift.toml"
 CLAMP, OWN = EXAMPLES / "calipers" / "toggle-clamp.toml", EXAMPLES / "calipers" / "own-caliper.toml"
 
@@ -44,6 +45,7 @@ COMMANDS = {
         1,
     ),
     "tradeoff": (beamdyn.cli, BLADE, ["--budget", "0.5 s"], 1),
+    "equilibrium": (beamdyn.cli, LEANING, ["--speed", "50 rad/s"], 1),
     "drum": (brakes.cli, DRUM, [], 1),
     "drum --sweep": (brakes.cli, DRUM, ["--sweep", "friction=0.1:0.5:3"], 1),
     "forklift": (brakes.cli, FORKLIFT, [], 1),
@@ -68,7 +70,7 @@ def inputs(page: str) -> str:
 
 def cells(page: str) -> set[str]:
     """What stands in its tables."""
-    return {unescape(text) for text in re.findall(r"<td[^>]*>(.*?)</td>", page)}
+    return {unescape(re.sub("<[^>]*>", "", text)) for text in re.findall(r"<td[^>]*>(.*?)</td>", page)}
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -88,6 +90,23 @@ def test_report_has_inputs_results_drawings_and_version_in_one_file(name, tmp_pa
     assert len(numbers) >= 3, printed.out
     for warning in re.findall(r": warning: (.*)", printed.err):
         assert warning in unescape(page)
+
+
+@pytest.mark.parametrize(
+    ("command", "file", "options", "said"),
+    [
+        ("critical", ROLLING, [], "critical speed: 159.818332659 rad/s"),
+        ("limits", ROLLING, ["--top-speed", "100 rad/s"], "Setting-angle limits up to 100 rad/s"),
+        ("terms", BLADE, [], "Left out: torsion"),
+        ("branches", LEANING, ["--top-speed", "50 rad/s"], "Branches of equilibria up to 50 rad/s"),
+    ],
+)
+def test_report_of_few_numbers(command, file, options, said, tmp_path):
+    path = tmp_path / "report.html"
+    assert beamdyn.cli.main([command, str(file), *options, "--report", str(path)]) == DONE
+    page = path.read_text(encoding="utf-8")
+    assert said in re.sub("<[^>]*>", "", unescape(page))
+    assert len(pictures(page)) == (command == "branches")
 
 
 def test_report_holds_all_rows_that_are_printed(tmp_path, capsys):

@@ -18,6 +18,7 @@ from beamdyn.common.digits import count_sure
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.model_error.left_out_effects import LeftOutEffects, say_change
+from beamdyn.result_rows import locus_csv
 from beamdyn.result_tables import locus_table, modes_table
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
@@ -145,6 +146,47 @@ def test_about_the_bent_beam_other_effects_are_those_of_the_straight_one() -> No
     name = "rotary inertia of sections"
     np.testing.assert_allclose(bent.left_out[name], straight.left_out[name], rtol=1e-6)
     assert bent.left_out_effects.assumed[name] == "as of the straight beam"
+    assert "cannot be combined" in bent.left_out_effects.reasons["second plane of bending"]
+    assert "rotary_inertia=True" in bent.left_out_effects.reasons[name]
+
+
+def test_effects_on_a_bent_run_are_not_the_change_by_bending() -> None:
+    """Nothing moves an untwisted beam out of its plane; it bends by a tenth less than the straight one."""
+    mount = bd.Mount(0.215, math.radians(45))
+    scene = bd.Scene(HARVESTER, mount, bd.SpinUp(60.0, 0.1), physics=bd.Physics(large_deflection=True))
+    run = bd.simulate(scene, 0.2, modes=1)
+    straight = bd.simulate(replace(scene, physics=bd.Physics()), 0.2, modes=1)
+    assert abs(run.largest / straight.largest - 1) > 1e-3
+    assert abs(run.left_out["second plane of bending"]) < 1e-9  # of the frequency, which is the same sum
+    assert abs(run.left_out["stretch"]) < 1e-5  # of the strain, 1e-6
+
+
+def test_why_a_bent_mode_is_not_judged_is_said() -> None:
+    scene = bd.Scene(HARVESTER, bd.Mount(0.215))
+    bent = replace(scene, physics=bd.Physics(large_deflection=True, branch="bent"))
+    effects = bd.natural_modes(bent, 1.2 * bd.critical_speed(scene)).left_out_effects
+    assert np.isnan(effects.total[0])
+    assert "stretch (it is judged on the straight beam, which is unstable)" in effects.sentence()
+    assert len([*effects.warnings()]) == 1
+
+
+def test_locus_knows_its_model_error_up_to_the_last_stable_speed() -> None:
+    """At 161 speeds, of which 16 are evenly spread, and past the critical speed nowhere."""
+    scene = bd.Scene(HARVESTER, bd.Mount(0.215))
+    locus = bd.frequency_locus(scene, np.linspace(0.0, 200.0, 161), 2)
+    header, *rows = locus_csv(locus)
+    stable = (locus.status == "stable").all(axis=1)
+    assert 100 < stable.sum() < 160
+    error = np.array([row[header.index("model_error_1")] for row in rows], dtype=float)
+    np.testing.assert_array_equal(np.isfinite(error), stable)
+    said = locus.left_out_effects.sentence(where="at 1 rad/s", speeds=locus.left_out_speeds)
+    first = locus.speeds[~stable][0]
+    assert f"bends it; at {first:g} to 200 rad/s)" in said
+    assert locus.to_dict()["warnings"][-1].startswith(f"at {first:g} to 200 rad/s the model error may exceed")
+    screen = Console(width=120)
+    with screen.capture() as capture:
+        screen.print(locus_table(locus))
+    assert "model error" in capture.get()
 
 
 def test_critical_speed_has_the_same_words() -> None:
@@ -219,7 +261,14 @@ def test_sentence_begins_with_the_largest() -> None:
 
 @pytest.mark.parametrize(
     ("change", "words"),
-    [(0.0906, "+9.1 %"), (-3e-5, "-0.003 %"), (0, "0 %"), (1e-12, "below 1e-7 %"), (4.56, "+456 %")],
+    [
+        (0.0906, "+9.1 %"),
+        (-3e-5, "-0.003 %"),
+        (0, "0 %"),
+        (1e-12, "below 1e-7 %"),
+        (4.56, "+456 %"),
+        (11.2, "+11 times"),
+    ],
 )
 def test_changes_in_percent(change: float, words: str) -> None:
     assert say_change(change) == words

@@ -5,6 +5,7 @@ import io
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from beamdyn.common.announced import OutsideLinearTheory
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.result_rows import modes_csv
+from beamdyn.scene.validity import warn_of_static_deflection
+from beamdyn.tradeoffs import Diagram, tradeoff
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "harvester_45deg.toml")
 BENT = replace(SCENE, physics=bd.Physics(large_deflection=True))
@@ -40,6 +43,43 @@ def test_python_warns_once_where_the_number_is_asked_for(name):
         ANALYSES[name](SCENE)
     (one,) = [w for w in said if w.category is OutsideLinearTheory]
     assert one.filename == __file__
+
+
+def test_analyses_of_the_plain_beam_warn_without_the_remedy_that_is_none_there():
+    auto = replace(SCENE, physics="auto")
+    analyse: Any
+    for analyse in (bd.frequency_bounds, bd.setting_angle_limits):
+        with pytest.warns(OutsideLinearTheory) as said:
+            analyse(auto, 100.0)
+        assert len(said) == 1
+        assert "auto" not in str(said[0].message)
+        assert said[0].filename == __file__
+
+
+def test_trade_off_says_how_far_the_model_is_off(monkeypatch):
+    monkeypatch.setattr("beamdyn.tradeoffs.study.physics_diagram", _nothing)
+    monkeypatch.setattr("beamdyn.tradeoffs.study.frequency_diagram", _nothing)
+    with pytest.warns(OutsideLinearTheory):
+        result = tradeoff(SCENE, 100.0, 1, budget=1.0)
+    assert any("the model error, 9.1 %, exceeds 1 %" in said for said in result.warnings)
+    assert len(notes_of(result)) == 2
+
+
+def _nothing(*given):
+    return Diagram.make("nothing", "", "", 0.0, ())
+
+
+def test_static_deflection_is_said_with_its_range_and_its_largest():
+    speeds = np.array([50.0, 100.0, 150.0])
+    (said,) = warn_of_static_deflection(np.array([0.05, -0.2, 79.0]), 1.0, speeds)
+    assert said.startswith("from 100 rad/s on the rotation bends the tip by up to 79 lengths, at 150 rad/s")
+    (said,) = warn_of_static_deflection(np.array([0.05, -0.2, np.nan]), 1.0, speeds)
+    assert said.startswith("at 100 rad/s the rotation bends the tip by 0.2 of the length")
+
+
+def test_model_error_is_among_the_warnings_of_files():
+    modes = bd.natural_modes(SCENE, 100.0, 1)
+    assert any("the model error, 9.1 %, exceeds 1 %" in said for said in modes.to_dict()["warnings"])
 
 
 @pytest.mark.parametrize("scene", [BENT, INWARD], ids=["bent", "inward"])

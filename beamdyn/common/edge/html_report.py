@@ -85,11 +85,12 @@ class Report:
     warnings: Sequence[str] = ()
     more: Sequence[tuple[str, Callable[[], Figure]]] = ()
 
-    def page(self, draw: Callable[[], Figure]) -> str:
-        """The report as HTML."""
+    def page(self, draw: Callable[[], Figure] | None) -> str:
+        """The report as HTML; without its main drawing where there is none."""
         tables = html(self.tables) + further(self.more)
         title = self.question.title
-        part = ("Results", self.warnings, tables, picture(drawing(draw), title))
+        made = "" if draw is None else picture(drawing(draw), title)
+        part = ("Results", self.warnings, tables, made)
         return report_page(title, self.question.inputs, [part])
 
 

@@ -102,7 +102,7 @@ def write(
         from beamdyn.common.edge.rendering import csv_text
 
         write_text(outputs.csv, csv_text(rows))
-    if outputs.report is not None and draw is not None and report is not None:
+    if outputs.report is not None and report is not None:
         write_text(outputs.report, report.page(draw))
     if outputs.plot is not None and draw is not None:
         from beamdyn.common.pictures import save_figure
