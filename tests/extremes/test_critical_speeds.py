@@ -16,6 +16,7 @@ import pytest
 from scipy.optimize import brentq
 
 import beamdyn as bd
+from beamdyn.common.announced import OUTSIDE
 from beamdyn.modal.model import Model
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import decide_buckling
@@ -51,7 +52,8 @@ def test_a_high_critical_speed_is_found_within_its_error(name: str, tolerance: f
     scene, expected = HIGH[name]
     point = bd.critical_point(scene, tolerance=tolerance)
     assert abs(point.speed / expected - 1) <= point.error <= (tolerance or 1e-9)
-    assert point.none_below == point.speed and not point.warnings
+    assert point.none_below == point.speed
+    assert all(OUTSIDE in said for said in point.warnings)  # that rotation bends it, where it does
 
 
 @pytest.mark.parametrize("tolerance", [None, 1e-1, 1e-2, 1e-3])

@@ -24,7 +24,17 @@ _PIPE_WIDTH = 120  # of tables that go to a file or another program
 
 # ASCII for characters of our tables that a console without Unicode may lack.
 _SPELLED = {
-    **{"ω": "omega", "ζ": "zeta", "Λ": "Lambda", "Ω": "ohm", "µ": "u", "μ": "u", "ᵀ": "^T", "²": "^2"},
+    **{
+        "ω": "omega",
+        "ζ": "zeta",
+        "η": "eta",
+        "Λ": "Lambda",
+        "Ω": "ohm",
+        "µ": "u",
+        "μ": "u",
+        "ᵀ": "^T",
+        "²": "^2",
+    },
     **{"³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x", "─": "-"},
 }
 
