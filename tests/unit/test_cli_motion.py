@@ -186,7 +186,7 @@ def test_ctrl_c_anywhere_is_no_traceback(run, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("beamdyn.config.parse_scene", interrupt)
+    monkeypatch.setattr("beamdyn.config.scene_from_dict", interrupt)
     code, out, err = run("modes", SCENE)
     assert (code, out, err) == (INTERRUPTED, "", "beamdyn: interrupted\n")
 
