@@ -98,7 +98,7 @@ def test_blade_of_stations_is_opened_and_saved():
     assert "beam.bending_stiffness" in {entry.path for entry in work.inputs}  # not width and thickness
     assert SCENE.check(work.text(), "saved") == SCENE.check(text, "blade")
     assert work.entries["beam.stations"].count("\n") == 49  # a line a row, in the field and in the file
-    assert "\n [0.00325, 13.308," in work.text()
+    assert "\n [0.00325, -13.308," in work.text()
     rows = work.entries["beam.stations"].replace("0.00325", "-1")
     work.put("beam.stations", rows)
     assert not work.solve(FREQUENCIES)
