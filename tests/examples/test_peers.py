@@ -382,12 +382,12 @@ def test_differences_are_over_the_largest_deflection():
 
 
 @pytest.mark.skipif(exudyn.version() is None, reason="there is no Exudyn: pip install exudyn")
-@pytest.mark.parametrize("duration", spin_up.DURATIONS)
-def test_cables_spin_up_as_the_elastica(duration):
+@pytest.mark.parametrize(("duration", "linear"), [(15.0, 1e-3), (5.0, 5e-3)])
+def test_cables_spin_up_as_the_elastica(duration, linear):
     """The cables are right to 3e-4; linear theory is off by 1.1e-3, and by 1.2e-2 in the fast spin-up."""
     cables, own = spin_up.cables(duration, spin_up.Setting(12, 2e-3, 4.0)), spin_up.elastica(duration)
     assert cables.differs_from(own) < 1e-3
-    assert spin_up.linear(duration).differs_from(own) > 1e-3
+    assert spin_up.linear(duration).differs_from(own) > linear
 
 
 # Tables -------------------------------------------------------------------------------------------

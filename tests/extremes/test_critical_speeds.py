@@ -53,7 +53,8 @@ def test_a_high_critical_speed_is_found_within_its_error(name: str, tolerance: f
     point = bd.critical_point(scene, tolerance=tolerance)
     assert abs(point.speed / expected - 1) <= point.error <= (tolerance or 1e-9)
     assert point.none_below == point.speed
-    assert all(OUTSIDE in said for said in point.warnings)  # that rotation bends it, where it does
+    bent = 1 if name == "nearly tangential" else 0  # by the rotation, long before: nothing else is doubtful
+    assert [OUTSIDE in said for said in point.warnings] == bent * [True]
 
 
 @pytest.mark.parametrize("tolerance", [None, 1e-1, 1e-2, 1e-3])
