@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
 Cell: TypeAlias = "str | Text"  # of a table
 _ROUNDING = 1e-9  # relative: a model error below it is not told from rounding
-_WIDTH = 118  # of a table's columns, so that none is cut at 120
+_WIDTH = 119  # of a table's columns, so that none is cut at 120
 _CRITICAL_DIGITS = 12  # most digits of a critical speed
 _FEW = 4  # modes of a locus whose frequencies have all digits
 _DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
@@ -167,8 +167,8 @@ def _blocks(columns: Mapping[str, Sequence[Cell]], width: int) -> list[dict[str,
 
 
 def _column_width(column: tuple[str, Sequence[Cell]]) -> int:
-    """Width of a column with the space after it."""
-    return max(map(len, (column[0], *column[1]))) + 2
+    """Width of a column with its padding and the gap after it."""
+    return max(map(len, (column[0], *column[1]))) + 3
 
 
 def _select_speeds(result: Locus) -> np.ndarray:
