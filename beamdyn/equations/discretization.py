@@ -66,6 +66,11 @@ class Functions(Protocol):
 class Space(Functions, Protocol):
     """Trial functions phi_i that satisfy the boundary conditions at the root."""
 
+    @property
+    def coarse(self) -> np.ndarray | None:
+        """Indices of functions that span those of the coarser discretization; None where no few do."""
+        ...
+
     def gram(self, weight: Profile, order: int) -> np.ndarray:
         """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
         ...

@@ -9,7 +9,7 @@ Derivation and conventions: docs/conventions.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,7 +18,7 @@ import scipy.linalg
 
 from beamdyn.equations.damping import modal_damping
 from beamdyn.equations.directions import check_direction
-from beamdyn.equations.discretization import Discretization, Spaces
+from beamdyn.equations.discretization import Discretization, Space, Spaces
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
@@ -110,6 +110,9 @@ class Equations:
         Functions and loads of each field that deflects the beam.
     shift : float
         As for `SteadyPencil`.
+    coarse : ndarray or None
+        Indices of the coordinates whose functions span those of the coarser discretization; None where no
+        few do, and after a reduction.
     """
 
     blocks: dict[str, slice]
@@ -120,6 +123,7 @@ class Equations:
     shapes: dict[str, Shape]
     deflections: dict[str, Deflection]
     shift: float = 0.0
+    coarse: np.ndarray | None = None
 
     @property
     def size(self) -> int:
@@ -298,6 +302,7 @@ class Equations:
             terms=tuple(terms),
             loads=tuple(loads),
             shapes=shapes,
+            coarse=None,
         )
 
     def _split(self, names: tuple[str, ...], basis: np.ndarray) -> Iterator[tuple[str, Shape]]:
@@ -326,6 +331,15 @@ def _place_blocks(sizes: Mapping[str, int]) -> dict[str, slice]:
     return blocks
 
 
+def _join(spaces: Sequence[Space]) -> np.ndarray | None:
+    """Indices of the functions of the coarser discretization among those of successive spaces."""
+    starts = np.cumsum([0] + [space.size for space in spaces])
+    coarse = [space.coarse for space in spaces]
+    if any(places is None for places in coarse):
+        return None
+    return np.concatenate([start + places for start, places in zip(starts, coarse, strict=False)])
+
+
 def assemble_equations(scene: Scene, discretization: Discretization) -> Equations:
     """Assemble the equations of motion of a scene in a discretization: see `assemble_over`."""
     return assemble_over(scene, discretization.spaces(scene.modelled_beam))
@@ -348,13 +362,14 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
     """
     fields = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
     equations = Equations(
-        blocks=_place_blocks({name: field.size for name, field in fields.items()}),
+        blocks=_place_blocks({name: field.space.size for name, field in fields.items()}),
         terms=tuple(t for field in fields.values() for t in field.terms if t.factor and t.matrix.any()),
         loads=tuple(f for field in fields.values() for f in field.loads if f.factor),
         mount=scene.mount,
         gravity=scene.gravity,
-        shapes={name: Shape(name, np.eye(field.size)) for name, field in fields.items()},
+        shapes={name: Shape(name, np.eye(field.space.size)) for name, field in fields.items()},
         deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
+        coarse=_join([field.space for field in fields.values()]),
     )
     if turning := [name for name, field in fields.items() if field.turns_at_root]:
         equations = replace(equations, shift=_find_lowest_clamped(equations, turning))

@@ -187,6 +187,11 @@ class FemSpace(FieldsOnly):
         """Number of functions."""
         return self.basis.N - self.conditions.held
 
+    @property
+    def coarse(self) -> None:
+        """None: each function of a coarser mesh is a sum of several."""
+        return None
+
     def weights(self, weight: Profile) -> np.ndarray:
         """Evaluate a property at the quadrature points."""
         return weight(np.asarray(self.basis.global_coordinates())[0])

@@ -29,7 +29,7 @@ import numpy as np
 import scipy.linalg
 from numpy.polynomial import legendre
 
-from beamdyn.common.legendre import gauss_points_on, gauss_rule, legendre_series
+from beamdyn.common.legendre import gauss_rule, legendre_series
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
 from beamdyn.equations.centrifugal_tension import axial_tension
@@ -39,10 +39,10 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
-NODES = 16  # on each cell, through which the quotients are interpolated
-_RESOLVED = 1e-9  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
+NODES = 10  # on each cell, through which the quotients are interpolated
+_RESOLVED = 1e-7  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
 _ROUNDING = 10 * float(np.finfo(float).eps)  # of a sum of polynomials
-_PHASE = 12.0  # largest change of phase of the highest polynomial within a cell [rad]
+_PHASE = 7.0  # largest change of phase of the highest polynomial within a cell [rad]
 _SHORTEST = 1e-10  # cell that is halved, as x/L
 _DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
 
@@ -67,10 +67,13 @@ class MomentSpaces(FieldsOnly):
         The beam, with the modelled properties.
     forces : int
         Number of forces or moments in each direction.
+    coarse : int
+        Number of those that the coarser discretization has.
     """
 
     beam: Beam
     forces: int
+    coarse: int
 
     def functions(self, conditions: RootConditions) -> MomentSpace:
         """Trial functions that satisfy conditions at the root."""
@@ -85,20 +88,42 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def cells(self) -> np.ndarray:
         """Ends of cells on which every compliance and the highest polynomial are resolved, as x/L."""
-        ends = np.array(self.beam.breakpoints)
-        while (coarse := self._are_coarse(ends)).any():
-            ends = np.sort(np.concatenate([ends, (ends[:-1] + ends[1:])[coarse] / 2]))
-        return ends
+        breakpoints = np.array(self.beam.breakpoints)
+        fine, (left, right) = [], (breakpoints[:-1], breakpoints[1:])
+        while left.size:
+            coarse = self._are_coarse(left, right)
+            fine.append(left[~coarse])
+            middle = (left + right)[coarse] / 2
+            left, right = np.concatenate([left[coarse], middle]), np.concatenate([middle, right[coarse]])
+        return np.append(np.sort(np.concatenate(fine)), 1.0)
 
-    def _are_coarse(self, ends: np.ndarray) -> np.ndarray:
-        """Whether each cell is to be halved."""
-        coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
-        xi = gauss_points_on(ends, NODES)
-        for name in _ORDERS:
-            values = {entry: p(xi) for entry, p in stiffness_tensor(self.beam, name).items()}
+    def _are_coarse(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        """Whether each cell, of these ends, is to be halved."""
+        coarse = (np.arccos(1 - 2 * right) - np.arccos(1 - 2 * left)) * self.forces > _PHASE
+        half = (right - left)[:, None] / 2
+        xi = left[:, None] + half * (1 + gauss_rule(NODES)[0])
+        for name, tensor in self._stiffnesses.items():
+            values = {entry: profile(xi) for entry, profile in tensor.items()}
             for (i, _), entry in invert(values).items():
-                coarse |= ~_are_resolved(entry, _rounding_of(values[i, i]))
-        return coarse & (np.diff(ends) > _SHORTEST)
+                rounding = _ROUNDING * self._largest[name, i] / np.abs(values[i, i]).min(axis=1)
+                coarse |= ~_are_resolved(entry, rounding)
+        return coarse & (right - left > _SHORTEST)
+
+    @cached_property
+    def _stiffnesses(self) -> dict[str, Tensor]:
+        """Stiffnesses that the sections have, by name."""
+        tensors = {name: stiffness_tensor(self.beam, name) for name in _ORDERS}
+        return {name: tensor for name, tensor in tensors.items() if tensor}
+
+    @cached_property
+    def _largest(self) -> dict[tuple[str, int], float]:
+        """Largest entry of each stiffness in each direction."""
+        return {
+            (name, i): float(np.abs(profile.end_values()).max())
+            for name, tensor in self._stiffnesses.items()
+            for (i, j), profile in tensor.items()
+            if i == j
+        }
 
     @cached_property
     def nodes(self) -> ArcQuadrature:
@@ -110,18 +135,13 @@ class MomentSpaces(FieldsOnly):
         """Values of properties at the nodes."""
         return Sampler(self.nodes.xi)
 
-    def compliance(self, stiffness: str) -> Values:
-        """Inverse of a stiffness of the sections at the nodes."""
-        tensor = stiffness_tensor(self.beam, stiffness)
-        return invert({entry: self.at_nodes(profile) for entry, profile in tensor.items()})
-
-    def displacements(self, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
-        """Displacements by forces (n, N) at the nodes against a stiffness, and their slopes: each (n, N)."""
-        compliance = self.compliance(stiffness)[direction, direction]
-        derivatives = [forces * compliance]
-        for _ in range(_ORDERS[stiffness]):
-            derivatives.insert(0, self.nodes.integrate(derivatives[0])[:, :-1])
-        return derivatives[:2]
+    @cached_property
+    def compliance(self) -> dict[str, Values]:
+        """Inverse of each stiffness of the sections at the nodes."""
+        return {
+            name: invert({entry: self.at_nodes(profile) for entry, profile in tensor.items()})
+            for name, tensor in self._stiffnesses.items()
+        }
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
@@ -163,11 +183,6 @@ def invert(values: Values) -> Values:
     }
 
 
-def _rounding_of(values: np.ndarray) -> np.ndarray:
-    """Relative rounding error (c,) of a stiffness (c, nodes), whose terms may be as large as its largest."""
-    return _ROUNDING * np.abs(values).max() / np.abs(values).min(axis=1)
-
-
 def _are_resolved(values: np.ndarray, rounding: np.ndarray) -> np.ndarray:
     """Whether interpolants through the nodes of each cell resolve functions with these values (c, nodes)."""
     series = np.abs(values @ legendre_series(NODES).T)
@@ -178,6 +193,66 @@ def _are_resolved(values: np.ndarray, rounding: np.ndarray) -> np.ndarray:
 def _interpolation(points: int) -> np.ndarray:
     """Values at Gauss points of the interpolants through fewer: shape (points, nodes)."""
     return legendre.legvander(gauss_rule(points)[0], NODES - 1) @ legendre_series(NODES)
+
+
+# Forces -------------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=8)  # sections that are twisted bend in both directions under the same moments
+def _build_forces(
+    spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces or moments in a direction at the nodes: those of the coarser discretization, and the others.
+
+    They are polynomials, and what displacements by the first of these cause by inertia and by tension: two
+    arrays of shape (n, N).
+    """
+    causes = [*_causes(spaces, stiffness, direction)]
+    first, polynomials = _share(spaces.forces, len(causes))
+    P = legendre.legvander(2 * spaces.nodes.xi - 1, polynomials - 1).T
+    displaced = {name: _displace(spaces, P[:first], name, direction) for name, _, _ in causes}
+    caused = [
+        _integrate_from_tip(spaces.nodes, weight * displaced[name][order], derivatives - order)
+        for name, order, weight in causes
+    ]
+    fewer, lower = _share(spaces.coarse, len(causes))
+    coarse, further = [P[:lower], *(c[:fewer] for c in caused)], [P[lower:], *(c[fewer:] for c in caused)]
+    return np.concatenate(coarse), np.concatenate(further)
+
+
+def _causes(spaces: MomentSpaces, stiffness: str, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
+    """Yield of loads: the stiffness against the displacement, the derivative of that, and its weight."""
+    beam, at_nodes = spaces.beam, spaces.at_nodes
+    mass, tension = at_nodes(beam.mass_per_length), at_nodes(axial_tension(beam)[1])
+    rotary = section_tensor(beam, "rotary_inertia").get((direction, direction))
+    for name in _COUPLED[stiffness]:
+        if name in spaces.compliance:
+            yield name, 0, mass
+            yield name, 1, tension
+    if rotary is not None and stiffness == "bending_stiffness":
+        yield "bending_stiffness", 1, at_nodes(rotary)
+
+
+def _share(forces: int, causes: int) -> tuple[int, int]:
+    """Share a number of forces: how many polynomials cause others, by each cause, and how many there are."""
+    causing = forces // (1 + causes)
+    return causing, forces - causes * causing
+
+
+def _displace(spaces: MomentSpaces, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
+    """Displacements by forces (n, N) at the nodes against a stiffness, and their slopes: each (n, N)."""
+    derivatives = [forces * spaces.compliance[stiffness][direction, direction]]
+    for _ in range(_ORDERS[stiffness]):
+        derivatives.insert(0, spaces.nodes.integrate(derivatives[0])[:, :-1])
+    return derivatives[:2]
+
+
+def _integrate_from_tip(nodes: ArcQuadrature, values: np.ndarray, times: int) -> np.ndarray:
+    """Integrate repeatedly from each node to the tip: values and result have shape (n, N)."""
+    for _ in range(times):
+        integral = nodes.integrate(values)
+        values = integral[:, -1:] - integral[:, :-1]
+    return values
 
 
 # Functions ----------------------------------------------------------------------------------------
@@ -220,58 +295,36 @@ class MomentSpace(SampledSpace):
         return self.conditions.held < self.conditions.derivatives
 
     @cached_property
-    def _quotients(self) -> np.ndarray:
-        """Orthonormal quotients of forces and stiffness at the points, shape (m, k)."""
+    def _quotients(self) -> tuple[int, np.ndarray]:
+        """Orthonormal quotients of forces and stiffness at the points, shape (m, k).
+
+        The first of them, whose number is returned, span those of the coarser discretization.
+        """
         stiffness, direction = self.conditions.stiffness, self.conditions.direction
-        compliance = self.spaces.compliance(stiffness)
-        quotients = np.array(
-            [
-                compliance[direction, other] * self._forces(other)
-                for other in (0, 1)
-                if (direction, other) in compliance
-            ]
+        compliance = self.spaces.compliance[stiffness]
+        forces_against = self.spaces, stiffness, self.conditions.derivatives
+        caused = (
+            [compliance[direction, other] * forces for forces in _build_forces(*forces_against, other)]
+            for other in (0, 1)
+            if (direction, other) in compliance
         )
-        ordered = quotients.swapaxes(0, 1).reshape(-1, quotients.shape[-1])
+        coarse, further = (np.concatenate(parts) for parts in zip(*caused, strict=True))
         own = stiffness_tensor(self.spaces.beam, stiffness)[direction, direction]
         weight = self.spaces.nodes.weights * self.spaces.at_nodes(own)
-        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
+        first, others = _orthonormalize(coarse.T, further.T, weight)
+        on_cells = np.concatenate([first, others], axis=1).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
-        return at_points.reshape(len(on_cells), -1)
+        return first.shape[1], at_points.reshape(len(on_cells), -1)
 
-    def _forces(self, direction: int) -> np.ndarray:
-        """Forces or moments in a direction at the nodes: shape (n, N).
-
-        Polynomials, and what displacements by the first of them cause by inertia and by tension.
-        """
-        spaces, causes = self.spaces, [*self._causes(direction)]
-        first = spaces.forces // (1 + len(causes))
-        P = legendre.legvander(2 * spaces.nodes.xi - 1, spaces.forces - len(causes) * first - 1).T
-        caused = (
-            _integrate_from_tip(
-                spaces.nodes,
-                weight * spaces.displacements(P[:first], name, direction)[order],
-                self.conditions.derivatives - order,
-            )
-            for name, order, weight in causes
-        )
-        return np.concatenate([P, *caused])
-
-    def _causes(self, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
-        """Yield of loads: the stiffness against the displacement, the derivative of that, and its weight."""
-        beam, at_nodes = self.spaces.beam, self.spaces.at_nodes
-        mass, tension = at_nodes(beam.mass_per_length), at_nodes(axial_tension(beam)[1])
-        rotary = section_tensor(beam, "rotary_inertia").get((direction, direction))
-        for name in _COUPLED[self.conditions.stiffness]:
-            if stiffness_tensor(beam, name):
-                yield name, 0, mass
-                yield name, 1, tension
-        if rotary is not None and self.conditions.stiffness == "bending_stiffness":
-            yield "bending_stiffness", 1, at_nodes(rotary)
+    @cached_property
+    def coarse(self) -> np.ndarray:
+        """The first functions."""
+        return np.arange(self._turns + self._quotients[0])
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
         """Values and derivatives at the points, and at the tip but of the highest derivative: (n, k + 1)."""
-        rows = [self._quotients]
+        rows = [self._quotients[1]]
         for _order in reversed(range(self.conditions.derivatives)):
             rows.insert(0, self.spaces.quadrature.integrate(rows[0][:, : len(self.rule)]))
         if not self._turns:
@@ -302,19 +355,28 @@ class MomentSpace(SampledSpace):
         return values
 
 
-def _integrate_from_tip(nodes: ArcQuadrature, values: np.ndarray, times: int) -> np.ndarray:
-    """Integrate repeatedly from each node to the tip: values and result have shape (n, N)."""
-    for _ in range(times):
-        integral = nodes.integrate(values)
-        values = integral[:, -1:] - integral[:, :-1]
-    return values
+def _orthonormalize(
+    coarse: np.ndarray, further: np.ndarray, weight: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Orthonormal bases, with a weight (k,), of the span of columns (k, n), and of what others add to it.
 
-
-def _orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Orthonormal basis (k, m) of the span of columns (k, n), with a weight (k,), but for rounding."""
+    They are orthonormal but for rounding.
+    """
     root = np.sqrt(weight)[:, None]
-    scaled = columns * root
-    norm = np.linalg.norm(scaled, axis=0)
-    unit = scaled[:, norm > 0] / norm[norm > 0]
-    Q, R, _ = scipy.linalg.qr(unit, mode="economic", pivoting=True)
-    return Q[:, np.abs(np.diag(R)) > _DEPENDENT] / root
+    first = _span(_unit(coarse * root))
+    rest = _unit(further * root)
+    for _ in range(2):  # the first time leaves rounding errors relative to what was there before
+        rest = rest - first @ (first.T @ rest)
+    return first / root, _span(rest) / root
+
+
+def _unit(columns: np.ndarray) -> np.ndarray:
+    """Divide columns by their norms; without those that are 0."""
+    norm = np.linalg.norm(columns, axis=0)
+    return columns[:, norm > 0] / norm[norm > 0]
+
+
+def _span(columns: np.ndarray) -> np.ndarray:
+    """Orthonormal basis (k, m) of the span of columns (k, n) of norm 1 or less, but for rounding."""
+    Q, R, _ = scipy.linalg.qr(columns, mode="economic", pivoting=True)
+    return Q[:, np.abs(np.diag(R)) > _DEPENDENT]

@@ -70,7 +70,7 @@ class Ritz:
     def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
-            return MomentSpaces(beam, self.functions)
+            return MomentSpaces(beam, self.functions, self.coarser().functions)
         return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
@@ -81,7 +81,7 @@ class Ritz:
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
         if self.basis == "moments":
-            return MomentSpaces(beam, self.functions).quadrature.cells
+            return MomentSpaces(beam, self.functions, self.coarser().functions).quadrature.cells
         return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
@@ -149,6 +149,14 @@ class RitzSpace(SampledSpace):
         """Evaluates the derivatives of all functions at given points."""
         basis = _BASES[self.spaces.ritz.basis][self.conditions]
         return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
+
+    @cached_property
+    def coarse(self) -> np.ndarray:
+        """The first functions of each segment, and the rotation where the root turns."""
+        functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.coarser().functions
+        turns = self.size % functions
+        on_segment = np.arange(self.size - turns) % functions < fewer
+        return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))
 
     @property
     def _orders(self) -> range:

@@ -54,6 +54,11 @@ class SampledSpace(FieldsOnly, ABC):
         """Number n of functions."""
         return len(self.samples[0])
 
+    @property
+    @abstractmethod
+    def coarse(self) -> np.ndarray:
+        """Indices of functions that span those of the coarser discretization."""
+
     def weights(self, weight: Profile) -> np.ndarray:
         """Multiply the weights of the rule by a property."""
         return self.rule * weight(self.points)

@@ -40,10 +40,14 @@ def solve_to_tolerance(
     Without a tolerance, `choose_model` aims at `DEFAULT_TARGET`.  The other parameters are those of
     `choose_model` and `solve_with_error`.
     """
+    target = DEFAULT_TARGET if tolerance is None else tolerance
+    model, at_ends = _choose(scene, discretization, speeds, modes, target, tolerance is not None)
+    if at_ends is not None and len(speeds) == 1 and not extra:
+        result = at_ends
+    else:
+        result = solve_with_error(model, speeds, modes, extra)
     if tolerance is None:
-        return solve_with_error(choose_model(scene, discretization, speeds, modes), speeds, modes, extra)
-    model = choose_model(scene, discretization, speeds, modes, tolerance, cheapest=True)
-    result = solve_with_error(model, speeds, modes, extra)
+        return result
     while isinstance(discretization, str) and not result.meet(tolerance):
         if (finer := _refine(result.model)) is None:
             break
@@ -98,22 +102,35 @@ def choose_model(
         If the discretization is unknown or has too few functions for the modes, or the beam has too many
         segments.
     """
+    return _choose(scene, discretization, speeds, modes, target, cheapest)[0]
+
+
+def _choose(
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    speeds: np.ndarray,
+    modes: int,
+    target: float,
+    cheapest: bool,
+) -> tuple[Model, EstimatedModes | None]:
+    """Find the model of `choose_model`, and its modes at the slowest and fastest speed, if solved."""
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
-    model = None
+    found: tuple[Model, EstimatedModes | None] | None = None
     for finer in list_models(scene, discretization, modes, target, cheapest):
+        if not isinstance(discretization, str):
+            return finer, None
         try:
-            met = not isinstance(discretization, str) or solve_with_error(finer, ends, modes).meet(target)
+            found = finer, (at_ends := solve_with_error(finer, ends, modes))
         except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
-            if model is None:
+            if found is None:
                 raise
             break
-        model = finer
-        if met:
+        if at_ends.meet(target):
             break
-    assert model is not None
-    return model
+    assert found is not None
+    return found
 
 
 def least_target(discretization: DiscretizationChoice) -> float:

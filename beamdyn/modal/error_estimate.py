@@ -23,8 +23,8 @@ class EstimatedModes:
 
     Parameters
     ----------
-    model, coarse : Model
-        The model of the modes, and the coarser one that they are compared with.
+    model : Model
+        The model of the modes.
     eigen : Eigen
         Modes of `model`.
     error : ndarray, shape (S, k)
@@ -32,9 +32,13 @@ class EstimatedModes:
     """
 
     model: Model
-    coarse: Model
     eigen: Eigen
     error: np.ndarray
+
+    @property
+    def coarse(self) -> Model:
+        """The coarser model that the modes are compared with."""
+        return self.model.coarser
 
     def meet(self, tolerance: float) -> bool:
         """Whether all errors are below the tolerance or at the level of rounding."""
@@ -60,10 +64,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     -------
     EstimatedModes
     """
-    coarse = model.coarser
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     s = fine.eigenvalue[:, :modes]
-    squared, distance = s**2, s**2 - eigenvalues_over_speeds(coarse.solver, speeds, modes) ** 2
+    squared, distance = s**2, s**2 - eigenvalues_over_speeds(model.coarse_solver, speeds, modes) ** 2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation: removes the leading term of the error
         squared = squared + distance / (2**order - 1)
@@ -77,7 +80,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
-    return EstimatedModes(model, coarse, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
+    return EstimatedModes(model, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
 
 
 def integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:

@@ -14,7 +14,7 @@ from beamdyn.equations.equations_of_motion import Equations, assemble_equations
 from beamdyn.modal.deflected import DeflectedSolver
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modal.uncoupled import solver_of
+from beamdyn.modal.uncoupled import solver_of, solver_over
 from beamdyn.scene.scene import Scene
 
 
@@ -51,6 +51,13 @@ class Model(FieldsOnly):
         if not self.scene.physics.large_deflection:
             return None
         return assemble_elastica(self.scene, self.discretization, self.equations)
+
+    @cached_property
+    def coarse_solver(self) -> Eigensolver:
+        """Solver of the coarser model: where functions of this one span its own, over these."""
+        if self.elastica is not None or self.equations.coarse is None:
+            return self.coarser.solver
+        return solver_over(self.equations, self.equations.coarse)
 
     def equations_at(self, speed: float) -> Equations:
         """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""

@@ -17,7 +17,21 @@ LARGE = 256  # number of coordinates of a part above which its lowest modes alon
 
 def solver_of(equations: Equations) -> Eigensolver:
     """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart."""
-    pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
+    return _solver_of_parts(equations.steady(), _parts(equations))
+
+
+def solver_over(equations: Equations, coordinates: np.ndarray) -> Eigensolver:
+    """Eigensolver of the same equations over some, ascending, of their coordinates: the others are 0."""
+    remaining = [np.flatnonzero(np.isin(coordinates, part)) for part in _parts(equations)]
+    return _solver_of_parts(equations.steady().part(coordinates), remaining)
+
+
+def _parts(equations: Equations) -> list[np.ndarray]:
+    """Coordinates of each uncoupled part."""
+    return [equations.places(names) for names in equations.connected]
+
+
+def _solver_of_parts(pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> Eigensolver:
     return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
 
 

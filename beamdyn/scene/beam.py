@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -338,7 +339,7 @@ class Beam:
         """Angle by which the section at the root is turned [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[0][0])
 
-    @property
+    @cached_property
     def tip_twist(self) -> float:
         """Angle by which the section at the tip is turned [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])

@@ -100,8 +100,8 @@ class Profile(FieldsOnly):
 
     def end_values(self) -> tuple[np.ndarray, np.ndarray]:
         """Values at the left and at the right end of each segment: two arrays, which differ at jumps."""
-        ends = [legendre.legval(np.array([-1.0, 1.0]), c) for c in self.coefficients]
-        return np.array([e[0] for e in ends]), np.array([e[1] for e in ends])
+        even, odd = self.series[::2].sum(axis=0), self.series[1::2].sum(axis=0)
+        return even - odd, even + odd
 
     def split(self, breakpoints: Sequence[float]) -> Profile:
         """Represent the same property on segments that also end at the given breakpoints."""
@@ -163,8 +163,10 @@ def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) 
         series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values.T)
         largest = np.abs(series).max(axis=0)
         resolved = (np.abs(series[-3:]) <= _FIT_TOLERANCE * largest).all(axis=0)
-        for k, row, size in zip(left[resolved], series.T[resolved], largest[resolved], strict=True):
-            rows[k] = legendre.legtrim(row, 1e-17 * size).tolist()
+        kept = np.abs(series) > 1e-17 * largest
+        length = np.maximum(nodes - kept[::-1].argmax(axis=0), 1)
+        for k, row, n in zip(left[resolved], series.T[resolved].tolist(), length[resolved], strict=True):
+            rows[k] = row[:n]
         if not (left := left[~resolved]).size:
             return rows
     a, b = profile.breakpoints[left[0] : left[0] + 2]

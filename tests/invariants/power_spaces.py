@@ -23,6 +23,10 @@ class Powers:
     def size(self):
         return len(self.powers)
 
+    @property
+    def coarse(self):
+        return None
+
     def functions(self, order):
         return [self.length**k * Polynomial([0] * k + [1]).deriv(order) for k in self.powers]
 

@@ -34,7 +34,7 @@ class Sway(Field):
         K = 4 * space.gram(beam.bending_stiffness, 2) / beam.length**3
         load = space.load(beam.mass_per_length) * beam.length
         terms = Term("mass", "sway", "sway", 2, M), Term("stiffness", "sway", "sway", 0, K)
-        return FieldEquations(space.size, terms, (Load("load", "sway", load, "root_transverse", 0.5),))
+        return FieldEquations(space, terms, (Load("load", "sway", load, "root_transverse", 0.5),))
 
 
 PLAIN = bd.natural_modes(HARVESTER, 50.0, 3).frequency

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamdyn.equations.discretization import Functions, Spaces
+from beamdyn.equations.discretization import Functions, Space, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.scene import Scene
@@ -92,8 +92,8 @@ class FieldEquations:
 
     Parameters
     ----------
-    size : int
-        Number of coordinates.
+    space : Space
+        Functions of which the coordinates are coefficients.
     terms : tuple of Term
         Terms of the left-hand side.
     loads : tuple of Load
@@ -104,7 +104,7 @@ class FieldEquations:
         Whether the first coordinate turns the beam about its root.
     """
 
-    size: int
+    space: Space
     terms: tuple[Term, ...]
     loads: tuple[Load, ...]
     deflection: Deflection | None = None

@@ -73,7 +73,7 @@ class Stretch(Field):
             for term in _coupling(Trial(partner, scene, spaces))
         )
         terms = (*_own_terms(scene, spaces), *coupling)
-        return FieldEquations(spaces.functions(_CONDITIONS).size, terms, (*_loads(scene, spaces),))
+        return FieldEquations(spaces.functions(_CONDITIONS), terms, (*_loads(scene, spaces),))
 
 
 def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:

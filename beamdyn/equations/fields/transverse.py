@@ -251,7 +251,7 @@ class TransverseField(Field):
                 terms += [*above, *map(_transposed, above), *skew, *map(_transposed_skew, skew)]
         deflection = Deflection(own.space, own.P, own.Q, own.tilting_load(1 - self.direction), self.direction)
         turning = own.conditions.held == 1 and self.rotates
-        return FieldEquations(own.space.size, (*terms,), (*_loads(own),), deflection, turning)
+        return FieldEquations(own.space, (*terms,), (*_loads(own),), deflection, turning)
 
     def _terms_with(self, pair: Pair) -> Iterator[Term]:
         yield from _mass(pair)
