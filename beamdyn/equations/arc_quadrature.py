@@ -56,13 +56,13 @@ class ArcQuadrature:
 
     def integrate(self, values: np.ndarray) -> np.ndarray:
         """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
-        p = self.cells.points
-        _, w = gauss_rule(p)
-        scaled = values.reshape(*values.shape[:-1], -1, p) * self._half_lengths
-        ends = np.cumsum(scaled @ w, axis=-1)
-        starts = ends - scaled @ w
-        inside = scaled @ _cumulative(p).T + starts[..., None]
-        return np.concatenate([inside.reshape(values.shape), ends[..., -1:]], axis=-1)
+        p, of_functions = self.cells.points, values.shape[:-1]
+        of_cells = (values.reshape(-1, p) @ _to_points_and_end(p)).reshape(*of_functions, -1, p + 1)
+        of_cells *= self._half_lengths
+        ends = np.cumsum(of_cells[..., p], axis=-1)
+        of_cells[..., 1:, :p] += ends[..., :-1, None]
+        inside = of_cells[..., :p].reshape(*of_functions, -1)
+        return np.concatenate([inside, ends[..., -1:]], axis=-1)
 
     def transposed(self, forces: np.ndarray) -> np.ndarray:
         """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
@@ -95,6 +95,12 @@ class ArcQuadrature:
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
         return cell, t, cell[:, None] * p + np.arange(p)
+
+
+@cache
+def _to_points_and_end(points: int) -> np.ndarray:
+    """Weights (p, p + 1), in columns, of the integrals from -1 to each of p Gauss points, and to 1."""
+    return np.column_stack([_cumulative(points).T, gauss_rule(points)[1]])
 
 
 @cache

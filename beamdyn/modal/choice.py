@@ -14,6 +14,7 @@ from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import section_tensor
 
 DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
@@ -21,6 +22,7 @@ _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error g
 _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
 _FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_IN_TWISTED = 0.67  # forces in each direction, where sections that are twisted bend under both
 _MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
@@ -145,14 +147,14 @@ def list_models(
 
     The other parameters and what is raised are those of `choose_model`.
     """
-    segments = len(scene.modelled_beam.breakpoints) - 1
+    segments = _count_segments(scene)
     if segments > _MOST_SEGMENTS:
         raise ValueError(
             f"the beam has {segments} segments between its stations and breakpoints: at most "
             f"{_MOST_SEGMENTS}; give fewer stations, or its properties as polynomials or functions of x/L"
         )
     if isinstance(discretization, str):
-        model = Model(scene, _find_first(discretization, segments, modes, target, cheapest))
+        model = Model(scene, _find_first(discretization, scene, modes, target, cheapest))
     else:
         model = Model(scene, _check_size(discretization, modes, segments))
     return _list_from(model, isinstance(discretization, str))
@@ -166,8 +168,8 @@ def _list_from(model: Model | None, refining: bool) -> Iterator[Model]:
 
 def _refine(model: Model) -> Model | None:
     """The next finer model; None if there is none that is affordable."""
-    finer, segments = model.discretization.finer(), len(model.scene.modelled_beam.breakpoints) - 1
-    if finer is None or _count_functions(finer, segments) > _MOST_IN_ALL:
+    finer = model.discretization.finer()
+    if finer is None or _count_functions(finer, _count_segments(model.scene)) > _MOST_IN_ALL:
         return None
     refined = Model(model.scene, finer)
     if refined.coarser.discretization == model.discretization:  # it is there already
@@ -175,31 +177,40 @@ def _refine(model: Model) -> Model | None:
     return refined
 
 
-def _find_first(name: str, segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
+def _find_first(name: str, scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
     """Find the smallest sensible discretization of one kind."""
-    first = _FIRST_CANDIDATE[name](segments, modes, target, cheapest)
+    first = _FIRST_CANDIDATE[name](scene, modes, target, cheapest)
+    segments = _count_segments(scene)
     while not _fits(first, modes, segments) and (finer := first.finer()) is not None:
         first = finer
     return _check_size(first, modes, segments)
 
 
-def _first_ritz(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
+def _count_segments(scene: Scene) -> int:
+    """Number of segments of the beam between its stations and breakpoints."""
+    return len(scene.modelled_beam.breakpoints) - 1
+
+
+def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
+    segments = _count_segments(scene)
     if segments > _FEW_SEGMENTS:
-        return Ritz(14 + modes - int(1.5 * np.log10(target)), "moments")
+        coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
+        forces = 16 + modes - 2 * np.log10(target)
+        return Ritz(int(_IN_TWISTED * forces if coupled else forces), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
     total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
 
 
-def _first_fem(segments: int, modes: int, target: float, cheapest: bool) -> Discretization:
+def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
     from beamdyn.equations.fem import MOST_ELEMENTS, Fem  # here, because scikit-fem is slow to import
 
-    return Fem(min(max(4 if cheapest else 80, 2 * segments, 4 * modes), MOST_ELEMENTS))
+    return Fem(min(max(4 if cheapest else 80, 2 * _count_segments(scene), 4 * modes), MOST_ELEMENTS))
 
 
-# First candidate of each kind, by segments, modes, target and whether to begin with the smallest.
-_FIRST_CANDIDATE: dict[str, Callable[[int, int, float, bool], Discretization]] = {
+# First candidate of each kind, by scene, modes, target and whether to begin with the smallest.
+_FIRST_CANDIDATE: dict[str, Callable[[Scene, int, float, bool], Discretization]] = {
     "ritz": _first_ritz,
     "fem": _first_fem,
 }
@@ -207,7 +218,7 @@ _FIRST_CANDIDATE: dict[str, Callable[[int, int, float, bool], Discretization]] =
 
 def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
     """Replace a discretization that has too few functions for the modes of a scene by "ritz"."""
-    segments = len(scene.modelled_beam.breakpoints) - 1
+    segments = _count_segments(scene)
     fits = isinstance(discretization, str) or _fits(discretization, modes, segments)
     return discretization if fits else "ritz"
 

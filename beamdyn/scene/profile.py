@@ -93,7 +93,7 @@ class Profile(FieldsOnly):
             series[: len(row), k] = row
         return series
 
-    @property
+    @cached_property
     def degree(self) -> int:
         """Largest polynomial degree of a segment."""
         return max(len(c) for c in self.coefficients) - 1
@@ -148,7 +148,9 @@ class Profile(FieldsOnly):
 
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
     """The piecewise polynomial of Legendre coefficients, those of each segment in a column."""
-    return Profile(ends, tuple(map(tuple, series.T.tolist())))
+    profile = Profile(ends, tuple(map(tuple, series.T.tolist())))
+    profile.__dict__["series"] = series  # it is there already
+    return profile
 
 
 def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) -> list[list[float]]:
