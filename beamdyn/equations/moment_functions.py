@@ -316,7 +316,7 @@ class MomentSpace(SampledSpace):
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return first.shape[1], at_points.reshape(len(on_cells), -1)
 
-    @cached_property
+    @property
     def coarse(self) -> np.ndarray:
         """The first functions."""
         return np.arange(self._turns + self._quotients[0])

@@ -150,7 +150,7 @@ class RitzSpace(SampledSpace):
         basis = _BASES[self.spaces.ritz.basis][self.conditions]
         return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
 
-    @cached_property
+    @property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.coarser().functions

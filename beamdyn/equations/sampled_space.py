@@ -54,7 +54,7 @@ class SampledSpace(FieldsOnly, ABC):
         """Number n of functions."""
         return len(self.samples[0])
 
-    @cached_property
+    @property
     @abstractmethod
     def coarse(self) -> np.ndarray:
         """Indices of functions that span those of the coarser discretization."""
