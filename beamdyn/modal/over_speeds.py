@@ -8,13 +8,15 @@ halved, down to a few speeds, which are solved each.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
 
 _FEW = 160  # speeds that are solved each
-_INTERVALS = 16, 32  # between the points, in turn
+_INTERVALS = 8, 16, 32  # between the points, in turn: each time twice as many
 _MISFIT = 1e-12  # of predicted squared frequencies, beside their rounding errors: it is in the stated error
 _MISFIT_OF_MODES = 1e-7  # of predicted modes, relative to their largest coordinate: they are only compared
 
@@ -32,8 +34,8 @@ def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eig
     """The same at ascending speeds of 0 or more."""
     if len(speeds) <= _FEW:
         return solver.solve(speeds, count)
-    for intervals in _INTERVALS:
-        if (found := _interpolate(solver, speeds, count, intervals)) is not None:
+    for eigen in _solve_at_nodes(solver, speeds[0], speeds[-1], count):
+        if (found := _interpolate(solver, eigen, speeds)) is not None:
             return found
     parts = [_solve_ascending(solver, part, count) for part in np.array_split(speeds, 2)]
     joined = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
@@ -47,13 +49,40 @@ def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int)
     return solve_over_speeds(solver, speeds, count).eigenvalue
 
 
-def _interpolate(solver: Eigensolver, speeds: np.ndarray, count: int, intervals: int) -> Eigen | None:
-    """The same by interpolation; None where it errs by more than rounding."""
-    low, high = speeds[[0, -1]] ** 2
-    t = -np.cos(np.pi * np.arange(intervals + 1) / intervals)
-    eigen = solver.solve(np.sqrt(np.clip(low + (high - low) * (1 + t) / 2, low, high)), count)
+def _solve_at_nodes(solver: Eigensolver, slowest: float, fastest: float, count: int) -> Iterator[Eigen]:
+    """Solve at ever more Chebyshev points of the squared speeds, of which each time half are known."""
+    known: Eigen | None = None
+    for intervals in _INTERVALS:
+        middle, half = (fastest**2 + slowest**2) / 2, (fastest**2 - slowest**2) / 2
+        speeds = np.sqrt(np.clip(middle + half * _nodes(intervals), slowest**2, fastest**2))
+        if known is None:
+            known = solver.solve(speeds, count)
+        else:
+            known = _interleave(known, solver.solve(speeds[1::2], count))
+        yield known
+
+
+def _nodes(intervals: int) -> np.ndarray:
+    """Chebyshev points of [-1, 1], with its ends, ascending."""
+    return -np.cos(np.pi * np.arange(intervals + 1) / intervals)
+
+
+def _interleave(first: Eigen, between: Eigen) -> Eigen:
+    """Put the modes at speeds between others in their places."""
+    places = np.arange(1, len(first.eigenvalue))
+    return Eigen(
+        np.insert(first.eigenvalue, places, between.eigenvalue, axis=0),
+        np.insert(first.vector, places, between.vector, axis=0),
+        np.insert(first.rounding, places, between.rounding, axis=0),
+    )
+
+
+def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen | None:
+    """The modes at ascending speeds by those at Chebyshev points; None where these predict too little."""
+    (low, high), (points, count) = speeds[[0, -1]] ** 2, eigen.eigenvalue.shape
+    t = _nodes(points - 1)
     squared, vector = np.real(-(eigen.eigenvalue**2)), _align(eigen.vector, solver.pencil.M)
-    at_nodes = np.concatenate([squared, vector.reshape(len(t), -1)], axis=1)
+    at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
     misfit = np.abs(_evaluate(t[::2], at_nodes[::2], t[1::2]) - at_nodes[1::2]).max(axis=0)
     of_squares = misfit[:count] / np.abs(squared).min(axis=0)
     of_modes = misfit[count:].max() / np.abs(vector).max()
