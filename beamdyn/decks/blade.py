@@ -10,8 +10,6 @@ import numpy as np
 
 from beamdyn.decks.stations import Stations
 
-PRECONE = "precone"
-
 
 @dataclass(frozen=True)
 class IgnoredProperty:
@@ -68,6 +66,8 @@ class Blade:
         Arguments of `TipMass`.
     pitch : float
         Angle by which the whole blade is turned towards feather [deg].
+    precone : float
+        Angle by which the blade leaves the plane of rotation, positive downwind [deg].
     speed : float
         Speed of rotation that the deck states [rpm]; 0 for none.
     damping : float
@@ -87,6 +87,7 @@ class Blade:
     columns: dict[str, np.ndarray]
     tip: dict[str, float] = field(default_factory=dict)
     pitch: float = 0.0
+    precone: float = 0.0
     speed: float = 0.0
     damping: float = 0.0
     polynomials: dict[str, np.ndarray] = field(default_factory=dict)
@@ -99,13 +100,6 @@ def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, r
     if not array.any():
         return ()
     return (IgnoredProperty(name, float(array.min()), float(array.max()), unit, reason),)
-
-
-def ignore_precone(angle: float) -> tuple[IgnoredProperty, ...]:
-    """A cone angle [deg], which the scene does not have."""
-    return ignore(
-        PRECONE, angle, "deg", "the blade stands in the plane of rotation; no cone angle is modelled"
-    )
 
 
 def ignore_columns(

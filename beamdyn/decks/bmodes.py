@@ -19,7 +19,7 @@ from beamdyn.common.edge.data_text import (
     plain_name,
     read_data,
 )
-from beamdyn.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns, ignore_precone
+from beamdyn.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
 from beamdyn.decks.elastodyn import named_file
 from beamdyn.decks.stations import Column, Stations, read_stations
 
@@ -92,7 +92,8 @@ def read_main_file(text: DataText) -> Blade:
         tip=tip,
         pitch=values["blthp"],
         speed=_speed(values),
-        ignored=(*ignore_precone(values["precone"]), *left_out, *blade.ignored),
+        precone=values["precone"],
+        ignored=(*left_out, *blade.ignored),
     )
 
 

@@ -23,7 +23,7 @@ from beamdyn.common.edge.data_text import (
     plain_name,
     read_data,
 )
-from beamdyn.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns, ignore_precone
+from beamdyn.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
 from beamdyn.decks.stations import Column, Stations, read_stations
 
 COLUMNS = (
@@ -121,8 +121,8 @@ def read_main_file(text: DataText) -> Blade:
         sources=(text.path, *blade.sources),
         tip={"mass": values["tipmass1"]} if values["tipmass1"] else {},
         pitch=values.get("blpitch1", 0.0),
+        precone=values["precone1"],
         speed=values.get("rotspeed", 0.0),
-        ignored=(*ignore_precone(values["precone1"]), *blade.ignored),
     )
 
 

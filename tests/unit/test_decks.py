@@ -68,8 +68,7 @@ def test_main_file_brings_hub_tip_pitch_and_speed(folder, name):
     assert deck.scene.mount.radius == 1.25
     assert math.degrees(deck.scene.mount.bending_angle) == pytest.approx(86.0, rel=1e-14)
     assert deck.scene.motion == bd.SteadyRotation(18 * math.pi / 30)
-    (cone,) = [entry for entry in deck.ignored if entry.name == "precone"]
-    assert cone.values == "-2.5 deg" and "cone" in cone.reason
+    assert math.degrees(deck.scene.mount.precone) == pytest.approx(2.5, rel=1e-14)  # upwind is towards b3
     assert [path.rpartition("/")[2] for path in deck.sources][-2:] == ["main.dat", "blade.dat"]
 
 
@@ -166,7 +165,7 @@ def test_the_scene_file_is_the_scene(folder, name):
 def test_the_scene_file_is_readable(folder):
     text = bd.read_deck(folder / "main.dat").scene_text()
     lines = text.splitlines()
-    assert "#   precone (-2.5 deg): the blade stands in the plane" in text
+    assert 'precone = "2.5 deg"' in text
     start = lines.index("stations = [")
     table = lines[start + 1 : start + 7]
     assert table[0].split('"')[1::2][:3] == ["x/L", "twist [deg]", "mass_per_length [kg/m]"]
@@ -180,7 +179,7 @@ def test_the_command_audits_writes_and_the_scene_runs(folder, run):
     scene = folder / "scene.toml"
     code, out, err = run("import", folder / "main.dat", "-o", scene)
     assert code == 0
-    for part in ("mass", "Ignored", "precone", "-2.5 deg", "flap 2", "sum of coefficients", "steep"):
+    for part in ("mass", "Ignored", "damping", "flap 2", "sum of coefficients", "steep"):
         assert part in out
     assert "warning: the deck's shape of flap 1" in err
     code, out, _ = run("modes", scene, "--tolerance", "1e-4", "--modes", "2")
