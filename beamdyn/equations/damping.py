@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg
 
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
 from beamdyn.equations.rounding import BACKWARD
 
 
@@ -15,11 +15,9 @@ def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarra
     a singular stiffness positive definite.
     """
     L = np.linalg.cholesky(K + shift * M if shift else K)
-    compliance = scipy.linalg.solve_triangular(
-        L, scipy.linalg.solve_triangular(L, M, lower=True).T, lower=True
-    )
+    compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
-    unshifted = _quotients(K, scipy.linalg.solve_triangular(L, U, trans="T", lower=True)) if shift else 1.0
+    unshifted = _quotients(K, solve_lower_transposed(L, U)) if shift else 1.0
     root = (U * np.sqrt(np.maximum(mu * unshifted, 0))) @ U.T
     return 2 * L @ root @ L.T
 

@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 import scipy.linalg
-from scipy.linalg import solve_triangular
 
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
@@ -67,7 +67,7 @@ class Solver(Eigensolver):
             L = np.linalg.cholesky(_shifted_stiffness(pencil))
         growth, Q = np.linalg.eigh(_transform_by_inverse(L, pencil.K2))
         self.growth = growth
-        self.basis = solve_triangular(L, Q, trans="T", lower=True)
+        self.basis = solve_lower_transposed(L, Q)
         self.mass = _symmetrize(Q.T @ _transform_by_inverse(L, pencil.M) @ Q)
 
     @cached_property
@@ -244,7 +244,7 @@ def _shifted_stiffness(pencil: SteadyPencil) -> np.ndarray:
 
 def _transform_by_inverse(L: np.ndarray, A: np.ndarray) -> np.ndarray:
     """Compute L^-1 A L^-T for triangular L and symmetric A."""
-    return _symmetrize(solve_triangular(L, solve_triangular(L, A, lower=True).T, lower=True))
+    return _symmetrize(solve_lower(L, solve_lower(L, A).T))
 
 
 def _transformed(basis: np.ndarray, A: np.ndarray) -> np.ndarray:

@@ -11,9 +11,10 @@ from contextlib import suppress
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigen import (
@@ -109,7 +110,7 @@ class LargeSolver(Eigensolver):
         mu, x = self._largest(self._transformed(L, self.pencil.M), count)
         if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
             return None
-        v = solve_triangular(L, x, trans="T", lower=True) / np.sqrt(mu)
+        v = solve_lower_transposed(L, x) / np.sqrt(mu)
         rounding = forward_error(mu) + self._rounding(speed, 1 / mu, v)
         return 1j / np.sqrt(mu), v, rounding
 
@@ -136,8 +137,8 @@ class LargeSolver(Eigensolver):
         """The operator L^-1 A L^-T."""
 
         def product(x: np.ndarray) -> np.ndarray:
-            half = solve_triangular(L, x, trans="T", lower=True, check_finite=False)
-            return solve_triangular(L, A @ half, lower=True, check_finite=False)
+            half = solve_lower_transposed(L, x.reshape(len(L), -1))
+            return solve_lower(L, A @ half).reshape(x.shape)
 
         return self._operator(product, self.size)
 

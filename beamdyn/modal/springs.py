@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg
 
+from beamdyn.common.triangular import solve_lower
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 
@@ -187,9 +188,7 @@ def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float
     if values[0] < _GRADED:
         return None
     L = np.linalg.cholesky(unit)
-    return scale[:, None] * scipy.linalg.solve_triangular(L, np.eye(len(K)), lower=True).T, float(
-        values[-1] / values[0]
-    )
+    return scale[:, None] * solve_lower(L, np.eye(len(K))).T, float(values[-1] / values[0])
 
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
