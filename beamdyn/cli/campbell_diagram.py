@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from cyclopts import Parameter
 
@@ -14,7 +15,6 @@ from beamdyn.cli.values import (
     ModeCount,
     PhysicsOption,
     Text,
-    load_with,
     parse_positive,
     parse_quantity,
 )
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from beamdyn.common.edge.html_report import Question
     from beamdyn.scene.scene import Scene
 
-SceneFiles = Annotated[tuple[Path, ...], Parameter(name="SCENE.toml", negative=())]
+SceneFiles = Annotated[tuple[Path, ...], Parameter(name="FILE", negative=())]
 
 _SPEEDS = 301
 _SIZE = (8.5, 6.0)  # of the picture [inch]
@@ -44,6 +44,8 @@ def campbell(
     per_rev: Text = "6",
     modes: ModeCount = 4,
     labels: Text | None = None,
+    length: Text | None = None,
+    hub_radius: Text | None = None,
     bounds: Flag = False,
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
@@ -53,13 +55,14 @@ def campbell(
 ) -> None:
     """Campbell diagram: natural frequencies over rotor speed, per-rev lines, crossings and margins.
 
-    Several scenes are drawn over one another. The speeds of the answer have the unit of --top-speed: rpm or
-    rad/s. The CSV file has the frequencies over speed.
+    Each file is a scene (.toml) or a blade that `beamdyn import` reads; several are drawn over one another.
+    The speeds of the answer have the unit of --top-speed: rpm or rad/s. The CSV file has the frequencies over
+    speed.
 
     Parameters
     ----------
     scenes
-        The scenes.
+        The scenes (.toml), or blades of ElastoDyn, FAST 7 or BModes, or CSV tables.
     top_speed
         Top speed of the diagram, with its unit, e.g. "15 rpm".
     rated
@@ -73,6 +76,10 @@ def campbell(
         Number of modes, from the lowest.
     labels
         Names of the scenes, separated by commas; default: those of the files.
+    length
+        Length with its unit of the blades whose files do not say it (TipRad - HubRad).
+    hub_radius
+        Distance of the root from the axis of rotation with its unit, likewise.
     bounds
         Also give guaranteed bounds of the frequencies at the rated speed, or else the top speed.
     discretization
@@ -94,11 +101,12 @@ def campbell(
     outputs.check(*scenes, crossings=crossings)
     speeds, unit = _parse_top(top_speed)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
+    inputs = _read_all(scenes, length, hub_radius)
     question = _question(
-        scenes, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
-        **options, physics=physics,
+        inputs, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
+        length=length, hub_radius=hub_radius, **options, physics=physics,
     )  # fmt: skip
-    by_label = _load(scenes, labels, physics)
+    by_label = _label(inputs, labels, physics)
     range_ = None if operating is None else _parse_range(operating)
     result = campbell(
         by_label, speeds, per_rev=_parse_orders(per_rev), rated=_parse_rated(rated, top_speed, speeds[-1]),
@@ -106,7 +114,8 @@ def campbell(
     )  # fmt: skip
     if crossings is not None:
         write_text(crossings, csv_text(crossings_of_lines_csv(result)))
-    warnings = *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
+    ignored = (warning for given in inputs for warning in given.warnings)
+    warnings = *ignored, *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
     deliver(
         result,
         outputs,
@@ -118,12 +127,44 @@ def campbell(
     )
 
 
-def _question(paths: Sequence[Path], **options: object) -> Question:
+class _Input(NamedTuple):
+    """A file: its scene, the text of that, and what of a blade's file the scene does not have."""
+
+    path: Path
+    scene: Scene
+    text: str
+    warnings: Sequence[str]
+
+
+def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_Input]:
+    """Read the files; the options are for the blades of other programs alone."""
+    given = {"length": length, "hub_radius": hub_radius}
+    unused = [name for name, text in given.items() if text is not None]
+    if unused and all(path.suffix.lower() == ".toml" for path in paths):
+        option = f"--{unused[0].replace('_', '-')}"
+        raise ValueError(f'{option} = "{given[unused[0]]}": scenes (.toml) have their own; leave it out')
+    return [_read(path, **given) for path in paths]
+
+
+def _read(path: Path, length: str | None, hub_radius: str | None) -> _Input:
+    from beamdyn.cli.decks import read_with
+    from beamdyn.common.edge.config import read
+    from beamdyn.config import load_scene
+
+    if path.suffix.lower() == ".toml":
+        return _Input(path, load_scene(path), read(path), ())
+    deck = read_with(path, length, hub_radius)
+    ignored = ", ".join(f"{entry.name} ({entry.values})" for entry in deck.ignored)
+    said = [f"{path}: not modelled: {ignored}; see beamdyn import {path}"] if ignored else []
+    return _Input(path, deck.scene, deck.scene_text(), said)
+
+
+def _question(inputs: Sequence[_Input], **options: object) -> Question:
     """The command on each of its files, for the head of a report."""
     from beamdyn.common.edge.html_report import Question
 
-    each = [Question.on_file("beamdyn campbell", path, **options) for path in paths]
-    title = f"beamdyn campbell: {', '.join(map(str, paths))}"
+    each = [Question.of("beamdyn campbell", given.path, given.text, **options) for given in inputs]
+    title = f"beamdyn campbell: {', '.join(str(given.path) for given in inputs)}"
     return Question(title, "\n\n".join(question.inputs for question in each))
 
 
@@ -173,16 +214,19 @@ def _parse_orders(text: str) -> Sequence[int]:
     return orders if len(parts) > 1 else range(1, orders[0] + 1)
 
 
-def _load(paths: Sequence[Path], labels: str | None, physics: PhysicsOption) -> dict[str, Scene]:
-    """The scenes by their labels."""
-    names = [path.stem for path in paths] if labels is None else [part.strip() for part in labels.split(",")]
-    if len(names) != len(paths) or not all(names):
-        raise ValueError(f'--labels = "{labels}": give one label for each of {len(paths)} scenes')
+def _label(inputs: Sequence[_Input], labels: str | None, physics: PhysicsOption) -> dict[str, Scene]:
+    """The scenes by their labels, with the physics of the option if that is given."""
+    stems = [given.path.stem for given in inputs]
+    names = stems if labels is None else [part.strip() for part in labels.split(",")]
+    if len(names) != len(inputs) or not all(names):
+        raise ValueError(f'--labels = "{labels}": give one label for each of {len(inputs)} scenes')
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
     if twice:
         remedy = "give --labels, one for each" if labels is None else "give each its own"
         raise ValueError(f'two scenes have the label "{twice[0]}": {remedy}')
-    return {name: load_with(path, physics) for name, path in zip(names, paths, strict=True)}
+    scenes = (given.scene for given in inputs)
+    chosen = (scene if physics is None else replace(scene, physics=physics) for scene in scenes)
+    return dict(zip(names, chosen, strict=True))
 
 
 def _draw(result: Campbell) -> Figure:

@@ -49,10 +49,22 @@ def import_deck(
         Overwrite a file that exists.
     """
     from beamdyn.common.edge.tables import show
-    from beamdyn.decks.deck import read_deck
 
     outputs = Outputs(force=force)
     outputs.check(file, output=output)
+    deck = read_with(file, length, hub_radius)
+    outputs.check(*deck.sources, output=output)
+    show(_deck_tables(deck))
+    if output is not None:
+        deck.write_scene(output, force)
+        show([f"Written: {output}, for beamdyn modes {output} and the other commands."])
+    warn(deck.audit.warnings)
+
+
+def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
+    """Read a deck with the options --length and --hub-radius."""
+    from beamdyn.decks.deck import read_deck
+
     given = {
         name: None if text is None else parse_quantity(f"--{name.replace('_', '-')}", text, "m")
         for name, text in {"length": length, "hub_radius": hub_radius}.items()
@@ -61,13 +73,7 @@ def import_deck(
         naming_option("length", "--length", length or ""),
         naming_option("hub_radius", "--hub-radius", hub_radius or ""),
     ):
-        deck = read_deck(file, **given)
-    outputs.check(*deck.sources, output=output)
-    show(_deck_tables(deck))
-    if output is not None:
-        deck.write_scene(output, force)
-        show([f"Written: {output}, for beamdyn modes {output} and the other commands."])
-    warn(deck.audit.warnings)
+        return read_deck(file, **given)
 
 
 def _deck_tables(deck: Deck) -> list[RenderableType]:

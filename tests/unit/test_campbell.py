@@ -364,9 +364,24 @@ def test_command_overlays_scenes_and_lists_orders(run, tmp_path: Path) -> None:
     assert "3P" in out and "4P" not in out
 
 
+def test_command_takes_the_blades_of_other_programs(run, tmp_path: Path) -> None:
+    table = tmp_path / "blade.csv"
+    table.write_text(
+        "r [m], mass [kg/m], EI flap [N m2], EI edge [N m2], offset [m]\n1,50,1e6,4e6,0.1\n9,50,1e6,4e6,0.1\n"
+    )
+    code, out, err = run("campbell", table, "--top-speed", "300 rpm", "--bounds", "--modes", "2")
+    assert code == DONE
+    assert "not modelled: offset (0.1 m)" in err and "ounds" in out
+    beam = bd.Beam.from_stiffness(8.0, 50.0, 1e6, second_bending_stiffness=4e6)
+    scene = bd.Scene(beam, bd.Mount(1.0, math.pi, math.pi / 2), physics=bd.Physics(planes=2))
+    known = bd.campbell(scene, np.linspace(0, 10 * math.pi, 301), modes=2, per_rev=range(1, 7))
+    for crossing in known.crossings:
+        assert f"{crossing.speed * 30 / math.pi:.6g}"[:6] in out
+
+
 MISTAKES = {
     "no top speed": ((BLADE,), ("--top-speed",)),
-    "no scene": (("--top-speed", "5 rpm"), ("SCENE.toml",)),
+    "no scene": (("--top-speed", "5 rpm"), ("FILE",)),
     "bare top speed": ((BLADE, "--top-speed", "5"), ("--top-speed", "unit")),
     "top speed negative": ((BLADE, "--top-speed", "-5 rpm"), ("--top-speed", "greater than 0")),
     "top below rated": (
@@ -379,6 +394,7 @@ MISTAKES = {
     "range falls": ((BLADE, "--top-speed", "5 rpm", "--operating", "4:3 rpm"), ("--operating", "end above")),
     "one label twice": ((BLADE, BLADE, "--top-speed", "5 rpm"), ("blade", "--labels")),
     "labels alike": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a, a"), ('"a"', "its own")),
+    "length of a scene": ((BLADE, "--top-speed", "5 rpm", "--length", "5 m"), ("--length", "leave it out")),
     "one label of two": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a"), ("--labels", "2 scenes")),
 }  # fmt: skip
 
