@@ -1,9 +1,9 @@
 """Modes over many speeds, by interpolation between those at a few.
 
-Without gyroscopic and damping terms squared frequencies are smooth functions of the squared speed, and so are
-the modes, but for sharp veerings.  They are interpolated in Chebyshev points of an interval of speeds.  The
-interpolant through every other point predicts the rest: where it errs by more than rounding, the interval is
-halved, down to a few speeds, which are solved each.
+Without damping squared frequencies are smooth functions of the speed, and so are the modes, but for sharp
+veerings; without gyroscopic terms, of the squared speed.  They are interpolated in Chebyshev points of an
+interval.  The interpolant through every other point predicts the rest: where it errs by more than rounding,
+the interval is halved, down to a few speeds, which are solved each.
 """
 
 from __future__ import annotations
@@ -23,11 +23,14 @@ _MISFIT_OF_MODES = 1e-7  # of predicted modes, relative to their largest coordin
 
 def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
     """Compute the `count` lowest modes at speeds (S,) [rad/s], as `Eigensolver.solve` does."""
-    if len(speeds) <= _FEW or not solver.conservative:
+    if len(speeds) <= _FEW or solver.pencil.C.any():
         return solver.solve(speeds, count)
-    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense of rotation is the same
+    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense has the same frequencies
     found = _solve_ascending(solver, sizes, count)
-    return Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
+    vector = found.vector[place]
+    if np.iscomplexobj(vector):
+        vector = np.where(speeds[:, None, None] < 0, vector.conj(), vector)
+    return Eigen(found.eigenvalue[place], vector, found.rounding[place])
 
 
 def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
@@ -50,16 +53,22 @@ def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int)
 
 
 def _solve_at_nodes(solver: Eigensolver, slowest: float, fastest: float, count: int) -> Iterator[Eigen]:
-    """Solve at ever more Chebyshev points of the squared speeds, of which each time half are known."""
+    """Solve at ever more Chebyshev points, of which each time half are known."""
     known: Eigen | None = None
+    power = _power(solver)
+    low, high = slowest**power, fastest**power
     for intervals in _INTERVALS:
-        middle, half = (fastest**2 + slowest**2) / 2, (fastest**2 - slowest**2) / 2
-        speeds = np.sqrt(np.clip(middle + half * _nodes(intervals), slowest**2, fastest**2))
+        speeds = np.clip(low + (high - low) * (1 + _nodes(intervals)) / 2, low, high) ** (1 / power)
         if known is None:
             known = solver.solve(speeds, count)
         else:
             known = _interleave(known, solver.solve(speeds[1::2], count))
         yield known
+
+
+def _power(solver: Eigensolver) -> int:
+    """Power of the speed of which the modes are smooth functions."""
+    return 2 if solver.conservative else 1
 
 
 def _nodes(intervals: int) -> np.ndarray:
@@ -79,8 +88,10 @@ def _interleave(first: Eigen, between: Eigen) -> Eigen:
 
 def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen | None:
     """The modes at ascending speeds by those at Chebyshev points; None where these predict too little."""
-    (low, high), (points, count) = speeds[[0, -1]] ** 2, eigen.eigenvalue.shape
-    t = _nodes(points - 1)
+    if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter
+        return None
+    power, (points, count) = _power(solver), eigen.eigenvalue.shape
+    (low, high), t = speeds[[0, -1]] ** power, _nodes(points - 1)
     squared, vector = np.real(-(eigen.eigenvalue**2)), _align(eigen.vector, solver.pencil.M)
     at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
     misfit = np.abs(_evaluate(t[::2], at_nodes[::2], t[1::2]) - at_nodes[1::2]).max(axis=0)
@@ -88,20 +99,22 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen
     of_modes = misfit[count:].max() / np.abs(vector).max()
     if not (of_squares <= _MISFIT + eigen.rounding.min(axis=0)).all() or not of_modes <= _MISFIT_OF_MODES:
         return None
-    values = _evaluate(t, at_nodes, 2 * (speeds**2 - low) / (high - low) - 1)
-    root = np.sqrt(np.abs(values[:, :count]))
+    values = _evaluate(t, at_nodes, 2 * (speeds**power - low) / (high - low) - 1)
+    squares = np.real(values[:, :count])
+    root = np.sqrt(np.abs(squares))
     return Eigen(
-        eigenvalue=np.where(values[:, :count] > 0, 1j * root, root),
+        eigenvalue=np.where(squares > 0, 1j * root, root),
         vector=values[:, count:].reshape(len(speeds), -1, count),
         rounding=np.tile(eigen.rounding.max(axis=0) + of_squares, (len(speeds), 1)),
     )
 
 
 def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """Give modes (S, n, k) at successive speeds the same signs."""
-    products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:])
-    signs = np.cumprod(np.where(products < 0, -1.0, 1.0), axis=0)
-    return np.concatenate([vector[:1], vector[1:] * signs[:, None, :]])
+    """Give modes (S, n, k) at successive speeds the same signs, or phases if they are complex."""
+    products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:].conj())
+    size = np.abs(products)
+    turns = np.where(size > 0, products / np.where(size > 0, size, 1.0), 1.0)
+    return np.concatenate([vector[:1], vector[1:] * np.cumprod(turns, axis=0)[:, None, :]])
 
 
 def _evaluate(nodes: np.ndarray, values: np.ndarray, t: np.ndarray) -> np.ndarray:

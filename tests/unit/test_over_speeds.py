@@ -32,23 +32,39 @@ def solve_both(scene: bd.Scene, speeds: np.ndarray, count: int = 4) -> tuple[Eig
         replace(OUTWARD, mount=bd.Mount(0.1, math.pi, 0.0, root_stiffness=2.0)),
         replace(OUTWARD, mount=bd.Mount(2.0, 0.0, 0.4)),  # inward: it buckles at one of the speeds
         replace(OUTWARD, physics=bd.Physics(planes=2)),  # flap meets edge, with a sharp veering
+        bd.Scene(
+            BEAM, bd.Mount(0.1, math.pi, math.pi / 2, precone=0.1), physics=bd.Physics(planes=2)
+        ),  # gyroscopic, as the next
+        bd.Scene(
+            replace(BEAM, axial_stiffness=BEAM.mass_per_length.scaled(1e4)),
+            bd.Mount(0.1, math.pi, 0.0),
+            physics=bd.Physics(stretch=True),
+        ),
     ],
-    ids=["flap", "edge on a spring", "inward", "veering"],
+    ids=["flap", "edge on a spring", "inward", "veering", "precone", "stretch"],
 )
 def test_values_and_modes(scene: bd.Scene) -> None:
     found, each = solve_both(scene, SPEEDS)
     error = np.abs(found.eigenvalue**2 - each.eigenvalue**2) / np.abs(each.eigenvalue**2)
     assert (error <= found.rounding + each.rounding).all()
     products = np.abs(
-        np.einsum("snk,nm,smk->sk", found.vector, Model(scene, bd.Ritz(16)).solver.pencil.M, each.vector)
+        np.einsum(
+            "snk,nm,smk->sk", found.vector.conj(), Model(scene, bd.Ritz(16)).solver.pencil.M, each.vector
+        )
     )
     np.testing.assert_allclose(products, 1.0, rtol=1e-6)  # that of predicted modes, 1e-7
 
 
 def test_either_sense_of_rotation() -> None:
-    found, each = solve_both(OUTWARD, np.linspace(-4.0, 2.0, 301))
-    error = np.abs(found.eigenvalue**2 - each.eigenvalue**2) / np.abs(each.eigenvalue**2)
-    assert (error <= found.rounding + each.rounding).all()
+    for precone in (0.0, 0.1):
+        mount = bd.Mount(0.1, math.pi, math.pi / 2, precone=precone)
+        scene = replace(OUTWARD, mount=mount, physics=bd.Physics(planes=2))
+        found, each = solve_both(scene, np.linspace(-4.0, 2.0, 301))
+        error = np.abs(found.eigenvalue**2 - each.eigenvalue**2) / np.abs(each.eigenvalue**2)
+        assert (error <= found.rounding + each.rounding).all()
+        M = Model(scene, bd.Ritz(16)).solver.pencil.M
+        products = np.abs(np.einsum("snk,nm,smk->sk", found.vector.conj(), M, each.vector))
+        np.testing.assert_allclose(products, 1.0, rtol=1e-6)  # that of predicted modes, 1e-7
 
 
 def test_growing_modes_grow() -> None:
@@ -69,8 +85,7 @@ def test_few_solutions_where_loci_are_smooth(monkeypatch: pytest.MonkeyPatch) ->
     assert sum(solved) < 60
 
 
-def test_gyroscopic_equations_are_solved_speed_by_speed() -> None:
-    beam = replace(BEAM, axial_stiffness=BEAM.mass_per_length.scaled(1e4))
-    scene = bd.Scene(beam, bd.Mount(0.1, math.pi, 0.0), physics=bd.Physics(stretch=True))
+def test_damped_equations_are_solved_speed_by_speed() -> None:
+    scene = replace(OUTWARD, damping_ratio=0.01)
     found, each = solve_both(scene, np.linspace(0, 2, over_speeds._FEW + 1))
     np.testing.assert_array_equal(found.eigenvalue, each.eigenvalue)
