@@ -122,6 +122,11 @@ class Discretization(Protocol):
         ...
 
     @property
+    def converges_regularly(self) -> bool:
+        """Whether further functions change an eigenvalue ever less, rather than by fits and starts."""
+        ...
+
+    @property
     def rounding(self) -> float:
         """Relative rounding error of eigenvalues due to the integrals of the discretization."""
         ...

@@ -60,6 +60,11 @@ class Fem:
         return 4
 
     @property
+    def converges_regularly(self) -> bool:
+        """As the square of the mesh's size."""
+        return True
+
+    @property
     def rounding(self) -> float:
         """Relative rounding error of eigenvalues: as the cube of the number of elements (2e-10 at 100)."""
         return 4 * float(np.finfo(float).eps) * self.elements**3

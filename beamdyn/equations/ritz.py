@@ -63,6 +63,11 @@ class Ritz:
         return None
 
     @property
+    def converges_regularly(self) -> bool:
+        """Not where moments over the whole beam serve many segments, of which each resolves some."""
+        return self.basis != "moments"
+
+    @property
     def rounding(self) -> float:
         """0: scaling of the functions keeps all digits of their integrals."""
         return 0.0
