@@ -61,7 +61,7 @@ class Fem:
 
     @property
     def converges_regularly(self) -> bool:
-        """As the square of the mesh's size."""
+        """The error falls as a power of the element length."""
         return True
 
     @property
