@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import brentq
 
 _FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7  # arc lengths of a step
 _ITERATIONS = 12  # of Newton's method
@@ -183,6 +182,8 @@ def find_at(problem: Problem, before: Point, after: Point, p: float) -> np.ndarr
 
 def _find_between(problem: Problem, before: Point, after: Point, function: Callable[[Point], float]) -> Point:
     """Find the root of a function between two successive points of a curve, along its arc."""
+    from scipy.optimize import brentq  # here, because it takes as long to import as all the rest
+
     reach = _metric(problem, after.q - before.q, (after.p - before.p) / problem.scale)
 
     def at(step: float) -> Point:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+
+from beamdyn.common.assignment import assign
 
 _NORMALIZED = 1e-6  # distance of a norm from 1 that is rounding
 
@@ -53,5 +54,5 @@ def _assign(mac: np.ndarray) -> np.ndarray:
     best = mac.argmax(axis=2)
     unique = (np.sort(best, axis=1) == np.arange(mac.shape[2])).all(axis=1)
     for s in np.flatnonzero(~unique):
-        best[s] = linear_sum_assignment(-mac[s])[1]
+        best[s] = assign(-mac[s])
     return best

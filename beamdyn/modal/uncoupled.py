@@ -10,7 +10,6 @@ import numpy as np
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
-from beamdyn.modal.large import LargeSolver
 
 LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 
@@ -36,7 +35,11 @@ def _solver_of_parts(pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> Eigen
 
 
 def _solver_of_part(pencil: SteadyPencil) -> Eigensolver:
-    return LargeSolver(pencil) if len(pencil.M) > LARGE else Solver(pencil)
+    if len(pencil.M) <= LARGE:
+        return Solver(pencil)
+    from beamdyn.modal.large import LargeSolver  # here, for the time that sparse algebra takes to import
+
+    return LargeSolver(pencil)
 
 
 class UncoupledSolver(Eigensolver):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
+from beamdyn.common.assignment import assign
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
 from beamdyn.modal.eigen import Eigen
@@ -77,7 +77,7 @@ class Simple:
         count = min(len(eigenvalue) + _EXTRA_MODES, self._solver.size)
         found: Eigen = self._solver.solve(np.array([speed]), count)
         s, v = found.eigenvalue[0], found.vector[0]
-        _, order = linear_sum_assignment(np.abs(eigenvalue[:, None] - s[None, :]))
+        order = assign(np.abs(eigenvalue[:, None] - s[None, :]))
         return s[order], v[:, order]
 
 

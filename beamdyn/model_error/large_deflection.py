@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
+from beamdyn.common.assignment import assign
 from beamdyn.common.checks import InvalidValue
 from beamdyn.modal.model import Model
 from beamdyn.scene.physics import Physics
@@ -87,7 +87,7 @@ def _change_at(straight: Model, bent: Model, speed: float, eigenvalue: np.ndarra
         return np.zeros(len(eigenvalue)), ""
     count, speeds = min(len(eigenvalue) + _EXTRA_MODES, straight.solver.size), np.array([speed])
     without = straight.solver.solve(speeds, count).eigenvalue[0]
-    _, order = linear_sum_assignment(np.abs(eigenvalue[:, None] - without[None, :]))
+    order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
         within = bent.solver.solve(speeds, count).eigenvalue[0]
     except ArithmeticError as error:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
+from beamdyn.common.assignment import assign
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.digits import percent
 from beamdyn.common.parallel.workers import one_blas_thread
@@ -107,7 +107,7 @@ def _say_cut(measurements: Sequence[Measurement], of_model: float, names: str) -
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """The frequencies that belong to those wanted (m,): the nearest, each used once."""
-    _, order = linear_sum_assignment(np.abs(np.log(wanted[:, None] / found[None, :])))
+    order = assign(np.abs(np.log(wanted[:, None] / found[None, :])))
     return found[order]
 
 
