@@ -110,8 +110,10 @@ class Discretization(Protocol):
        saved with a result.
     3. All physics is in the fields (`beamdyn.equations.fields`): a space only integrates and evaluates.
     4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
-       from that of `coarser`; a tolerance is met by repeating `finer`.
-    5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size.
+       from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
+       of the coarser one, its `coarse` names them, and the coarser equations are a part of these.
+    5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
+       `converges_regularly` says whether the estimate needs no further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
        in `beamdyn.modal.choice`.
     """
