@@ -127,7 +127,7 @@ def campbell(
     )
 
 
-class _Input(NamedTuple):
+class _BladeFile(NamedTuple):
     """A file: its scene, the text of that, and what of a blade's file the scene does not have."""
 
     path: Path
@@ -136,7 +136,7 @@ class _Input(NamedTuple):
     warnings: Sequence[str]
 
 
-def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_Input]:
+def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_BladeFile]:
     """Read the files; the options are for the blades of other programs alone."""
     given = {"length": length, "hub_radius": hub_radius}
     unused = [name for name, text in given.items() if text is not None]
@@ -146,20 +146,20 @@ def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None)
     return [_read(path, **given) for path in paths]
 
 
-def _read(path: Path, length: str | None, hub_radius: str | None) -> _Input:
+def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
     from beamdyn.cli.decks import read_with
     from beamdyn.common.edge.config import read
     from beamdyn.config import load_scene
 
     if path.suffix.lower() == ".toml":
-        return _Input(path, load_scene(path), read(path), ())
+        return _BladeFile(path, load_scene(path), read(path), ())
     deck = read_with(path, length, hub_radius)
     ignored = ", ".join(f"{entry.name} ({entry.values})" for entry in deck.ignored)
     said = [f"{path}: not modelled: {ignored}; see beamdyn import {path}"] if ignored else []
-    return _Input(path, deck.scene, deck.scene_text(), said)
+    return _BladeFile(path, deck.scene, deck.scene_text(), said)
 
 
-def _question(inputs: Sequence[_Input], **options: object) -> Question:
+def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
     """The command on each of its files, for the head of a report."""
     from beamdyn.common.edge.html_report import Question
 
@@ -214,7 +214,7 @@ def _parse_orders(text: str) -> Sequence[int]:
     return orders if len(parts) > 1 else range(1, orders[0] + 1)
 
 
-def _label(inputs: Sequence[_Input], labels: str | None, physics: PhysicsOption) -> dict[str, Scene]:
+def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: PhysicsOption) -> dict[str, Scene]:
     """The scenes by their labels, with the physics of the option if that is given."""
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]

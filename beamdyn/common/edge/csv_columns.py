@@ -88,7 +88,9 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
         raise text.lacking("expected a line of heads with units, such as 'x [m], mass [kg/m]'")
     head_line, *rest = lines
     delimiter = _delimiter(text.lines[head_line - 1])
-    heads = [_Head.read(text, head_line, cell, known, names) for cell in _cells(text, head_line, delimiter)]
+    heads = [
+        _ColumnHead.read(text, head_line, cell, known, names) for cell in _cells(text, head_line, delimiter)
+    ]
     _check_heads(text, head_line, heads)
     if len(rest) < 2:
         raise text.lacking("expected two rows of numbers at least below the heads")
@@ -110,7 +112,7 @@ def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
 
 
 @dataclass(frozen=True)
-class _Head:
+class _ColumnHead:
     head: str
     name: str
     unit: str
@@ -119,7 +121,7 @@ class _Head:
     @classmethod
     def read(
         cls, text: DataText, line: int, cell: str, known: Mapping[str, Quantity], names: Mapping[str, str]
-    ) -> _Head:
+    ) -> _ColumnHead:
         match = _HEAD.fullmatch(cell)
         if match is None or not match[1] or to_number(cell) is not None:
             raise text.refusal(line, f"expected a head such as 'mass [kg/m]', found {quote(cell)}")
@@ -157,7 +159,7 @@ def _check_unit(text: DataText, line: int, head: str, unit: str, quantity: Quant
         raise text.refusal(line, f"{expected}, found [{unit}]: {said}") from None
 
 
-def _check_heads(text: DataText, line: int, heads: list[_Head]) -> None:
+def _check_heads(text: DataText, line: int, heads: list[_ColumnHead]) -> None:
     names = [head.name or plain_name(head.head) for head in heads]
     for k, name in enumerate(names):
         if name in names[:k]:
@@ -165,7 +167,7 @@ def _check_heads(text: DataText, line: int, heads: list[_Head]) -> None:
             raise text.refusal(line, f"{quote(heads[k].head)} is the same column as {quote(first)}; give one")
 
 
-def _read_row(text: DataText, line: int, cells: list[str], heads: list[_Head]) -> list[float]:
+def _read_row(text: DataText, line: int, cells: list[str], heads: list[_ColumnHead]) -> list[float]:
     if len(cells) == len(heads) + 1 and not cells[-1]:  # some programs end each line with a separator
         cells = cells[:-1]
     if len(cells) != len(heads):
@@ -173,7 +175,7 @@ def _read_row(text: DataText, line: int, cells: list[str], heads: list[_Head]) -
     return [_read_cell(text, line, cell, head) for cell, head in zip(cells, heads, strict=True)]
 
 
-def _read_cell(text: DataText, line: int, cell: str, head: _Head) -> float:
+def _read_cell(text: DataText, line: int, cell: str, head: _ColumnHead) -> float:
     """A number: in SI where the column is known."""
     number = number_at(text, line, cell, f"{head.head} [{head.unit}]" if head.unit else head.head)
     if not head.name:
