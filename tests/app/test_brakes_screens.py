@@ -24,7 +24,7 @@ PLACES = [(document, screen) for document in BRAKES.documents for screen in docu
 NAMES = [screen.name for _, screen in PLACES]
 
 
-@pytest.fixture(params=PLACES, ids=NAMES)
+@pytest.fixture(scope="module", params=PLACES, ids=NAMES)
 def place(request):
     document, screen = request.param
     work = OpenDocument(document)

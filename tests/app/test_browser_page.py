@@ -107,7 +107,10 @@ def test_mistake_in_a_folded_table_is_seen(page):
     expect(page.get_by_text("stop.friction").locator("visible=true")).to_be_visible()
 
 
-@pytest.mark.parametrize("program, label", [("brakes", "front wheel radius, r1"), ("beamdyn", "radius, r")])
+@pytest.mark.parametrize(
+    "program, label",
+    [("brakes", "front wheel radius, r1"), pytest.param("beamdyn", "radius, r", marks=pytest.mark.slow)],
+)
 def test_page_that_is_open_while_its_program_stops_says_so_and_goes_on(opened, program, label):
     port = free_port()
     process = start(port, program)

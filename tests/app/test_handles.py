@@ -9,8 +9,9 @@ import pytest
 from matplotlib.patches import Circle
 
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.handles import changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.handles import Sheet, changed_texts, describe_place, draw_sheet
 from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.rendering import data_url
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
@@ -40,12 +41,28 @@ def cases():
                     entries = (
                         {"run.travel": "8 mm"} if screen.name == "Mechanism" else {}
                     )  # far from its toggle
-                    yield pytest.param(document, screen, entries, place, id=f"{screen.name} at {place}")
+                    yield pytest.param((document, screen, entries, place), id=f"{screen.name} at {place}")
     for name in NAMED:
-        yield pytest.param(CALIPER, CALIPERS, {"caliper": name}, 1.0, id=name)
+        yield pytest.param((CALIPER, CALIPERS, {"caliper": name}, 1.0), id=name)
 
 
-every_drawing = pytest.mark.parametrize("document, screen, entries, place", [*cases()])
+@dataclasses.dataclass
+class Case:
+    """A screen with an answer, and its drawing."""
+
+    screen: Screen
+    entries: dict
+    work: OpenDocument
+    answer: object
+    place: float
+    sheet: Sheet
+
+
+@pytest.fixture(scope="module", params=[*cases()])  # solved and drawn once for all tests
+def case(request):
+    document, screen, entries, place = request.param
+    work, answer = answered(document, screen, entries)
+    return Case(screen, entries, work, answer, place, draw_sheet(screen, answer, place))
 
 
 def named(handles, label):
@@ -55,10 +72,9 @@ def named(handles, label):
 # In the picture -----------------------------------------------------------------------------------------
 
 
-@every_drawing
-def test_handle_is_where_the_svg_has_its_point(document, screen, entries, place):
+def test_handle_is_where_the_svg_has_its_point(case):
     """The view is made from matplotlib's transforms; the SVG says where its points really are."""
-    _, answer = answered(document, screen, entries)
+    screen = case.screen
 
     def draw(answer, at):
         figure = screen.draw(answer, at)
@@ -66,7 +82,7 @@ def test_handle_is_where_the_svg_has_its_point(document, screen, entries, place)
             figure.axes[0].plot(*(handle.scale * np.array(handle.at)), "o", gid=f"probe{i}")
         return figure
 
-    made = draw_sheet(dataclasses.replace(screen, draw=draw), answer, place)
+    made = draw_sheet(dataclasses.replace(screen, draw=draw), case.answer, case.place)
     root = ET.fromstring(made.text)
     size = np.array(root.get("viewBox").split()[2:], dtype=float)
     assert made.ratio == pytest.approx(size[0] / size[1], rel=1e-6)
@@ -77,16 +93,13 @@ def test_handle_is_where_the_svg_has_its_point(document, screen, entries, place)
         np.testing.assert_allclose(made.place(handle), at, rtol=0, atol=1e-8)
 
 
-@every_drawing
-def test_drawing_has_the_point_that_a_handle_moves(document, screen, entries, place):
-    _, answer = answered(document, screen, entries)
-    made = draw_sheet(screen, answer, place)
-    ax = screen.draw(answer, place).axes[0]
+def test_drawing_has_the_point_that_a_handle_moves(case):
+    ax = case.screen.draw(case.answer, case.place).axes[0]
     circles = [patch for patch in ax.patches if isinstance(patch, Circle)]
     points = [line.get_xydata() for line in ax.lines]
     points += [[circle.center for circle in circles], [text.get_position() for text in ax.texts]]
     points = np.vstack([np.reshape(np.asarray(p, dtype=float), (-1, 2)) for p in points if len(p)])
-    for handle in made.handles:
+    for handle in case.sheet.handles:
         at = handle.scale * np.array(handle.at)
         on_circle = [abs(np.hypot(*(at - circle.center)) - circle.radius) for circle in circles]
         assert min(*np.hypot(*(points - at).T), *on_circle) < 1e-9 * handle.scale, handle.label
@@ -99,11 +112,9 @@ def test_place_and_point_are_inverse():
         assert made.view.place(made.view.point(place)) == pytest.approx(place, abs=1e-12)
 
 
-@every_drawing
-def test_held_picture_of_the_same_design_is_the_same(document, screen, entries, place):
-    _, answer = answered(document, screen, entries)
-    made = draw_sheet(screen, answer, place)
-    assert draw_sheet(screen, answer, place, made.view).text == made.text
+def test_held_picture_of_the_same_design_is_the_same(case):
+    held = draw_sheet(case.screen, case.answer, case.place, case.sheet.view)
+    assert held.text == case.sheet.text
 
 
 @pytest.mark.parametrize(
@@ -138,20 +149,19 @@ def test_locked_brake_is_drawn_without_handles_however_it_is_held():
 # In the fields ------------------------------------------------------------------------------------------
 
 
-@every_drawing
 @pytest.mark.parametrize("way", [(1, -0.5), (-0.7, 0.9)])
-def test_moved_point_is_really_there(document, screen, entries, place, way):
+def test_moved_point_is_really_there(case, way):
     """Written into the fields and solved: the point is where it was wanted, or says the same again."""
-    work, answer = answered(document, screen, entries)
-    for handle in screen.handles(answer, place):
+    work, screen = case.work, case.screen
+    for handle in case.sheet.handles:
         far = 6 * handle.step * np.array(way)
         target = tuple(np.array(handle.at) + far)
         values = handle.moved(*target)
         texts = changed_texts(handle, target, work.entries, work.inputs)
         assert set(texts) <= set(values)
         assert texts
-        _, other = answered(document, screen, entries | texts)
-        again = named(screen.handles(other, place), handle.label)
+        _, other = answered(work.document, screen, case.entries | texts)
+        again = named(screen.handles(other, case.place), handle.label)
         # a length is rounded to a grain, an angle to 0.1 deg, 0.28 mm of the larger drum
         for path, value in again.moved(*again.at).items():
             atol = 1.5e-3 if "angle" in path or "tilt" in path or "lining_" in path or "slope" in path else (

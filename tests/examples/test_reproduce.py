@@ -14,8 +14,6 @@ from beamdyn.common.edge.tables import comparison_table, console
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, large_deflection, motion, others
 
-pytestmark = pytest.mark.xdist_group("beamdyn reproduce")  # all is computed once, by one worker
-
 
 @pytest.fixture(scope="module")
 def swept():

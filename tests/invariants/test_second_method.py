@@ -24,6 +24,13 @@ DIGITS = 5.1e-12  # half a unit of the twelfth digit
 
 CASES = second_method_cases()
 by_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case["name"])
+some_cases = pytest.mark.parametrize(  # each fourth; the others are slow
+    "case",
+    [
+        pytest.param(case, marks=[pytest.mark.slow] if k % 4 else [], id=case["name"])
+        for k, case in enumerate(CASES)
+    ],
+)
 
 
 def frequencies(case: dict[str, Any]) -> np.ndarray:
@@ -39,13 +46,13 @@ def test_the_file_has_the_cases_of_the_program():
     assert len(CASES) == 20
 
 
-@by_case
+@some_cases
 def test_the_file_has_the_frequencies_of_the_program(case):
     squares, _ = converged(blade_of(case), case["gamma"])
     np.testing.assert_allclose(np.sqrt(squares), frequencies(case), rtol=DIGITS)
 
 
-@by_case
+@some_cases
 def test_eigenvalues_are_the_quotients_of_the_energies(case):
     """Exact modes make the quotient stationary: that of a mode in error by 1e-6 is in error by 1e-12."""
     found = solve(blade_of(case), case["gamma"], pieces=4)

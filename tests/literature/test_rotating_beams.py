@@ -14,8 +14,16 @@ RITZ, FEM = 1e-9, 1e-6  # promised relative errors of the defaults
 BOUNDS = {"ritz": RITZ, "fem": FEM}
 
 published = pytest.mark.parametrize("case", published_cases(), ids=lambda c: c["name"])
-generated = pytest.mark.parametrize("case", generated_cases(), ids=lambda c: c["name"])
 methods = pytest.mark.parametrize("discretization", ["ritz", "fem"])
+
+
+def by_both(cases: list[dict[str, Any]], every: int) -> list[Any]:
+    """All cases by assumed modes; by elements each, but the `every`-th marked as slow."""
+    return [
+        pytest.param(case, method, id=f"{case['name']}-{method}", marks=[pytest.mark.slow] if slow else [])
+        for k, case in enumerate(cases)
+        for method, slow in (("ritz", False), ("fem", bool(k % every)))
+    ]
 
 
 def solve(case: dict[str, Any], modes: int, discretization: str) -> bd.Modes:
@@ -30,8 +38,7 @@ def test_published(case: dict[str, Any], discretization: str) -> None:
     np.testing.assert_allclose(2 * np.pi * found.frequency, expected, rtol=BOUNDS[discretization])
 
 
-@methods
-@generated
+@pytest.mark.parametrize(("case", "discretization"), by_both(generated_cases(), 4))
 def test_generated_and_its_error(case: dict[str, Any], discretization: str) -> None:
     squared = np.array([float(text) for text in case["lambda_squared"]])
     found = solve(case, len(squared), discretization)

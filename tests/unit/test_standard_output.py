@@ -50,8 +50,18 @@ def run_into(monkeypatch):
     return run
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1"])
-@pytest.mark.parametrize("command", COMMANDS)
+QUICK = ("modes", "terms", "drum", "caliper", "modes --help")
+
+
+def in_every_encoding():
+    """Each command in ASCII, which has least; in the others those that are quick, and all as slow tests."""
+    for command in COMMANDS:
+        for encoding in ("ascii", "cp1252", "latin-1"):
+            slow = encoding != "ascii" and command not in QUICK
+            yield pytest.param(command, encoding, marks=[pytest.mark.slow] if slow else [])
+
+
+@pytest.mark.parametrize(("command", "encoding"), [*in_every_encoding()])
 def test_every_command_prints_in_any_encoding(run_into, command, encoding):
     printed = io.BytesIO()
     code, err = run_into(io.TextIOWrapper(printed, encoding), *COMMANDS[command])

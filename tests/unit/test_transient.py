@@ -86,7 +86,15 @@ def test_damping_rings_down() -> None:
     np.testing.assert_allclose(run.coordinates[:, 0], 1e-6 * exact, atol=1e-13)
 
 
-@pytest.mark.parametrize("method", ["RK45", "DOP853", "Radau", "BDF", "LSODA", bd.GaussCollocation])
+@pytest.mark.parametrize(
+    "method",
+    [
+        "DOP853",
+        "LSODA",
+        bd.GaussCollocation,
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("RK45", "Radau", "BDF")),
+    ],
+)
 def test_stock_methods_agree(method, spun_up: bd.Transient) -> None:
     loose = method in ("BDF", "RK45")
     options = {"rtol": 1e-6 if loose else 1e-8, "atol": 1e-14 if loose else 1e-15}
