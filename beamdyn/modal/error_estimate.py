@@ -13,7 +13,7 @@ from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
-_REGULAR, _IRREGULAR = (1.0, 0.01), (1.5, 0.2)  # parts of a mode's distance, and of the largest, elsewhere
+_REGULAR, _IRREGULAR = (1.0, 0.01), (2.0, 0.3)  # parts of a mode's distance, and of the largest, elsewhere
 _MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
