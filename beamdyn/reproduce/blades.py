@@ -1,4 +1,4 @@
-"""Blades of wind turbines of the published tables of stations: their scenes, and comparison of their frequencies."""
+"""Blades of wind turbines of the published tables of stations: scenes, and comparison of frequencies."""
 
 from __future__ import annotations
 
@@ -74,8 +74,8 @@ def printed_by_bmodes() -> Iterator[Comparison]:
 def notes() -> Iterator[str]:
     """Notes on the table of BModes."""
     yield (
-        "(10) Of BModes' blade the table has mass, two bending stiffnesses and twist. BModes also has torsion, "
-        "inertia and offsets of the sections: rotary inertia is worth at most 0.3 %, the rest is, by "
+        "(10) Of BModes' blade the table has mass, two bending stiffnesses and twist. BModes also has "
+        "torsion, inertia and offsets of the sections: rotary inertia is worth at most 0.3 %, the rest is, by "
         "elimination, torsion, offsets and its formulation."
     )
 

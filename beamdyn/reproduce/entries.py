@@ -54,7 +54,7 @@ class Entry:
 
     @property
     def is_erratum(self) -> bool:
-        """Whether the print is proven to err: our value is the third one, which bounds enclose apart from the print."""
+        """Whether the print is proven to err: ours is the third value, which bounds enclose apart from it."""
         if not self.exact:
             return False
         printed, exact = float(self.printed), float(self.exact)
@@ -62,13 +62,18 @@ class Entry:
         return confirmed and abs(printed - exact) > self.rounding and self._is_enclosed()
 
     def _is_enclosed(self) -> bool:
-        """Whether guaranteed bounds, if there are any, hold the third value and exclude what rounds to the print."""
+        """Whether guaranteed bounds, if any, hold the third value and exclude what rounds to the print."""
         if self.bounds is None:
             return True
         low, high = self.bounds
         printed, slack = float(self.printed), half_unit(self.exact)
         apart = low > printed + self.rounding or high < printed - self.rounding
         return apart and low - slack <= float(self.exact) <= high + slack
+
+    @property
+    def off_by(self) -> float:
+        """By how many units of its last digit the print differs from the third value, or else from ours."""
+        return (float(self.printed) - float(self.exact or self.ours)) / (2 * self.rounding)
 
     @property
     def as_expected(self) -> bool:
@@ -83,10 +88,10 @@ class Entry:
     def cells(self) -> list[str]:
         """Row of the table of errata, without the source."""
         low, high = self.bounds or (0.0, 0.0)
-        off = (float(self.printed) - float(self.exact)) / (2 * self.rounding)
         enclosed = f"{(high - low) / float(self.exact):.0e}" if self.bounds else "no theorem"
+        off = f"{self.off_by:+.2g}" if abs(self.off_by) < 100 else f"{self.off_by:+.0f}"
         numbers = (self.printed, supported(self.ours, self.error), self.exact, enclosed)
-        return [self.where, str(self.mode), *numbers, f"{off:+.2g}" if abs(off) < 100 else f"{off:+.0f}"]
+        return [self.where, str(self.mode), *numbers, off]
 
 
 def half_unit(text: str) -> float:
@@ -112,8 +117,9 @@ class Summary:
         Largest relative deviation, errata apart, and largest estimated relative error.
     outside : int
         Number of values that deviate by more than rounding and error together, and are no proven errata.
-    errata : int
-        Number of values that are proven to be wrong in print.
+    errata, last_digits : int
+        Number of values that are proven to be wrong in print, and of those of them that are wrong in the last
+        digit alone: by less than a unit of it.
     in_print : bool
         Whether all others agree in all printed digits, whatever our error.
     """
@@ -126,6 +132,7 @@ class Summary:
     error: float
     outside: int
     errata: int = 0
+    last_digits: int = 0
     in_print: bool = False
 
     @property
@@ -139,7 +146,9 @@ class Summary:
         if self.outside:
             return f"differs: {self.outside} value(s)"
         if self.errata:
-            return f"agrees but for {self.errata} {'erratum' if self.errata == 1 else 'errata'}"
+            more = self.errata - self.last_digits
+            parts = _count(more, "erratum", "errata"), _count(self.last_digits, "last digit", "last digits")
+            return "agrees but " + ", ".join(part for part in parts if part)
         return "agrees in all printed digits" if self.in_print else "agrees within error"
 
     def cells(self) -> list[str]:
@@ -148,9 +157,15 @@ class Summary:
         return [self.source, self.discretization, str(self.values), *numbers, self.verdict]
 
 
+def _count(number: int, one: str, many: str) -> str:
+    """Number and noun; empty for none."""
+    return f"{number} {one if number == 1 else many}" if number else ""
+
+
 def summarize_entries(source: str, discretization: str, entries: Sequence[Entry]) -> Summary:
     """Summarize the comparison of all values of a source."""
     right = [entry for entry in entries if not entry.is_erratum]
+    last_digits = sum(entry.is_erratum and abs(entry.off_by) < 1 for entry in entries)
     return Summary(
         source,
         discretization,
@@ -160,5 +175,6 @@ def summarize_entries(source: str, discretization: str, entries: Sequence[Entry]
         max(entry.error / abs(entry.ours) for entry in entries),
         sum(not entry.as_expected for entry in entries),
         len(entries) - len(right),
+        last_digits,
         all(entry.in_print for entry in right),
     )

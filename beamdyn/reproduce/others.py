@@ -66,7 +66,9 @@ def twisted_scene(case: dict[str, Any]) -> Scene:
 def summary_table(rows: Sequence[Summary]) -> Group:
     """Table of summaries."""
     heads = ("source", "by", "values", "printed to", "deviation", "error", "verdict")
-    title = "Beams and blades of other sources: the worst deviation, errata apart, and estimated error, relative"
+    title = (
+        "Beams and blades of other sources: the worst deviation, errata apart, and estimated error, relative"
+    )
     return table(title, heads, (row.cells() for row in rows), (0, 1, 6))
 
 

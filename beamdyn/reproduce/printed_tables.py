@@ -1,4 +1,4 @@
-"""Comparison with the printed tables of other papers: every value, with the errata of the print and their proofs."""
+"""Comparison with the printed tables of other papers: every value, and errata with their proofs."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[En
 
 
 def _guaranteed(scene: Scene, speed: float, index: int, factor: float) -> tuple[float, float] | None:
-    """Guaranteed bounds of one frequency [rad/s], times a factor; None with stretch, which no theorem covers."""
+    """Guaranteed bounds of a frequency [rad/s], times a factor; None with stretch: no theorem covers it."""
     if scene.physics.stretch:
         return None
     bounds = frequency_bounds(scene, speed, index + 1)
@@ -113,11 +113,13 @@ def _guaranteed(scene: Scene, speed: float, index: int, factor: float) -> tuple[
 
 
 def _cable(discretization: str) -> Iterator[tuple[str, Entry]]:
-    """Compare the frequencies over speed of a hinged beam whose stiffness is all but 0 with those of a cable."""
+    """Compare the frequencies over speed of a hinged beam of hardly any stiffness with those of a cable."""
     cable = load("bir_2009")["cable"]
     speed, printed = cable["gamma"], cable["ratio"]
     mount = Mount(0.0, math.pi, math.pi / 2, root_stiffness=0.0)
-    modes = natural_modes(Scene(Beam.from_stiffness(1.0, 1.0, 1.0), mount), speed, len(printed), discretization)
+    modes = natural_modes(
+        Scene(Beam.from_stiffness(1.0, 1.0, 1.0), mount), speed, len(printed), discretization
+    )
     for i, text in enumerate(printed):
         ours = float(abs(modes.eigenvalue[i])) / speed
         yield cable["name"], Entry(f"gamma {speed:g}", i + 1, text, ours, float(modes.error[i]) * ours)
@@ -148,8 +150,8 @@ def errata_table(errata: Errata) -> Group:
     """Table of errata with their proofs."""
     heads = ("source", "at", "mode", "printed", "ours, Ritz", "power series", "bounds", "off by")
     title = (
-        "Errata: ours, a third method, the relative width of guaranteed bounds that exclude the print, and by how\n"
-        "many units of the last printed digit it is off"
+        "Errata: ours, a third method, the relative width of guaranteed bounds that exclude the print, and by\n"
+        "how many units of its last digit the print is off (less than one: cut off or rounded twice)"
     )
     return table(title, heads, ([source, *entry.cells()] for source, entry in errata), (0, 1))
 
@@ -161,7 +163,7 @@ def sources() -> Iterator[str]:
         data = load(paper)
         where = data.get("doi") or data.get("url")
         place = f" ({where})" if where else ""
-        yield f"  {' and '.join(data['authors'])} {data.get('year', '')}{place}: {data['source']}".replace(" :", ":")
+        yield f"  {' and '.join(data['authors'])}, {data['year']}{place}: {data['source']}"
     for name in BLADES:
         yield f"  {stations(name)['title']}: {stations(name)['source']}"
     yield (
