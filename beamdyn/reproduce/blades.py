@@ -75,8 +75,8 @@ def notes() -> Iterator[str]:
     """Notes on the table of BModes."""
     yield (
         "(10) Of BModes' blade the table has mass, two bending stiffnesses and twist. BModes also has "
-        "torsion, inertia and offsets of the sections: rotary inertia is worth at most 0.3 %, the rest is, by "
-        "elimination, torsion, offsets and its formulation."
+        "torsion, inertia and offsets of the sections: rotary inertia is worth at most 0.3 %, the rest is, "
+        "by elimination, torsion, offsets and its formulation."
     )
 
 

@@ -150,8 +150,8 @@ def errata_table(errata: Errata) -> Group:
     """Table of errata with their proofs."""
     heads = ("source", "at", "mode", "printed", "ours, Ritz", "power series", "bounds", "off by")
     title = (
-        "Errata: ours, a third method, the relative width of guaranteed bounds that exclude the print, and by\n"
-        "how many units of its last digit the print is off (less than one: cut off or rounded twice)"
+        "Errata: ours, a third method, the relative width of guaranteed bounds that exclude the print, and\n"
+        "by how many units of its last digit the print is off (less than one: cut off or rounded twice)"
     )
     return table(title, heads, ([source, *entry.cells()] for source, entry in errata), (0, 1))
 
