@@ -18,7 +18,7 @@ def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False)
     output
         Folder for the pictures; it is made if needed, and its pictures are replaced.
     tables
-        Compare with the tables of rotating beams of other sources too; takes some ten seconds.
+        Compare with the tables of beams and blades of other sources too; takes some twenty seconds.
     """
     from beamdyn.common.edge.tables import console
     from beamdyn.reproduce import compare_all

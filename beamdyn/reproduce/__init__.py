@@ -12,8 +12,8 @@ from beamdyn.common.comparison import Comparison
 from beamdyn.common.edge.tables import comparison_table, progress_bar
 from beamdyn.common.pictures import save_figure
 from beamdyn.published import load
-from beamdyn.reproduce import frequencies, large_deflection, motion, others
-from beamdyn.reproduce.others import Summary
+from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables
+from beamdyn.reproduce.entries import Summary
 from beamdyn.transient.sweep import Sweep
 
 _INTRODUCTION = """
@@ -53,11 +53,23 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
     for note in (*frequencies.notes(), *motion.notes(), *large_deflection.notes()):
         screen.print(note)
     screen.print("")
-    if summaries := [*others.summarize_sources(), *others.summarize_twisted()] if tables else []:
-        screen.print(others.summary_table(summaries))
+    checked = [*all_comparisons, *(_print_tables(screen) if tables else ())]
     for path in draw(folder, fig_6_sweep):
         screen.print(f"drawn: {path}", soft_wrap=True)
-    return [*all_comparisons, *summaries]
+    return checked
+
+
+def _print_tables(screen: Console) -> list[Comparison | Summary]:
+    """Print the comparison with the tables of other sources."""
+    papers, errata = printed_tables.compare_papers()
+    summaries = [*papers, *others.summarize_sources(), *others.summarize_twisted()]
+    screen.print(others.summary_table(summaries))
+    screen.print(printed_tables.errata_table(errata))
+    comparisons = [*blades.printed_by_bmodes()]
+    screen.print(comparison_table("BModes Test01: what BModes prints itself [Hz]", comparisons))
+    for note in (*blades.notes(), *printed_tables.sources(), ""):
+        screen.print(note)
+    return [*summaries, *comparisons]
 
 
 def _print_comparisons(screen: Console, fig_6_sweep: Sweep) -> list[Comparison]:

@@ -1,45 +1,18 @@
-"""Blades of wind turbines from the tables of stations in `data/blades`: scenes and reference blades."""
+"""Blades of wind turbines from the published tables of stations: scenes and reference blades."""
 
 from __future__ import annotations
 
 import math
-import tomllib
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-import beamdyn as bd
+from beamdyn.reproduce.blades import blade_scene, stations
 from benchmarks.cases.reference.twisted_beam import Blade
 from benchmarks.cases.reference.twisted_beam.blade import Function
 
-_FOLDER = Path(__file__).parent / "data" / "blades"
+__all__ = ["NAMES", "blade_scene", "reference_blade", "stations"]
+
 NAMES = ("iea_15", "nrel_5", "bmodes_test01")
-
-
-def stations(name: str) -> dict[str, Any]:
-    """Length and hub radius [m], and arrays: stations x/L, mass [kg/m], stiffnesses [N m2], twist [deg]."""
-    given = tomllib.loads((_FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
-    arrays = {key: np.array(value) for key, value in given.items() if isinstance(value, list)}
-    arrays["mass_per_length"] = arrays["mass_per_length"] * given["mass_factor"]
-    return given | arrays
-
-
-def blade_scene(name: str, physics: bd.Physics = bd.Physics(planes=2), twisted: bool = True) -> bd.Scene:  # noqa: B008
-    """The blade on its hub: it points outward and, where the twist is 0, the flap bends out of the plane."""
-    data = stations(name)
-
-    def along(values: np.ndarray) -> bd.Table:
-        return bd.Table(data["stations"].tolist(), values.tolist())
-
-    beam = bd.Beam.from_stiffness(
-        data["length"],
-        along(data["mass_per_length"]),
-        along(data["flap_stiffness"]),
-        second_bending_stiffness=along(data["edge_stiffness"]),
-        twist=along(np.radians(-data["twist_deg"])) if twisted else None,  # docs/decks.md has the signs
-    )
-    return bd.Scene(beam, bd.Mount(data["hub_radius"], math.pi, math.pi / 2), physics=physics)
 
 
 def reference_blade(name: str, twisted: bool = True) -> tuple[Blade, float]:

@@ -20,7 +20,7 @@ _PROPERTIES = ("mass_per_length", "bending_stiffness", *OPTIONAL_PROPERTIES)
 
 def models() -> dict[str, Any]:
     """The rows of the models: tables `case`, `carnegie` and `blade`."""
-    return load("twisted_beams") | tomllib.loads((_DATA / "models.toml").read_text(encoding="utf-8"))
+    return load("twisted_beams") | load("blades")
 
 
 def second_method_cases() -> list[dict[str, Any]]:

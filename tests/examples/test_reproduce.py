@@ -12,7 +12,8 @@ from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.comparison import Comparison
 from beamdyn.common.edge.tables import comparison_table, console
 from beamdyn.published import load
-from beamdyn.reproduce import frequencies, large_deflection, motion, others
+from beamdyn.reproduce import frequencies, large_deflection, motion, others, printed_tables
+from beamdyn.reproduce.entries import Entry, summarize_entries
 
 
 @pytest.fixture(scope="module")
@@ -171,6 +172,88 @@ def test_an_interval_must_hold_the_value():
 @pytest.mark.slow
 def test_all_of_figure_6_has_no_other_peak():
     assert all(row.as_expected for row in motion.sweep_peak_comparisons(motion.run_sweep()))
+
+
+@pytest.fixture(scope="module")
+def papers():
+    """What is found of the printed tables by one discretization, which takes two seconds."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(printed_tables, "_DISCRETIZATIONS", {"Ritz": "ritz"})
+        yield printed_tables.compare_papers()
+
+
+def test_tables_of_papers(papers):
+    """Counts of benchmarks collected: values, errata, and those off by less than a unit of the last digit."""
+    summaries, errata = papers
+    found = [(s.values, s.errata, s.last_digits) for s in summaries]
+    assert found == [
+        *((39, 2, 2), (26, 2, 2), (6, 2, 1), (6, 3, 2), (75, 3, 2), (10, 8, 3)),
+        *((3, 0, 0), (1, 0, 0), (10, 0, 0), (10, 0, 0), (10, 0, 0)),
+    ]
+    assert all(s.as_expected for s in summaries)
+    assert {s.verdict for s in summaries if not s.errata} == {"agrees in all printed digits"}
+    assert len(errata) == 20
+    bounded = [entry.bounds is not None for _, entry in errata]
+    assert bounded.count(False) == 3  # those with stretch
+
+
+def test_reproduce_prints_tables(capsys, tmp_path, monkeypatch, papers):
+    monkeypatch.setattr(motion, "run_sweep", lambda progress: None)
+    monkeypatch.setattr(reproduce, "sections", lambda swept: {})
+    monkeypatch.setattr(reproduce, "draw", lambda folder, swept: [])
+    monkeypatch.setattr(others, "summarize_sources", lambda: iter(()))
+    monkeypatch.setattr(others, "summarize_twisted", lambda: iter(()))
+    monkeypatch.setattr(printed_tables, "compare_papers", lambda: papers)
+    assert main(["reproduce", "--tables", "--output", str(tmp_path)]) == DONE
+    lines = capsys.readouterr().out.splitlines()
+    for words in (
+        ("Mabie, Rogers 1972: tapers", "Ritz", "10", "agrees but 5 errata, 3 last"),
+        ("IEA-15 blade, computed", "Ritz", "10", "agrees in all printed digits"),
+        ("Ozdemir, Kaya 2006: tapers", "b 0.4, h 0.4", "38.4920", "20.04998385", "20.0499838515", "e-12"),
+        ("Hamza cherif, Houmat 2004:", "gamma 50", "7.3362", "7.333589076", "no theorem", "+26"),
+        ("60 rpm, mode 1", "BModes 3", "1.7517", "1.7797", "not all is modelled (10)"),
+        ("Bir, 2009 (10.2514/6.2009-1035)", "pyBModes"),
+        ("All 16 verdicts are as expected",),
+    ):
+        assert any(all(word in line for word in words) for line in lines), words
+
+
+@pytest.mark.slow
+def test_tables_of_papers_by_elements():
+    summaries, _ = printed_tables.compare_papers()
+    assert len(summaries) == 22
+    assert all(s.as_expected for s in summaries)
+
+
+AGREES = Entry("x", 1, "23.02", 23.0229, 1e-9)
+ERRATUM = replace(AGREES, printed="23.03", exact="23.0229", bounds=(23.02289, 23.02291))
+
+
+def test_an_erratum_needs_its_proofs():
+    assert AGREES.as_expected and not AGREES.is_erratum
+    assert not replace(AGREES, printed="23.03").as_expected  # with no third computation
+    assert ERRATUM.as_expected and ERRATUM.off_by == pytest.approx(0.71)
+    for wrong in (
+        {"exact": "23.0282"},  # which is not ours
+        {"ours": 23.0282},  # which is not the third
+        {"printed": "23.02"},  # the print is right
+        {"bounds": (23.02289, 23.0251)},  # some of what they enclose rounds to the print
+        {"bounds": (23.0230, 23.0231)},  # the third is not among it
+    ):
+        assert not replace(ERRATUM, **wrong).as_expected, wrong
+    assert replace(ERRATUM, bounds=None).as_expected
+
+
+def test_verdicts_of_tables():
+    def verdict(*entries):
+        return summarize_entries("x", "Ritz", entries).verdict
+
+    far = replace(ERRATUM, printed="46.05")
+    assert verdict(AGREES) == "agrees in all printed digits"
+    assert verdict(AGREES, replace(AGREES, ours=23.0251, error=1e-3)) == "agrees within error"
+    assert verdict(AGREES, ERRATUM) == "agrees but 1 last digit"
+    assert verdict(AGREES, ERRATUM, far, far) == "agrees but 2 errata, 1 last digit"
+    assert verdict(AGREES, ERRATUM, replace(AGREES, printed="23.03")) == "differs: 1 value(s)"
 
 
 @pytest.mark.slow

@@ -156,6 +156,13 @@ def test_what_the_theorem_does_not_cover_is_refused_by_name(
     assert caught.value.field == field and caught.value.remedy
 
 
+def test_a_twist_that_ends_at_zero_is_named_where_it_is_largest() -> None:
+    twist = np.polynomial.Polynomial([0.2, 0.0, -0.2])
+    beam = bd.Beam.rectangular(1, 0.1, 0.03, 70e9, 2700, twist=twist)
+    with pytest.raises(InvalidValue, match=r"twist = 0\.2 rad where largest"):
+        frequency_bounds(bd.Scene(beam, physics=bd.Physics(2)))
+
+
 @pytest.mark.parametrize("quarters", [0, 1, 3])
 @pytest.mark.parametrize("bending", [0.0, np.pi / 2, -np.pi])
 def test_bounds_of_two_planes_apart_enclose_the_modes(bending: float, quarters: int) -> None:

@@ -48,9 +48,9 @@ equations are taken along e1.
 
 Check (tests/invariants/test_second_method.py, tests/literature/test_two_planes.py).  The energy of rotation
 agrees with that of triads integrated at finite amplitude.  Each eigenvalue agrees with the quotient of the
-energies of its mode to 1e-11.  All rows of data/models.toml agree to every digit given there: those of two
-planes to 2e-14, those of shear and rotary inertia to 4e-10 or half a unit of the last digit; Carnegie's
-blade and the three blades of wind turbines likewise.
+energies of its mode to 1e-11.  All rows of beamdyn/published/twisted_beams.toml and blades.toml agree to
+every digit given there: those of two planes to 2e-14, those of shear and rotary inertia to 4e-10 or half a
+unit of the last digit; Carnegie's blade and the three blades of wind turbines likewise.
 
 ``python -m benchmarks.cases.reference.twisted_beam`` writes data/second_method.toml, see `cases`.
 """

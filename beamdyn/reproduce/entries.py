@@ -1,0 +1,180 @@
+"""Printed values beside ours, errata with their proofs, and summaries of a source."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+
+from beamdyn.common.digits import supported
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A printed value beside ours; where the print errs, with a third computation.
+
+    Parameters
+    ----------
+    where : str
+        Row of the table, such as its speed.
+    mode : int
+        From 1.
+    printed : str
+        The value with all its digits.
+    ours, error : float
+        Our value and its estimated absolute error.
+    exact : str
+        Where the print errs: the value by a method that shares nothing with ours; else empty.
+    bounds : tuple of float, optional
+        There, too: guaranteed lower and upper bound, where the theorem covers the scene.
+    """
+
+    where: str
+    mode: int
+    printed: str
+    ours: float
+    error: float
+    exact: str = ""
+    bounds: tuple[float, float] | None = None
+
+    @property
+    def rounding(self) -> float:
+        """Half a unit of the last printed digit."""
+        return half_unit(self.printed)
+
+    @property
+    def in_print(self) -> bool:
+        """Whether ours rounds to the printed digits, whatever its error."""
+        return abs(self.ours - float(self.printed)) <= self.rounding
+
+    @property
+    def agrees(self) -> bool:
+        """Whether ours differs from the print by no more than rounding and our error."""
+        return abs(self.ours - float(self.printed)) <= self.rounding + self.error
+
+    @property
+    def is_erratum(self) -> bool:
+        """Whether the print is proven to err: ours is the third value, which bounds enclose apart from it."""
+        if not self.exact:
+            return False
+        printed, exact = float(self.printed), float(self.exact)
+        confirmed = abs(self.ours - exact) <= self.error + half_unit(self.exact)
+        return confirmed and abs(printed - exact) > self.rounding and self._is_enclosed()
+
+    def _is_enclosed(self) -> bool:
+        """Whether guaranteed bounds, if any, hold the third value and exclude what rounds to the print."""
+        if self.bounds is None:
+            return True
+        low, high = self.bounds
+        printed, slack = float(self.printed), half_unit(self.exact)
+        apart = low > printed + self.rounding or high < printed - self.rounding
+        return apart and low - slack <= float(self.exact) <= high + slack
+
+    @property
+    def off_by(self) -> float:
+        """By how many units of its last digit the print differs from the third value, or else from ours."""
+        return (float(self.printed) - float(self.exact or self.ours)) / (2 * self.rounding)
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether it agrees, or the print is proven to err where it is said to."""
+        return self.is_erratum if self.exact else self.agrees
+
+    @property
+    def relative_deviation(self) -> float:
+        """Of ours from the print."""
+        return abs(self.ours / float(self.printed) - 1)
+
+    def cells(self) -> list[str]:
+        """Row of the table of errata, without the source."""
+        low, high = self.bounds or (0.0, 0.0)
+        enclosed = f"{(high - low) / float(self.exact):.0e}" if self.bounds else "no theorem"
+        off = f"{self.off_by:+.2g}" if abs(self.off_by) < 100 else f"{self.off_by:+.0f}"
+        numbers = (self.printed, supported(self.ours, self.error), self.exact, enclosed)
+        return [self.where, str(self.mode), *numbers, off]
+
+
+def half_unit(text: str) -> float:
+    """Half a unit of the last digit of a printed number."""
+    exponent = Decimal(text).as_tuple().exponent
+    assert isinstance(exponent, int), f"{text} is a finite number"
+    return 0.5 * 10.0**exponent
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Comparison of all values of one source with one discretization.
+
+    Parameters
+    ----------
+    source, discretization : str
+        Source of the values, and discretization of ours.
+    values : int
+        Number of values.
+    printed : float
+        Largest relative rounding of the printed values: half a unit of the last digit.
+    deviation, error : float
+        Largest relative deviation, errata apart, and largest estimated relative error.
+    outside : int
+        Number of values that deviate by more than rounding and error together, and are no proven errata.
+    errata, last_digits : int
+        Number of values that are proven to be wrong in print, and of those of them that are wrong in the last
+        digit alone: by less than a unit of it.
+    in_print : bool
+        Whether all others agree in all printed digits, whatever our error.
+    """
+
+    source: str
+    discretization: str
+    values: int
+    printed: float
+    deviation: float
+    error: float
+    outside: int
+    errata: int = 0
+    last_digits: int = 0
+    in_print: bool = False
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether all values agree, or are proven errata."""
+        return not self.outside
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        if self.outside:
+            return f"differs: {self.outside} value(s)"
+        if self.errata:
+            more = self.errata - self.last_digits
+            parts = _count(more, "erratum", "errata"), _count(self.last_digits, "last digit", "last digits")
+            return "agrees but " + ", ".join(part for part in parts if part)
+        return "agrees in all printed digits" if self.in_print else "agrees within error"
+
+    def cells(self) -> list[str]:
+        """Row of the table."""
+        numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
+        return [self.source, self.discretization, str(self.values), *numbers, self.verdict]
+
+
+def _count(number: int, one: str, many: str) -> str:
+    """Number and noun; empty for none."""
+    return f"{number} {one if number == 1 else many}" if number else ""
+
+
+def summarize_entries(source: str, discretization: str, entries: Sequence[Entry]) -> Summary:
+    """Summarize the comparison of all values of a source."""
+    right = [entry for entry in entries if not entry.is_erratum]
+    last_digits = sum(entry.is_erratum and abs(entry.off_by) < 1 for entry in entries)
+    return Summary(
+        source,
+        discretization,
+        len(entries),
+        max(entry.rounding / float(entry.printed) for entry in entries),
+        max((entry.relative_deviation for entry in right), default=0.0),
+        max(entry.error / abs(entry.ours) for entry in entries),
+        sum(not entry.as_expected for entry in entries),
+        len(entries) - len(right),
+        last_digits,
+        all(entry.in_print for entry in right),
+    )
