@@ -234,7 +234,7 @@ class MomentSpace(SampledSpace):
         ordered = quotients.swapaxes(0, 1).reshape(-1, quotients.shape[-1])
         own = stiffness_tensor(self.spaces.beam, stiffness)[direction, direction]
         weight = self.spaces.nodes.weights * self.spaces.at_nodes(own)
-        on_cells = _orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
+        on_cells = orthonormalize(ordered.T, weight).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return at_points.reshape(len(on_cells), -1)
 
@@ -310,7 +310,7 @@ def _integrate_from_tip(nodes: ArcQuadrature, values: np.ndarray, times: int) ->
     return values
 
 
-def _orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
+def orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Orthonormal basis (k, m) of the span of columns (k, n), with a weight (k,), but for rounding."""
     root = np.sqrt(weight)[:, None]
     scaled = columns * root
