@@ -26,6 +26,7 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 from beamdyn.spectrum.flexibility import bound_on_cells
 
+MOST_MOMENTS = 100  # in each direction: two seconds of a core
 _LARGEST_TURN = 0.25  # of a section from the middle of its cell [rad]
 _MISFIT = 1e-14  # relative, of the stiffness of the beam whose twist has polynomials for cosine and sine
 _MOST_DEGREE = 40  # of these polynomials in the twist
@@ -161,7 +162,7 @@ class CoupledHead:
     @cached_property
     def slope(self) -> np.ndarray:
         """Slopes along e1, e2 at the points, and at the tip: shape (n, 2, N + 1)."""
-        return self.quadrature.integrate(self._turned(self.curvature, self.quadrature, 1))
+        return self.quadrature.integrate(self._bending)
 
     @cached_property
     def deflection(self) -> np.ndarray:
@@ -205,16 +206,36 @@ class CoupledHead:
         softening = self._gram(along[..., :-1], mass) + self._tip.mass * np.outer(centre, centre)
         return np.array([self._gram(slope, tension_b), self._gram(slope, tension_a), inertia, softening])
 
+    @cached_property
+    def _bending(self) -> np.ndarray:
+        """Curvatures along e1, e2 at the points, shape (n, 2, N)."""
+        return self._turned(self.curvature, self.quadrature, 1)
+
+    @cached_property
+    def twisting(self) -> np.ndarray:
+        """The form of twisting by inertia, int (v' w'' - v'' w'), shape (n, n)."""
+        across = np.stack([-self._bending[:, 1], self._bending[:, 0]], axis=1)
+        form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
+        return (form + form.T) / 2
+
+    @cached_property
+    def twisting_size(self) -> float:
+        """Norm of slopes times norm of curvatures, of all functions together."""
+        sizes = (np.sqrt(np.trace(self._gram(u, np.ones(1)))) for u in (self.slope[..., :-1], self._bending))
+        return float(math.prod(sizes))
+
     @property
     def tip_slope(self) -> np.ndarray:
         """Slopes at the tip, shape (n, 2)."""
         return self.slope[..., -1]
 
-    def moments_of(self, tension: np.ndarray, inertia: np.ndarray, tilt: np.ndarray) -> np.ndarray:
+    def moments_of(
+        self, tension: np.ndarray, inertia: np.ndarray, tilt: np.ndarray, twisting: float = 0.0
+    ) -> np.ndarray:
         """Bending moments in the axes of the section that loads of the functions cause, shape (n, 2, N).
 
         Loads are a part of each of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, and one that the
-        slope at the tip is multiplied by.
+        slope at the tip is multiplied by, and a part of the twisting by inertia.
         """
         tension_b, tension_a, mass = self._loads
         rule = self.quadrature
@@ -223,6 +244,8 @@ class CoupledHead:
         arm = 1 - rule.xi + self._tip.offset
         at_tip = self._tip.mass * (self._centre @ inertia)[..., None] * arm
         fixed = _from_tip(rule, shear) + at_tip + (self.tip_slope @ tilt)[..., None]
+        turned = self.tip_slope[..., None] / 2 - self.slope[..., :-1]
+        fixed += twisting * np.stack([turned[:, 1], -turned[:, 0]], axis=1)
         return self._turned(fixed, rule, -1)
 
     def unbalanced(self, moments: np.ndarray, answer: np.ndarray) -> np.ndarray:

@@ -65,23 +65,10 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
     for name, value in springs.items():
         if math.isfinite(value):
             raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
-    if scene.physics.planes == 2:
-        _refuse_coupled_planes(scene, speed)
-
-
-def _refuse_coupled_planes(scene: Scene, speed: float) -> None:
-    """Refuse two planes of bending that the twist couples, or, at a speed, an angle of the mount."""
-    bound = "bounds of two planes are known where nothing couples them"
-    if _quarter_turns(scene.beam) is None:
-        remedy = "leave it out, or model one plane"
-        raise InvalidValue("twist", scene.beam.tip_twist, bound, remedy, "rad", where=" at the tip")
-    angle = scene.mount.bending_angle
-    if speed and 0.0 not in exact_cos_sin(angle):
-        remedy = "give 0 or a quarter turn, or speed = 0, or model one plane"
-        raise InvalidValue("bending_angle", angle, bound, remedy, "rad")
-    if speed and scene.mount.precone:
+    if scene.physics.planes == 2 and speed and scene.mount.precone:
+        gyroscopic = "rotation couples the velocities of two planes by it, and bounds are of equations without"
         remedy = "give 0, or speed = 0, or model one plane"
-        raise InvalidValue("precone", scene.mount.precone, bound, remedy, "rad")
+        raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
 
 
 def _quarter_turns(beam: Beam) -> int | None:
