@@ -1,7 +1,7 @@
 """Guaranteed bounds, from below and above, of the natural frequencies of bending, and of critical speeds.
 
-The theorem is that of `beamdyn.spectrum.split`, for coupled planes of `beamdyn.spectrum.coupled_split`; here, heads
-grow until the bounds hardly narrow.
+The theorem is that of `beamdyn.spectrum.split`, for coupled planes of `beamdyn.spectrum.coupled_split`; here,
+heads grow until the bounds hardly narrow.
 """
 
 from __future__ import annotations
@@ -138,7 +138,8 @@ def _enclose_planes(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray,
     planes = separate_planes(scene, speed != 0)
     if not planes:
         return _enclose_scaled(_enclose_coupled, scene, speed, modes)
-    lower, upper, bases = zip(*(_enclose_scaled(_enclose, plane, speed, modes) for plane in planes), strict=True)
+    enclosed = [_enclose_scaled(_enclose, plane, speed, modes) for plane in planes]
+    lower, upper, bases = zip(*enclosed, strict=True)
     # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
     low, high = _lowest(lower, modes, -np.inf), _lowest(upper, modes, np.inf)
     return low, high, max(bases, key=lambda ritz: ritz.functions)
@@ -147,7 +148,7 @@ def _enclose_planes(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray,
 def _enclose_scaled(
     enclose: Callable, scene: Scene, speed: float, modes: int
 ) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bounds of the squared angular frequencies by those of the nondimensional problem, and the last basis."""
+    """Bounds of the squared angular frequencies by those of the scaled problem, and the last basis."""
     scaled, time = _nondimensional(scene)
     lower, upper, ritz = enclose(scaled, speed * time, modes)
     return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
@@ -266,11 +267,12 @@ def _enclose_coupled(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray
     """Bounds of z in two coupled planes, and the last basis; none where 1/EI could not be bounded."""
     beam = scene.beam
     assert beam.second_bending_stiffness is not None
-    flexibility = bound_flexibility(beam.bending_stiffness), bound_flexibility(beam.second_bending_stiffness)
-    if None in flexibility:
+    first, second = map(bound_flexibility, (beam.bending_stiffness, beam.second_bending_stiffness))
+    if first is None or second is None:
         return np.full(modes, np.nan), np.full(modes, np.nan), Ritz(1, "moments")
+    sizes = _numbers_of_moments(modes)
     lower, upper, moments = _narrow(
-        lambda size: CoupledSplit(scene, size, speed, flexibility), _numbers_of_moments(modes), modes, _RESOLVED
+        lambda size: CoupledSplit(scene, size, speed, (first, second)), sizes, modes, _RESOLVED
     )
     return lower, upper, Ritz(moments, "moments")
 

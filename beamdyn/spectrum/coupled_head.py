@@ -1,10 +1,10 @@
 """Trial functions in two planes that the twist or the mount couples, with residuals that are known exactly.
 
 As in `beamdyn.spectrum.head`, but the curvature is a vector and the stiffness D(x) a tensor that the twist
-beta(x) turns.  On cells the curvatures *in the axes of the section* are polynomials, so that the energy and the
-moments D p need no cosine of the twist.  Only the curvatures along the fixed directions e1, e2 do, and moments in
-the axes of the section.  There the cosine and sine stand for polynomials of a degree such that the beam whose
-twist they exactly are has a stiffness within (1 -+ `misfit`) D(x): see `_twist_degree`.
+beta(x) turns.  On cells the curvatures *in the axes of the section* are polynomials, so that the energy and
+the moments D p need no cosine of the twist.  Only the curvatures along the fixed directions e1, e2 do, and
+moments in the axes of the section.  There cosine and sine stand for polynomials of such a degree that the beam
+for which they are exact has a stiffness within (1 -+ `misfit`) D(x): see `twist_degree`.
 
 Directions: an array (n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
 """
@@ -140,9 +140,9 @@ class CoupledHead:
 
     @property
     def _all_moments(self) -> np.ndarray:
-        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and what the first of these cause.
+        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and what the first ones cause.
 
-        The loads are the inertia and the tension where the beam vibrates as those moments bend it.
+        That is by inertia and by tension, where the beam vibrates as the first ones bend it.
         """
         first = self.moments // 3
         count = self.moments - 2 * first
@@ -234,8 +234,8 @@ class CoupledHead:
     ) -> np.ndarray:
         """Bending moments in the axes of the section that loads of the functions cause, shape (n, 2, N).
 
-        Loads are a part of each of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, and one that the
-        slope at the tip is multiplied by, and a part of the twisting by inertia.
+        Loads are parts of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another times the slope
+        at the tip, and a part of the twisting by inertia.
         """
         tension_b, tension_a, mass = self._loads
         rule = self.quadrature
@@ -269,8 +269,8 @@ def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
 
     Of an angle of at most `turn` from the middle of its range, interpolation in Chebyshev's points has an
     error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that turns curvatures is then
-    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E grows
-    at most by the root of the ratio of the stiffnesses: relative misfit 5 sqrt(ratio) e, while that is small.
+    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E
+    grows at most by the root of the ratio of the stiffnesses: relative misfit 5 sqrt(ratio) e, if that is small.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

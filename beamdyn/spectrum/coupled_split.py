@@ -4,21 +4,23 @@ With the curvature vector k = (v'', w'') and the stiffness tensor D(x) of the se
 
     a(u, u) = int k . D k,    P_mass = int rho A |u|^2 + m |t|^2,    P_tension = int N |u'|^2,
 
-in the plane of rotation P_soft = int rho A (d . u)^2 + m (d . t)^2 with its direction d, and of the slope vector
-s = u'(1) at the tip the forms s . T s with the tensors T of its inertia and of its spin.  Without precone nothing is
-gyroscopic: z are the eigenvalues of a form, as in one plane.
+in the plane of rotation P_soft = int rho A (d . u)^2 + m (d . t)^2 with its direction d, and of the slope
+vector s = u'(1) at the tip the forms s . T s with the tensors T of its inertia and of its spin.  Without
+precone nothing is gyroscopic: z are the eigenvalues of a form, as in one plane.
 
 **The traces** on all functions need no twist.  The slope in a direction e is int_0^x e . k, of squared norm
 int_0^x e . D^-1 e; the sum over both directions has the trace of D^-1, 1/EI_1 + 1/EI_2 however the section is
 turned.  So the traces of tension, mass and slope at the tip are the sums of those of the two planes, and
 P_soft <= P_mass and s . T s >= (least eigenvalue of T) |s|^2 are used on the tail alone.
-A tip body with a product of inertia on the axes of rotation adds H int (v' w'' - v'' w'), a form of either sign.
-It is int int k(x) . K(x, s) k(s) with K = (H/2) sign(s - x) (0, 1; -1, 0); its eigenvalues relative to a have the sum of
-squares H^2 det(int D^-1) / 2, and on the tail that less the head's.
 
-**The coupling.**  Loads cause a moment vector F by the static balance of the cantilever, in fixed axes; with any
-curvatures p of the head the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the axes of the section
-have one EI each.  The rest is as in one plane.
+**Twisting by inertia.**  A tip body with a product of inertia on the axes of rotation adds
+H int (v' w'' - v'' w'), a form of either sign.  It is int int k(x) . K(x, s) k(s) with the kernel
+K = (H/2) sign(s - x) (0, 1; -1, 0).  The squares of its eigenvalues relative to a have the sum
+H^2 det(int D^-1) / 2, and on the tail at most that less the head's.
+
+**The coupling.**  Loads cause a moment vector F by the static balance of the cantilever, in fixed axes; with
+any curvatures p of the head the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the axes of the
+section have one EI each.  The rest is as in one plane.
 """
 
 from __future__ import annotations

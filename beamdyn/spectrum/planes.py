@@ -66,7 +66,9 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
         if math.isfinite(value):
             raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
     if scene.physics.planes == 2 and speed and scene.mount.precone:
-        gyroscopic = "rotation couples the velocities of two planes by it, and bounds are of equations without"
+        gyroscopic = (
+            "it couples the velocities of two planes, and bounds are of equations without such forces"
+        )
         remedy = "give 0, or speed = 0, or model one plane"
         raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
 

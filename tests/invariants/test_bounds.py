@@ -127,6 +127,7 @@ BLADE = bd.Beam.rectangular(
     1.0, 0.1, 0.03, 70e9, 2700.0, bd.TipMass(0.5, 0.02, 2e-3, 1.5e-3, 1e-3), poissons_ratio=0.3
 )
 TWISTED = replace(BLADE, twist=bd.Beam.rectangular(1, 0.1, 0.03, 70e9, 2700, twist=0.2).twist)
+CONED = bd.Mount(0.1, np.pi, precone=0.1)
 
 
 @pytest.mark.parametrize(
@@ -142,8 +143,8 @@ TWISTED = replace(BLADE, twist=bd.Beam.rectangular(1, 0.1, 0.03, 70e9, 2700, twi
             0.0,
             "second_root_stiffness",
         ),
-        (bd.Scene(TWISTED, physics=bd.Physics(2)), 0.0, "twist"),
-        (bd.Scene(BLADE, bd.Mount(bending_angle=0.3), physics=bd.Physics(2)), 1.0, "bending_angle"),
+        (bd.Scene(TWISTED, CONED, physics=bd.Physics(2)), 1.0, "precone"),
+        (bd.Scene(BLADE, CONED, physics=bd.Physics(2)), 1.0, "precone"),
     ],
 )
 def test_what_the_theorem_does_not_cover_is_refused_by_name(
