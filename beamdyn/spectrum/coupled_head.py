@@ -3,8 +3,8 @@
 As in `beamdyn.spectrum.head`, but the curvature is a vector and the stiffness D(x) a tensor that the twist
 beta(x) turns.  On cells the curvatures *in the axes of the section* are polynomials, so that the energy and
 the moments D p need no cosine of the twist.  Only the curvatures along the fixed directions e1, e2 do, and
-moments in the axes of the section.  There cosine and sine stand for polynomials of such a degree that the beam
-for which they are exact has a stiffness within (1 -+ `misfit`) D(x): see `twist_degree`.
+moments in the axes of the section.  There cosine and sine stand for polynomials of such a degree that the
+beam for which they are exact has a stiffness within (1 -+ `misfit`) D(x): see `twist_degree`.
 
 Directions: an array (n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
 """
@@ -269,8 +269,8 @@ def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
 
     Of an angle of at most `turn` from the middle of its range, interpolation in Chebyshev's points has an
     error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that turns curvatures is then
-    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E
-    grows at most by the root of the ratio of the stiffnesses: relative misfit 5 sqrt(ratio) e, if that is small.
+    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy
+    E grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

@@ -19,8 +19,8 @@ K = (H/2) sign(s - x) (0, 1; -1, 0).  The squares of its eigenvalues relative to
 H^2 det(int D^-1) / 2, and on the tail at most that less the head's.
 
 **The coupling.**  Loads cause a moment vector F by the static balance of the cantilever, in fixed axes; with
-any curvatures p of the head the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the axes of the
-section have one EI each.  The rest is as in one plane.
+any curvatures p of the head the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the axes of
+the section have one EI each.  The rest is as in one plane.
 """
 
 from __future__ import annotations

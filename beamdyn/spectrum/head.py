@@ -1,8 +1,8 @@
 """Trial functions whose residuals are known exactly, for the theorem of `beamdyn.spectrum.split`.
 
 Their curvatures are piecewise polynomials on cells: polynomials on each segment of a beam of few segments,
-bending moments over the stiffness on a beam of many or where the stiffness almost vanishes.  So are all moments
-that their loads cause; products of these with the properties are integrated exactly.  In the energy a the
+bending moments over the stiffness on a beam of many or where it almost vanishes.  So are all moments that
+their loads cause; products of these with the properties are integrated exactly.  In the energy a the
 functions are orthonormal, whatever the stiffness, so that rounding has the size of the eigenvalues and not of
 the largest stiffness over the least.
 """
