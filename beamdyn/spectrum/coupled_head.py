@@ -184,7 +184,8 @@ class CoupledHead:
     def _loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Properties N_B, N_A and the mass, at the points."""
         n_a, n_b = axial_tension(self.beam)
-        return tuple(self.at(p, self.quadrature) for p in (n_b, n_a, self.beam.mass_per_length))
+        tension_b, tension_a = self.at(n_b, self.quadrature), self.at(n_a, self.quadrature)
+        return tension_b, tension_a, self.at(self.beam.mass_per_length, self.quadrature)
 
     @cached_property
     def stiffness(self) -> np.ndarray:

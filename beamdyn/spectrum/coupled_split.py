@@ -71,6 +71,7 @@ class CoupledSplit(Enclosure):
         root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
         self.spin = np.array([1.0, -root, 0.0, -1.0, 1.0, 0.0, self._product_of_inertia])
         self.spin_terms = np.append(np.abs(self.spin[:6]), self._tensor_terms[0] if self.spin[6] else 0.0)
+        self.forms = self._all_forms()
         # As in one plane, with two products at a point; the head is of a stiffness as near as the misfit.
         products = 2 * self._head.quadrature.xi.size
         self.unit = 4 * _EPS * (products + len(self.stiffness)) + self._head.misfit
@@ -99,8 +100,7 @@ class CoupledSplit(Enclosure):
         pull = tip.mass * abs(tip.offset) * (1 + abs(tip.offset) + abs(self.spin[1]))
         return np.array([pull + body + 2 * tip.axial_inertia, body])
 
-    @cached_property
-    def forms(self) -> np.ndarray:
+    def _all_forms(self) -> np.ndarray:
         """The forms on the head, shape (7, n, n)."""
         direction, _ = np.array(plane_components(self.scene))
         slope = self._head.tip_slope
@@ -112,7 +112,8 @@ class CoupledSplit(Enclosure):
     @cached_property
     def _traces(self) -> np.ndarray:
         """Upper bounds of the traces of tensions, mass and slope at the tip on all functions: shape (4,)."""
-        return sum(bound_traces(self.scene.beam, flexibility) for flexibility in self.flexibility)
+        first, second = (bound_traces(self.scene.beam, flexibility) for flexibility in self.flexibility)
+        return first + second
 
     @cached_property
     def tails(self) -> np.ndarray:

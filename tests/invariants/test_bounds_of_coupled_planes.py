@@ -67,9 +67,11 @@ def _assert_between(lower: np.ndarray, upper: np.ndarray, known: Known) -> None:
 
 def _split(scene: bd.Scene, speed: float, moments: int) -> tuple[CoupledSplit, float]:
     scaled, time = _nondimensional(scene)
-    beam = scaled.beam
-    flexibility = tuple(map(bound_flexibility, (beam.bending_stiffness, beam.second_bending_stiffness)))
-    return CoupledSplit(scaled, moments, speed * time, flexibility), time
+    assert scaled.beam.second_bending_stiffness is not None
+    first = bound_flexibility(scaled.beam.bending_stiffness)
+    second = bound_flexibility(scaled.beam.second_bending_stiffness)
+    assert first is not None and second is not None
+    return CoupledSplit(scaled, moments, speed * time, (first, second)), time
 
 
 @pytest.mark.parametrize("seed", range(50))
