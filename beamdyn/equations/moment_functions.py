@@ -73,7 +73,7 @@ class MomentSpaces(FieldsOnly):
 
     beam: Beam
     forces: int
-    coarse: int
+    coarse: int = 0
 
     def functions(self, conditions: RootConditions) -> MomentSpace:
         """Trial functions that satisfy conditions at the root."""
@@ -368,6 +368,12 @@ def _orthonormalize(
     for _ in range(2):  # the first time leaves rounding errors relative to what was there before
         rest = rest - first @ (first.T @ rest)
     return first / root, _span(rest) / root
+
+
+def orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Orthonormal basis (k, m) of the span of columns (k, n), with a weight (k,), but for rounding."""
+    root = np.sqrt(weight)[:, None]
+    return _span(_unit(columns * root)) / root
 
 
 def _unit(columns: np.ndarray) -> np.ndarray:

@@ -80,8 +80,8 @@ def summarize(
     rounding = np.array([0.5 * 10.0 ** -decimals(value) for value in printed]) / printed
     deviation = np.abs(ours / printed - 1)
     outside, in_print = int((deviation > rounding + error).sum()), bool((deviation <= rounding).all())
-    largest = (float(column.max()) for column in (rounding, deviation, error))
-    return Summary(source, discretization, len(ours), *largest, outside, in_print=in_print)
+    allowed, worst, stated = (float(column.max()) for column in (rounding, deviation, error))
+    return Summary(source, discretization, len(ours), allowed, worst, stated, outside, in_print=in_print)
 
 
 def solve_case(case: dict[str, Any], discretization: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,11 +1,12 @@
 """Guaranteed bounds, from below and above, of the natural frequencies of bending, and of critical speeds.
 
-The theorem is that of `beamdyn.spectrum.split`; here, heads grow until the bounds hardly narrow.
+The theorem is that of `beamdyn.spectrum.split`, for coupled planes of `beamdyn.spectrum.coupled_split`; here,
+heads grow until the bounds hardly narrow.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -15,18 +16,22 @@ from beamdyn._version import __version__
 from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import count, real
 from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
+from beamdyn.spectrum.coupled_head import MOST_MOMENTS
+from beamdyn.spectrum.coupled_split import CoupledSplit
 from beamdyn.spectrum.flexibility import bound_flexibility
 from beamdyn.spectrum.head import basis, most_functions, segments_with_functions
 from beamdyn.spectrum.planes import refuse_uncovered, separate_planes
-from beamdyn.spectrum.split import Split
+from beamdyn.spectrum.split import Enclosure, Split
 
 _EPS = float(np.finfo(float).eps)
 _NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
+_RESOLVED = 1e-8  # the same of two coupled planes, whose heads are twice as large: some times the allowances
 _PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of the critical speed is sought
 _CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
 # The parts of the squared Ritz value that are tried as such a bound.
@@ -73,8 +78,8 @@ class FrequencyBounds(Result):
 def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
     """Compute guaranteed lower and upper bounds of the natural frequencies of bending at a steady speed.
 
-    They hold for the Euler-Bernoulli model without damping, in one plane or in two that nothing couples; see
-    docs/bounds.md.
+    They hold for the Euler-Bernoulli model without damping, in one plane or in two, which the twist or the
+    bending angle may couple; see docs/bounds.md.
 
     Parameters
     ----------
@@ -93,19 +98,14 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     ------
     ValueError
         If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
-        rotary inertia, damping, springs at the root, or planes that the twist, the bending angle or the
-        precone couples.
+        rotary inertia, damping, springs at the root, or two planes that the precone couples.
     """
     start = perf_counter()
     check_scene(scene)
     unresolved, scene = scene, plain_physics(scene)
     speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
     _check_input(scene, speed, modes)
-    enclosed = [_enclose_plane(plane, speed, modes) for plane in separate_planes(scene, speed != 0)]
-    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
-    lower = _lowest([low for low, _, _ in enclosed], modes, -np.inf)
-    upper = _lowest([high for _, high, _ in enclosed], modes, np.inf)
-    method = str(basis(scene.beam, max(e[2] for e in enclosed)))
+    lower, upper, method = _enclose_planes(scene, speed, modes)
     low, high = _frequency(lower, -8), _frequency(upper, 8)
     return FrequencyBounds(
         speed=speed,
@@ -116,7 +116,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         width=high / low - 1,
         how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
         warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *_warn_of_bending(scene, speed)),
-        provenance=Provenance(__version__, method, "its complement", perf_counter() - start),
+        provenance=Provenance(__version__, str(method), "its complement", perf_counter() - start),
         scene=scene,
     )
 
@@ -133,18 +133,33 @@ def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.n
     return np.where(np.isinf(lowest), np.nan, lowest)
 
 
-def _enclose_plane(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, int]:
-    """Bounds of the squared angular frequencies in one plane, and the functions of the last basis."""
+def _enclose_planes(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of the squared angular frequencies, and the last and largest basis."""
+    planes = separate_planes(scene, speed != 0)
+    if not planes:
+        return _enclose_scaled(_enclose_coupled, scene, speed, modes)
+    enclosed = [_enclose_scaled(_enclose, plane, speed, modes) for plane in planes]
+    lower, upper, bases = zip(*enclosed, strict=True)
+    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
+    low, high = _lowest(lower, modes, -np.inf), _lowest(upper, modes, np.inf)
+    return low, high, max(bases, key=lambda ritz: ritz.functions)
+
+
+def _enclose_scaled(
+    enclose: Callable, scene: Scene, speed: float, modes: int
+) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of the squared angular frequencies by those of the scaled problem, and the last basis."""
     scaled, time = _nondimensional(scene)
-    lower, upper, functions = _enclose(scaled, speed * time, modes)
-    return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, functions
+    lower, upper, ritz = enclose(scaled, speed * time, modes)
+    return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
 def _check_input(scene: Scene, speed: float, modes: int) -> None:
     refuse_uncovered(scene, speed)
     check_speeds(speed, "speed")
     planes = separate_planes(scene, speed != 0)
-    most = min(most_functions(plane.beam) * segments_with_functions(plane.beam) for plane in planes)
+    parts = (most_functions(plane.beam) * segments_with_functions(plane.beam) for plane in planes)
+    most = min(parts, default=MOST_MOMENTS)
     if modes > most:
         raise ValueError(
             f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
@@ -194,8 +209,11 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
     scaled = Beam(1.0, mass, stiffness, tip=_nondimensional_tip(beam.tip or TipMass(0.0), m * length, length))
+    if scene.physics.planes == 2 and beam.second_bending_stiffness is not None:
+        second = beam.second_bending_stiffness.scaled(1 / e)
+        scaled = replace(scaled, second_bending_stiffness=second, twist=beam.twist)
     mount = replace(scene.mount, radius=scene.mount.radius / length)
-    return Scene(scaled, mount), length**2 * float(np.sqrt(m / e))
+    return Scene(scaled, mount, physics=scene.physics), length**2 * float(np.sqrt(m / e))
 
 
 def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
@@ -236,26 +254,58 @@ def _prove_stiff(split: Split) -> float:
 # The search ---------------------------------------------------------------------------------------
 
 
-def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, int]:
-    """Bounds of z from growing bases, until they hardly narrow, and the functions of the last basis."""
+def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of z in one plane, and the last basis."""
     flexibility = bound_flexibility(scene.beam.bending_stiffness)
+    lower, upper, functions = _narrow(
+        lambda size: Split(scene, size, speed, flexibility), _sizes(scene.beam, modes), modes, _NARROW
+    )
+    return lower, upper, basis(scene.beam, functions)
+
+
+def _enclose_coupled(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of z in two coupled planes, and the last basis; none where 1/EI could not be bounded."""
+    beam = scene.beam
+    assert beam.second_bending_stiffness is not None
+    first, second = map(bound_flexibility, (beam.bending_stiffness, beam.second_bending_stiffness))
+    if first is None or second is None:
+        return np.full(modes, np.nan), np.full(modes, np.nan), Ritz(1, "moments")
+    sizes = _numbers_of_moments(modes)
+    lower, upper, moments = _narrow(
+        lambda size: CoupledSplit(scene, size, speed, (first, second)), sizes, modes, _RESOLVED
+    )
+    return lower, upper, Ritz(moments, "moments")
+
+
+def _narrow(
+    split: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Bounds of z from growing bases, until they hardly narrow, and the size of the last."""
     lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
-    functions = 0
-    for functions in _sizes(scene.beam, modes):
+    size = 0
+    for size in sizes:
         try:
-            low, high = Split(scene, functions, speed, flexibility).bounds(modes)
+            low, high = split(size).bounds(modes)
         except np.linalg.LinAlgError:  # rounding of so many functions at such a speed
             break
         last_width, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
         width = upper - lower
-        if (width <= _NARROW * np.abs(upper)).all() or (width > last_width / 2).all():
+        if (width <= narrow * np.abs(upper)).all() or (width > last_width / 2).all():
             break
-    return lower, upper, functions
+    return lower, upper, size
 
 
 def _sizes(beam: Beam, modes: int) -> Iterator[int]:
     """Yield growing numbers of functions on each segment."""
-    most, size = most_functions(beam), max(6, (16 + 2 * modes) // segments_with_functions(beam))
+    return _growing(max(6, (16 + 2 * modes) // segments_with_functions(beam)), most_functions(beam))
+
+
+def _numbers_of_moments(modes: int) -> Iterator[int]:
+    """Yield growing numbers of bending moments in each direction."""
+    return _growing(min(MOST_MOMENTS, 12 + 2 * modes), MOST_MOMENTS)
+
+
+def _growing(size: int, most: int) -> Iterator[int]:
     while size < most:
         yield size
         size = 4 * size // 3

@@ -1,9 +1,10 @@
 """Trial functions whose residuals are known exactly, for the theorem of `beamdyn.spectrum.split`.
 
 Their curvatures are piecewise polynomials on cells: polynomials on each segment of a beam of few segments,
-bending moments over the stiffness on a beam of many.  So are all moments that their loads cause; products of
-these with the properties are integrated exactly.  In the energy a the functions are orthonormal, whatever the
-stiffness, so that rounding has the size of the eigenvalues and not of the largest stiffness over the least.
+bending moments over the stiffness on a beam of many or where it almost vanishes.  So are all moments that
+their loads cause; products of these with the properties are integrated exactly.  In the energy a the
+functions are orthonormal, whatever the stiffness, so that rounding has the size of the eigenvalues and not of
+the largest stiffness over the least.
 """
 
 from __future__ import annotations
@@ -25,29 +26,35 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 
 _FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_SAMPLES = 32  # of the stiffness on a segment, which decide about the basis only
+_STEEP = 300.0  # ratio of two of them, beyond which cells have to be graded
 _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
 
 _CONDITIONS = CLAMPED.against("bending_stiffness")
 
 
 def most_functions(beam: Beam) -> int:
-    """Largest number of functions of a head: on each segment, or on a beam of many in all."""
+    """Largest number of functions of a head: on each segment, or of moments in all."""
     most = MOST_FUNCTIONS - _extra_degrees(beam)
-    return most if _has_many_segments(beam) else min(most, _MOST_IN_ALL // segments_with_functions(beam))
+    return most if _bends_by_moments(beam) else min(most, _MOST_IN_ALL // segments_with_functions(beam))
 
 
 def segments_with_functions(beam: Beam) -> int:
     """Number of segments that have functions of their own."""
-    return 1 if _has_many_segments(beam) else len(beam.breakpoints) - 1
+    return 1 if _bends_by_moments(beam) else len(beam.breakpoints) - 1
 
 
 def basis(beam: Beam, functions: int) -> Ritz:
     """The assumed modes of a head with a number of functions, on each segment where these have their own."""
-    return Ritz(functions, "moments" if _has_many_segments(beam) else "legendre")
+    return Ritz(functions, "moments" if _bends_by_moments(beam) else "legendre")
 
 
-def _has_many_segments(beam: Beam) -> bool:
-    return len(beam.breakpoints) - 1 > _FEW_SEGMENTS
+def _bends_by_moments(beam: Beam) -> bool:
+    """Whether polynomial curvatures do badly: on many segments, or where the stiffness almost vanishes."""
+    if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
+        return True
+    stiffness = beam.bending_stiffness.at_points(_SAMPLES)
+    return bool((stiffness.max(axis=1) > _STEEP * stiffness.min(axis=1)).any())
 
 
 def _extra_degrees(beam: Beam) -> int:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import exact_cos_sin
@@ -67,31 +65,12 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
     for name, value in springs.items():
         if math.isfinite(value):
             raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
-    if scene.physics.planes == 2:
-        _refuse_coupled_planes(scene, speed)
-
-
-def _refuse_coupled_planes(scene: Scene, speed: float) -> None:
-    """Refuse two planes of bending that the twist couples, or, at a speed, an angle of the mount."""
-    bound = "bounds of two planes are known where nothing couples them"
-    if _quarter_turns(scene.beam) is None:
-        turned = f"{bound}, as where all sections are turned alike, by quarter turns"
-        remedy = "leave it out, or model one plane"
-        raise InvalidValue("twist", _largest_twist(scene.beam), turned, remedy, "rad", where=" where largest")
-    angle = scene.mount.bending_angle
-    if speed and 0.0 not in exact_cos_sin(angle):
-        remedy = "give 0 or a quarter turn, or speed = 0, or model one plane"
-        raise InvalidValue("bending_angle", angle, bound, remedy, "rad")
-    if speed and scene.mount.precone:
+    if scene.physics.planes == 2 and speed and scene.mount.precone:
+        gyroscopic = (
+            "it couples the velocities of two planes, and bounds are of equations without such forces"
+        )
         remedy = "give 0, or speed = 0, or model one plane"
-        raise InvalidValue("precone", scene.mount.precone, bound, remedy, "rad")
-
-
-def _largest_twist(beam: Beam) -> float:
-    """Twist of the section that is turned furthest [rad], with its sign."""
-    assert beam.twist is not None, "a beam without twist is refused for none"
-    twist = beam.twist(np.union1d(np.linspace(0.0, 1.0, 101), beam.twist.breakpoints))
-    return float(twist[np.abs(twist).argmax()])
+        raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
 
 
 def _quarter_turns(beam: Beam) -> int | None:

@@ -33,6 +33,7 @@ Nothing is assumed of other eigenvalues, signs or the speed.  Assumptions and ro
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import cached_property
 from math import cos, sin
@@ -55,42 +56,54 @@ _MOST_STEPS = 12  # of the search for z from a Ritz value
 _LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
 
 
-class Split:
-    """Split of the trial functions into head and tail, with the forms as matrices, at one speed.
+class Enclosure(ABC):
+    """Bounds of the lowest z of one problem, from the head and what bounds the tail.
 
     Parameters
     ----------
-    scene : Scene
-        A nondimensional scene.
-    functions : int
-        Number n of functions of the head, on each segment where these have their own.
     speed : float
         Nondimensional speed.
-    flexibility : Profile or None
-        Upper bound of 1/EI; without one there are no lower bounds.
+    stiffness : ndarray, shape (n, n)
+        Energies a of pairs of functions of the head.
+    forms : ndarray, shape (m, n, n)
+        The forms P_j on the head.
+    spin, mass : ndarray, shape (m,)
+        Parts of their coefficients c_j per squared speed and per -z.
+    spin_terms : ndarray, shape (m,)
+        Sums of the absolute values of the terms of `spin`.
+    unit : float
+        Rounding error of an entry of a matrix, relative to its terms.
     """
 
-    def __init__(self, scene: Scene, functions: int, speed: float, flexibility: Profile | None) -> None:
-        self.scene, self.speed, self.flexibility = scene, speed, flexibility
-        self._head = Head(scene.beam, functions)
-        self.stiffness, self.forms = self._head.stiffness, self._head.forms
-        self.spin, self.spin_terms, self.mass = _split_coefficients(scene)
-        # Rounding error of a sum of as many products as the rule has points, relative to its terms: doubled
-        # for the factors, and again for the eigensolution.
-        self.unit = 4 * _EPS * (self._head.quadrature.xi.size + len(self.stiffness))
+    speed: float
+    stiffness: np.ndarray
+    forms: np.ndarray
+    spin: np.ndarray
+    mass: np.ndarray
+    spin_terms: np.ndarray
+    unit: float
 
-    @property
-    def head(self) -> np.ndarray:
-        """Numbers of the functions, which functions with the same span have in a larger head."""
-        return np.arange(len(self.stiffness))
+    @abstractmethod
+    def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
+        """Upper bound of -sum_j c_j P_j on the tail relative to a: 1 - q, with the rounding of its terms."""
+
+    @abstractmethod
+    def _residual(self, coefficients: np.ndarray) -> np.ndarray:
+        """Residual R of the loads with coefficients c_j, shape (n, n)."""
+
+    @abstractmethod
+    def _residual_allowance(self, terms: np.ndarray) -> float:
+        """Bound of the rounding error of R: of the products, and of the moments in them."""
+
+    @abstractmethod
+    def _sizes(self) -> np.ndarray:
+        """Traces of the absolute terms of the forms on the head, shape (m,)."""
 
     def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
         """Compute lower and upper bounds of the lowest z."""
         mass = self._sum(self.mass)
         starts = list(enumerate(self._ritz_values(mass, modes)))
         upper = [_search_bound(self.upper_form, mass, k, z, 1) for k, z in starts]
-        if self.flexibility is None:
-            return np.full(modes, np.nan), np.array(upper)
         return np.array([_search_bound(self.lower_form, mass, k, z, -1) for k, z in starts]), np.array(upper)
 
     def _ritz_values(self, mass: np.ndarray, modes: int) -> np.ndarray:
@@ -121,13 +134,66 @@ class Split:
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
         """Q - R/q minus the rounding allowance, for coefficients c_j and the sums of their absolute terms."""
-        tail = np.maximum(self.unit * terms - coefficients, 0) @ self.tails
+        tail = self._tail(coefficients, terms)
         if tail >= 1:
             return None
         # Twice, with twice the allowance, because |a + b|^2 <= 2 (a^2 + b^2).
-        R = 2 * np.einsum("j,jakb,k", coefficients, self._residuals, coefficients)
+        R = 2 * self._residual(coefficients)
         allowance = self._allowance(terms) + 2 * self._residual_allowance(terms) / (1 - tail)
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
+
+    def _coefficients(self, z: float) -> np.ndarray:
+        """Coefficients c_j(z) of the forms."""
+        return self.speed**2 * self.spin - z * self.mass
+
+    def _absolute_coefficients(self, z: float) -> np.ndarray:
+        """Sums of the absolute values of the terms of the coefficients c_j(z)."""
+        return self.speed**2 * self.spin_terms + abs(z) * self.mass
+
+    def _allowance(self, terms: np.ndarray) -> float:
+        """Bound of the rounding error of Q: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
+        return float(self.unit * (np.trace(self.stiffness) + terms @ self._sizes()))
+
+    def _sum(self, coefficients: np.ndarray) -> np.ndarray:
+        return np.tensordot(coefficients, self.forms, 1)
+
+
+class Split(Enclosure):
+    """Split of the trial functions in one plane into head and tail, with the forms as matrices, at one speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        A nondimensional scene.
+    functions : int
+        Number n of functions of the head, on each segment where these have their own.
+    speed : float
+        Nondimensional speed.
+    flexibility : Profile or None
+        Upper bound of 1/EI; without one there are no lower bounds.
+    """
+
+    def __init__(self, scene: Scene, functions: int, speed: float, flexibility: Profile | None) -> None:
+        self.scene, self.speed, self.flexibility = scene, speed, flexibility
+        self._head = Head(scene.beam, functions)
+        self.stiffness, self.forms = self._head.stiffness, self._head.forms
+        self.spin, self.spin_terms, self.mass = _split_coefficients(scene)
+        # Rounding error of a sum of as many products as the rule has points, relative to its terms: doubled
+        # for the factors, and again for the eigensolution.
+        self.unit = 4 * _EPS * (self._head.quadrature.xi.size + len(self.stiffness))
+
+    @property
+    def head(self) -> np.ndarray:
+        """Numbers of the functions, which functions with the same span have in a larger head."""
+        return np.arange(len(self.stiffness))
+
+    def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
+        if self.flexibility is None:
+            return np.inf
+        return float(np.maximum(self.unit * terms - coefficients, 0) @ self.tails)
+
+    def _residual(self, coefficients: np.ndarray) -> np.ndarray:
+        return np.einsum("j,jakb,k", coefficients, self._residuals, coefficients)
 
     @cached_property
     def _compliance(self) -> np.ndarray:
@@ -158,26 +224,12 @@ class Split:
         return float((stiffness * self._compliance).max())
 
     def _residual_allowance(self, terms: np.ndarray) -> float:
-        """Bound of the rounding error of R: of the products, and of the moments in them."""
         products = terms @ np.sqrt(np.einsum("jaja->j", self._residuals))
         moments = self.unit * (terms @ self._traces)
         return self.unit * products**2 + self._variation * len(self.stiffness) * moments**2
 
-    def _coefficients(self, z: float) -> np.ndarray:
-        """Coefficients c_j(z) of the forms."""
-        return self.speed**2 * self.spin - z * self.mass
-
-    def _absolute_coefficients(self, z: float) -> np.ndarray:
-        """Sums of the absolute values of the terms of the coefficients c_j(z)."""
-        return self.speed**2 * self.spin_terms + abs(z) * self.mass
-
-    def _allowance(self, terms: np.ndarray) -> float:
-        """Bound of the rounding error of Q: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
-        traces = np.trace(self.forms, axis1=1, axis2=2)
-        return float(self.unit * (np.trace(self.stiffness) + terms @ traces))
-
-    def _sum(self, coefficients: np.ndarray) -> np.ndarray:
-        return np.tensordot(coefficients, self.forms, 1)
+    def _sizes(self) -> np.ndarray:
+        return np.trace(self.forms, axis1=1, axis2=2)
 
 
 def _search_bound(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:

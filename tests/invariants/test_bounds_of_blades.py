@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.spectrum.bounds import _lowest, _nondimensional, frequency_bounds
@@ -57,6 +58,15 @@ def test_bounds_of_random_blades_enclose_the_second_method(seed: int) -> None:
     known = known_frequencies(scene, speed, 3)
     squared = -np.real(known.eigenvalue**2)
     _check_enclosed(frequency_bounds(scene, speed), squared, 2 * known.uncertainty)
+
+
+@pytest.mark.parametrize("left", [1e-2, 1e-4, 1e-6])  # thickness at the tip over that at the root
+def test_bounds_of_smooth_tapers_to_almost_nothing_are_narrow(left: float) -> None:
+    taper = Polynomial([1.0, left - 1])
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, taper, taper**3), bd.Mount(0.1, np.pi, 0.0))
+    found, known = frequency_bounds(scene, 2.0), known_frequencies(scene, 2.0, 3)
+    assert (found.width < 1e-9).all()
+    _check_enclosed(found, -np.real(known.eigenvalue**2), 2 * known.uncertainty)
 
 
 @pytest.mark.parametrize("functions", [7, 10, 16])
