@@ -210,11 +210,12 @@ class Page:
         document = self.current[0]
         ui.download.content(self.works[document.name].text(), f"{document.name}.toml")
 
-    def report(self) -> None:
-        """Download the HTML report on the document in front."""
+    async def report(self) -> None:
+        """Download the HTML report on the document in front, when all its screens have been solved."""
         document = self.current[0]
         for screen in document.screens:
             self.panels[screen.name].enter()
+            await self.panels[screen.name].settled()
         self._marks()
         work = self.works[document.name]
         title = f"{self.program.title}: {document.name}"

@@ -184,6 +184,8 @@ class Document:
         In the order in which results are handed on.
     aside : mapping
         Initial entries that are not part of the file, such as options of a command.
+    in_fields : callable
+        The tables of a file as the form has them, each value at the path of its input.
     """
 
     name: str
@@ -192,6 +194,7 @@ class Document:
     check: Callable[[str, str], Any]
     screens: tuple[Screen, ...]
     aside: Mapping[str, str] = field(default_factory=dict)
+    in_fields: Callable[[dict[str, Any]], dict[str, Any]] = lambda tables: tables
 
     def opened(self, text: str, source: str) -> Entries:
         """Entries for the text of a file, which the parser of the commands accepts.
@@ -202,7 +205,7 @@ class Document:
             If it does not.
         """
         self.check(text, source)
-        tables = parse(text, source)
+        tables = self.in_fields(parse(text, source))
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
 
     @property
