@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.app.form_entries import Entries, entries_of
+from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -32,12 +33,15 @@ class Sweeps:
         Names of results to begin with, separated by commas.
     run : callable
         Tables, text of the sweep and names of results in; a sweep out.
+    draw : callable
+        The sweep in, its figure out.
     """
 
     names: Callable[[Mapping[str, Any]], Sequence[str]]
     example: str
     results: str
     run: Callable[[Mapping[str, Any], str, str], InputSweep]
+    draw: Callable[[InputSweep], Figure] = sweep_figure
 
 
 @dataclass(frozen=True)
