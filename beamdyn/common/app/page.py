@@ -16,6 +16,7 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import STYLE
 
 _LARGEST = 200_000  # bytes of a file that is opened
+_ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 _LAYOUT = """
 body { font-size: 15px; }
@@ -244,7 +245,7 @@ class Page:
         """Restore what the browser stored."""
         await ui.context.client.connected()
         try:
-            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
+            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=_ANSWERS)
         except TimeoutError:
             return
         page = json.loads(stored or "{}")

@@ -96,15 +96,22 @@ class ScreenView:
         if self.work.entries.get(path) == text:
             return  # written by a point of the drawing that was moved
         self.work.put(path, text)
-        if [entry.path for entry in self.work.inputs] != self._shape:
+        if not self._has_shape:
             self.rebuild()
         self.solve()
         self._edited()
 
     def enter(self) -> None:
-        """Solve if the answer shown is stale; called when the screen comes to the front."""
+        """Come to the front: show what other screens have written, and solve if the answer shown is stale."""
+        if not (self._has_shape and self.form.shows(self.work.entries)):
+            self.rebuild()
         if self.work.stale(self.screen) or self.work.mistakes.get(self.screen.name) or not self._drawn:
             self.solve()
+
+    @property
+    def _has_shape(self) -> bool:
+        """Whether the form has a field for each input that there is now."""
+        return [entry.path for entry in self.work.inputs] == self._shape
 
     def solve(self) -> None:
         """Solve and show the answer: at once where it comes soon, else when it comes; the last one is greyed.
