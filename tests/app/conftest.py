@@ -155,6 +155,7 @@ def opening(browser, address):
         page.set_default_timeout(1e3 * PATIENCE)
         page.set_default_navigation_timeout(1e3 * PATIENCE)
         page.goto(at or address(program))
+        page.wait_for_function("window.did_handshake")  # what is typed before a page is reloaded is lost
         page.wait_for_selector("img.drawing")
         return page
 

@@ -83,8 +83,8 @@ class Form:
             except ValueError:
                 return None
 
-        def write(at: float) -> None:
-            if at != place():  # else it has followed the field
+        def write(at: float | None) -> None:
+            if at is not None and at != place():  # else it has followed the field
                 field.set_value(f"{at:g} {drag.unit}")
 
         start = place()

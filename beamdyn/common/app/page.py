@@ -209,7 +209,7 @@ class Page:
     def save(self) -> None:
         """Download the design in front as TOML."""
         document = self.current[0]
-        ui.download.content(self.works[document.name].text(), f"{document.name}.toml")
+        ui.download.content(self.works[document.name].text().encode(), f"{document.name}.toml")
 
     async def report(self) -> None:
         """Download the HTML report on the document in front, when all its screens have been solved."""
@@ -220,7 +220,7 @@ class Page:
         self._marks()
         work = self.works[document.name]
         title = f"{self.program.title}: {document.name}"
-        ui.download.content(report_of(work, title), f"{document.name}.html")
+        ui.download.content(report_of(work, title).encode(), f"{document.name}.html")
 
     def reset(self) -> None:
         """Return to the base design."""

@@ -125,6 +125,7 @@ class ScreenView:
                 self._settle(future.result(SOON))
             except TimeoutError:
                 self._awaits = background_tasks.create(self._await(self._newest, future))
+                self.form.mark({})  # it is no quick mistake
         self.state()
 
     async def _await(self, attempt: Attempt, future: Future[Any]) -> None:
@@ -229,7 +230,7 @@ class ScreenView:
 
     async def _svg(self) -> None:
         await self.settled()
-        ui.download.content(self._drawn, f"{self._name}.svg")
+        ui.download.content(self._drawn.encode(), f"{self._name}.svg")
 
     async def _png(self) -> None:
         await self.settled()
@@ -239,7 +240,7 @@ class ScreenView:
     async def _csv(self) -> None:
         await self.settled()
         if answered := self.work.answered.get(self.screen.name):
-            ui.download.content(csv_text(self.screen.rows(answered.answer)), f"{self._name}.csv")
+            ui.download.content(csv_text(self.screen.rows(answered.answer)).encode(), f"{self._name}.csv")
 
     @property
     def _name(self) -> str:
