@@ -143,7 +143,7 @@ class ScreenView:
 
     async def settled(self) -> None:
         """Wait until the present entries have been solved."""
-        while self._awaits is not None:
+        if self._awaits is not None:
             await asyncio.wait([self._awaits])
 
     def _settle(self, outcome: Any) -> None:
