@@ -137,6 +137,8 @@ class ScreenView:
                 outcome = await asyncio.wrap_future(in_thread(attempt.solve))
         finally:
             self._awaits = None
+            if not self._left.is_deleted:
+                self.state()  # also where a point that was moved has been answered meanwhile
         if self._newest is not None and not self._left.is_deleted:
             self._settle(outcome)
             self._edited()
