@@ -151,9 +151,10 @@ class Slow:
 
 
 def element(user, words):
-    """What is called so, or says so."""
+    """What is called so; or the entry of a menu that says so, in a part of its own."""
     made = user.client.elements.values()
-    return next(e for e in made if words in (e.props.get("aria-label"), getattr(e, "text", None)))
+    found = next(e for e in made if words in (e.props.get("aria-label"), getattr(e, "text", None)))
+    return found.parent_slot.parent if found.tag == "q-item-section" else found
 
 
 async def becomes(said, page):
