@@ -191,6 +191,11 @@ class _ChoosablePhysics(MadeSection):
         return AUTO
 
 
+def with_physics_as_table(tables: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a scene, the word "auto" for its physics as the table that says the same."""
+    return tables | ({"physics": _auto_as_table(tables["physics"])} if "physics" in tables else {})
+
+
 def _auto_as_table(given: Any) -> Any:
     """The word "auto" as the table that says the same."""
     if isinstance(given, Mapping):

@@ -8,7 +8,7 @@ from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.app.inputs import inputs_of
 from beamdyn.app.steady_state import STEADY_STATE
 from beamdyn.common.app.screens import Document, Program
-from beamdyn.config import parse_scene
+from beamdyn.config import parse_scene, with_physics_as_table
 
 SCREENS = (FREQUENCIES, STEADY_STATE)
 SCENE = Document(
@@ -18,5 +18,6 @@ SCENE = Document(
     parse_scene,
     SCREENS,
     aside={"options.top_speed": "150 rad/s", "options.modes": "2"},
+    in_fields=with_physics_as_table,
 )
 BEAMDYN = Program("beamdyn", "Rotating beam", (SCENE,))

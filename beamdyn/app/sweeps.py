@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, TypeVar
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
@@ -15,6 +17,7 @@ from beamdyn.cautions import warnings_of
 from beamdyn.common.app.form_entries import entries_of
 from beamdyn.common.app.screens import Sweeps
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import (
     MOST_ONE_BY_ONE,
@@ -27,6 +30,7 @@ from beamdyn.common.edge.input_sweep import (
     parse_axis,
 )
 from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR
+from beamdyn.output.notes import note_below
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.modes import Modes
@@ -189,9 +193,14 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
             return cases[-1]
 
         swept = one_by_one(tables, [axis], [*wanted, _MODEL_ERROR], case_of)
-        return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases)))
+        return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases), *_say_choices(cases)))
 
-    return Sweeps(partial(_names, outputs), example, results, run)
+    return Sweeps(partial(_names, outputs), example, results, run, _draw)
+
+
+def _draw(swept: InputSweep) -> Figure:
+    """The sweep, its warnings below it: it may be taken away without the page."""
+    return note_below(sweep_figure(swept), swept.warnings)
 
 
 _MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.model_error, "%", 0.01)
@@ -208,6 +217,18 @@ def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
     if unknown:
         where = f"at {len(unknown)} of {len(cases)} values the model error is not known; at the first: "
         yield from _warnings_of_case(unknown[0], where)
+
+
+def _say_choices(cases: Sequence[SweepCase]) -> Iterator[str]:
+    """Yield at how many values which effects were added, where the physics was chosen."""
+    choices = [[a.physics_choice for a in case.answers if a.physics_choice is not None] for case in cases]
+    if not any(choices):
+        return
+    added = Counter(
+        name for chosen in choices for name in {e.name for c in chosen for e in c.effects if e.included}
+    )
+    each = [f"{name} at {count} of {len(cases)} values" for name, count in added.items()]
+    yield f'physics "auto" added {", ".join(each) or "nothing"}'
 
 
 def _warnings_of_case(case: SweepCase, where: str) -> Iterator[str]:

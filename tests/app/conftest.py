@@ -7,7 +7,7 @@ import asyncio
 
 import pytest
 
-from tests.app.serving import CHROMIUM, NO_PLAYWRIGHT, free_port, start, stop
+from tests.app.serving import CHROMIUM, NO_PLAYWRIGHT, PATIENCE, free_port, start, stop
 
 NO_NICEGUI = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
 
@@ -26,6 +26,7 @@ def simulate(monkeypatch, tmp_path):
     """Run an async function with a maker of clients of a program: `simulate(program, body)`."""
     pytest.importorskip("nicegui", reason=NO_NICEGUI)
     monkeypatch.setenv("NICEGUI_STORAGE_PATH", str(tmp_path))
+    monkeypatch.setattr("beamdyn.common.app.screen_view.SOON", PATIENCE)  # each answer comes at once
 
     def run(program, body):
         from nicegui.testing.user_simulation import user_simulation
@@ -151,8 +152,10 @@ def opening(browser, address):
         page = context.new_page()
         page.on("pageerror", lambda error: failures.append(str(error)))
         page.on("dialog", lambda dialog: failures.append(f"a dialog: {dialog.message}"))
-        page.set_default_timeout(30_000)  # when the machine does much else
+        page.set_default_timeout(1e3 * PATIENCE)
+        page.set_default_navigation_timeout(1e3 * PATIENCE)
         page.goto(at or address(program))
+        page.wait_for_function("window.did_handshake")  # what is typed before a page is reloaded is lost
         page.wait_for_selector("img.drawing")
         return page
 

@@ -5,12 +5,12 @@ import pytest
 from beamdyn.app.program import BEAMDYN
 from brakes.app.program import BRAKES
 from tests.app.browsing import drawing, field, go, kept, redrawn, shown
-from tests.app.serving import CHROMIUM, IN_BROWSER, NO_PLAYWRIGHT, free_port, start, stop
+from tests.app.serving import CHROMIUM, IN_BROWSER, NO_PLAYWRIGHT, PATIENCE, free_port, start, stop
 
 __all__ = ["CHROMIUM", "free_port", "start", "stop"]  # other modules take them from here, too
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
-expect.set_options(timeout=30_000)
+expect.set_options(timeout=1e3 * PATIENCE)
 pytestmark = IN_BROWSER
 
 CHANGED = {"brakes": ("speed, V", "25 km/h"), "beamdyn": ("radius, r", "0.3 m")}

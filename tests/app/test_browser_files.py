@@ -6,11 +6,11 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from tests.app.browsing import drawing, field, go, kept, redrawn, shown
-from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, free_port, start, stop
+from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, PATIENCE, free_port, start, stop
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
-expect.set_options(timeout=30_000)
+expect.set_options(timeout=1e3 * PATIENCE)
 pytestmark = IN_BROWSER
 
 

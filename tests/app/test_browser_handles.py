@@ -2,11 +2,12 @@
 
 import pytest
 
-from tests.app.browsing import DRAWING, drawing, go
-from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT
+from tests.app.browsing import DRAWING, drawing, go, redrawn
+from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, PATIENCE
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
+expect.set_options(timeout=1e3 * PATIENCE)
 pytestmark = IN_BROWSER
 NEAR = 2.0  # [px]: a picture is a tenth of a millimetre or less a pixel, to which what is written is rounded
 
@@ -35,12 +36,25 @@ def pull(page, found, across, down):
 
 def follows(page, found, x, y):
     """Wait until a handle is under the pointer that holds it."""
-    for _ in range(50):
-        at = middle(found)
-        if abs(at[0] - x) < NEAR and abs(at[1] - y) < NEAR:
+    comes(page, found, lambda at: abs(at[0] - x) < NEAR and abs(at[1] - y) < NEAR)
+
+
+def comes(page, found, there):
+    """Wait until the middle of what is found is where it should come to."""
+    for _ in range(10 * PATIENCE):
+        if there(at := middle(found)):
             return
         page.wait_for_timeout(100)
-    raise AssertionError(f"the handle is at {at}, the pointer holds it at {(x, y)}")
+    raise AssertionError(f"it stays at {at}")
+
+
+def at_rest(page, read):
+    """What is read, as soon as it has stayed the same for a second."""
+    last, now = None, read()
+    while now != last:
+        page.wait_for_timeout(1000)
+        last, now = now, read()
+    return now
 
 
 @pytest.mark.parametrize(
@@ -62,8 +76,7 @@ def test_point_follows_the_mouse_and_writes_its_field(page, screen, label, path,
     held = drawing(page)
     assert held != picture
     page.mouse.up()
-    page.wait_for_timeout(1500)
-    written = field(page, path).input_value()
+    written = at_rest(page, field(page, path).input_value)
     assert written not in ("", before)
     expect(page.get_by_text("Up to date.").locator("visible=true")).to_be_visible()
     page.mouse.move(x + 100, y + 100, steps=4)  # it has been let go
@@ -97,7 +110,7 @@ def test_dragged_too_far_marks_the_field_and_greys_and_back_recovers(page):
     expect(page.locator(".q-field--error:visible")).to_have_count(0)
     page.mouse.up()
     pull(page, found, 200, -40)
-    page.wait_for_timeout(500)
+    expect(page.locator(".greyed:visible")).to_have_count(1)
     page.mouse.up()
     expect(page.locator(".greyed:visible")).to_have_count(1)
     x, y = pull(page, found, -10, 10)  # from where the last good result has it
@@ -110,8 +123,9 @@ def test_dragged_until_the_brake_locks_and_back(page):
     """A locked brake is not drawn: its handle is away, but still held."""
     go(page, "Drum brake")
     friction = field(page, "brake.friction")
+    before = drawing(page)
     friction.fill("0.9")
-    page.wait_for_timeout(1000)
+    redrawn(page, before)
     found = handle(page, "end of the lining")
     x, y = pull(page, found, -90, -90)
     expect(page.locator(".handle:visible")).to_have_count(0)
@@ -134,10 +148,10 @@ def test_arrow_keys_move_the_point_that_has_the_focus(page):
 
 def test_a_field_moves_its_point(page):
     go(page, "Kinematics")
-    x, _ = middle(handle(page, "adjuster's pin"))
+    found = handle(page, "adjuster's pin")
+    x, _ = middle(found)
     field(page, "brake.adjuster_x").fill("45 mm")
-    page.wait_for_timeout(1500)
-    assert middle(handle(page, "adjuster's pin"))[0] < x - 5
+    comes(page, found, lambda at: at[0] < x - 5)
 
 
 @pytest.mark.parametrize("width", [1280, 800])

@@ -12,7 +12,7 @@ from importlib.util import find_spec
 import pytest
 
 from beamdyn.common.app.server import MISSING
-from tests.app.serving import free_port, start, stop
+from tests.app.serving import PATIENCE, free_port, start, stop
 
 pytestmark = pytest.mark.skipif(find_spec("nicegui") is None, reason=MISSING)
 
@@ -32,7 +32,7 @@ FOREIGN = (
 
 def ask(port, path="/", method="GET", **headers):
     """Status, headers and body of the answer to a request to 127.0.0.1; `host` without a port gets it."""
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
     connection.putrequest(method, path, skip_host=True)
     for name, value in headers.items():
         connection.putheader(name.replace("_", "-"), value)

@@ -22,6 +22,7 @@ from beamdyn.common.edge.rendering import csv_text
 from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.program import BRAKES
 from brakes.cli import main
+from tests.app.serving import PATIENCE
 
 CALIPER_SCREEN, MECHANISM_SCREEN = CALIPER.screens[0], MECHANISM.screens[0]
 
@@ -227,16 +228,16 @@ def test_sweep_is_shown_and_handed_over_as_csv_svg_and_png(simulate):
             values.set_value("10:20:3 N")
             results.set_value(["right_pad_force", "finger_travel"])
         user.find("Sweep as CSV").click()
-        rows = [*csv.reader(io.StringIO((await user.download.next(timeout=30.0)).text))]
+        rows = [*csv.reader(io.StringIO((await user.download.next(timeout=PATIENCE)).text))]
         assert rows[0] == ["finger_N", "right_pad_force_N", "finger_travel_mm"]
         forces = [float(row[1]) for row in rows[1:]]
         assert forces[2] == pytest.approx(
             2 * forces[0], rel=1e-9
         )  # without friction forces are as the finger's
         user.find("Sweep as SVG").click()
-        assert ET.fromstring((await user.download.next(timeout=30.0)).text).tag.endswith("svg")
+        assert ET.fromstring((await user.download.next(timeout=PATIENCE)).text).tag.endswith("svg")
         user.find("Sweep as PNG").click()
-        assert (await user.download.next(timeout=30.0)).content.startswith(b"\x89PNG")
+        assert (await user.download.next(timeout=PATIENCE)).content.startswith(b"\x89PNG")
 
     simulate(Program("calipers", "Calipers", (CALIPER,)), body)
 
@@ -251,7 +252,7 @@ def test_sweep_of_another_design_is_greyed_and_offers_are_those_of_the_design(si
             e for e in user.client.elements.values() if isinstance(e, ui.button) and e.text == "Sweep"
         ]
         UserInteraction(user, {button}, None).click()
-        for _ in range(300):
+        for _ in range(10 * PATIENCE):
             await asyncio.sleep(0.1)
             if any(
                 "finger_travel over" in str(e.props.get("innerHTML")) for e in user.client.elements.values()

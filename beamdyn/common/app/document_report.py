@@ -20,9 +20,10 @@ def report_of(work: OpenDocument, title: str) -> str:
     parts = []
     for screen in work.document.screens:
         if not work.stale(screen):
-            answer = work.answered[screen.name].answer
+            answered = work.answered[screen.name]
+            answer = answered.answer
             made = picture(drawn(screen, answer, screen.last), screen.name)
             more = further((name, partial(draw, answer)) for name, draw in screen.more)
-            parts.append((screen.name, screen.notes(answer), html(screen.tables(answer)) + more, made))
+            parts.append((screen.name, answered.notes, html(answered.tables) + more, made))
     options = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
     return report_page(title, "\n".join(filter(None, (options, work.text()))), parts)

@@ -74,17 +74,26 @@ class Form:
             self._slider(drag, entry, made)
 
     def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
-        """A slider that writes into a field; it starts at the field's value, limited to its range."""
-        given = in_unit(field.value or "", entry.quantity.unit, drag.unit).partition(" ")[0]
-        try:
-            at = float(given)
-        except ValueError:
-            at = drag.low
+        """A slider that writes into a field and follows what is written there, limited to its range."""
+
+        def place() -> float | None:
+            given = in_unit(field.value or "", entry.quantity.unit, drag.unit).partition(" ")[0]
+            try:
+                return min(max(float(given), drag.low), drag.high)
+            except ValueError:
+                return None
+
+        def write(at: float | None) -> None:
+            if at is not None and at != place():  # else it has followed the field
+                field.set_value(f"{at:g} {drag.unit}")
+
+        start = place()
         made = ui.slider(
-            min=drag.low, max=drag.high, step=drag.step, value=at,
-            on_change=lambda e: field.set_value(f"{e.value:g} {drag.unit}"),
+            min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
+            on_change=lambda e: write(e.value),
         )  # fmt: skip
         made.props(f'dense aria-label="{label(entry)} [{drag.unit}]"').classes("q-px-md")
+        field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
 
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in _options(entry)}
@@ -127,6 +136,10 @@ class Form:
 
         button = ui.button(icon="straighten", on_click=choose)
         button.props(f'flat dense round size=sm aria-label="unit of {_words(entry)}"')
+
+    def shows(self, entries: Mapping[str, str]) -> bool:
+        """Whether these entries stand in the fields."""
+        return all((field.value or "") == entries.get(path, "") for path, field in self.fields.items())
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
         """Mark the fields with mistakes, clear the others, and open folded tables with a mistake."""

@@ -2,21 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.app.form_entries import Entries, by_field, tables_of, toml_of
 from beamdyn.common.app.screens import Document, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
 
 @dataclass(frozen=True)
 class Answered:
-    """An answer, and the entries that it belongs to."""
+    """An answer, what is said of it, and the entries that it belongs to."""
 
     answer: Any
+    tables: Sequence[RenderableType]
+    notes: Sequence[str]
     entries: Entries
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """Entries to be solved; it shares nothing that changes, so that a thread of its own may solve it.
+
+    Parameters
+    ----------
+    screen : Screen
+        The screen.
+    entries : mapping
+        What its answer follows from.
+    inputs : sequence of Input
+        Their descriptions.
+    """
+
+    screen: Screen
+    entries: Entries
+    inputs: Sequence[Input] = field(compare=False)
+
+    def solve(self) -> Answered | Mapping[str, list[str]]:
+        """The answer, with all that takes time, such as its model error; or what is wrong, by field."""
+        try:
+            answer = self.screen.solve(tables_of(self.entries, self.inputs, self.screen.needs))
+            tables, notes = [*self.screen.tables(answer)], [*self.screen.notes(answer)]
+        except (ValueError, ArithmeticError, NoAnswer) as error:
+            return by_field(error, self.inputs)
+        return Answered(answer, tables, notes, self.entries)
 
 
 @dataclass
@@ -75,15 +109,18 @@ class OpenDocument:
         """Whether there is an answer, but to earlier entries."""
         return screen.name in self.answered and self.stale(screen)
 
+    def attempt(self, screen: Screen) -> Attempt:
+        """The present entries, to be solved."""
+        return Attempt(screen, self.needed(screen), self.inputs)
+
+    def keep(self, screen: Screen, outcome: Answered | Mapping[str, list[str]]) -> bool:
+        """Keep an answer; or keep the last one and say in `mistakes` why there is no other."""
+        found = isinstance(outcome, Answered)
+        if found:
+            self.answered[screen.name] = outcome
+        self.mistakes[screen.name] = {} if found else dict(outcome)
+        return found
+
     def solve(self, screen: Screen) -> bool:
         """Solve the present entries; on failure the last answer is kept, and `mistakes` says why."""
-        entries, inputs = self.needed(screen), self.inputs
-        self.mistakes[screen.name] = {}
-        try:
-            answer = screen.solve(tables_of(entries, inputs, screen.needs))
-        except (ValueError, ArithmeticError, NoAnswer) as error:
-            self.mistakes[screen.name] = by_field(error, inputs)
-        else:
-            self.answered[screen.name] = Answered(answer, entries)
-            return True
-        return False
+        return self.keep(screen, self.attempt(screen).solve())

@@ -16,6 +16,7 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import STYLE
 
 _LARGEST = 200_000  # bytes of a file that is opened
+_ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 _LAYOUT = """
 body { font-size: 15px; }
@@ -208,17 +209,18 @@ class Page:
     def save(self) -> None:
         """Download the design in front as TOML."""
         document = self.current[0]
-        ui.download.content(self.works[document.name].text(), f"{document.name}.toml")
+        ui.download.content(self.works[document.name].text().encode(), f"{document.name}.toml")
 
-    def report(self) -> None:
-        """Download the HTML report on the document in front."""
+    async def report(self) -> None:
+        """Download the HTML report on the document in front, when all its screens have been solved."""
         document = self.current[0]
         for screen in document.screens:
             self.panels[screen.name].enter()
+            await self.panels[screen.name].settled()
         self._marks()
         work = self.works[document.name]
         title = f"{self.program.title}: {document.name}"
-        ui.download.content(report_of(work, title), f"{document.name}.html")
+        ui.download.content(report_of(work, title).encode(), f"{document.name}.html")
 
     def reset(self) -> None:
         """Return to the base design."""
@@ -243,7 +245,7 @@ class Page:
         """Restore what the browser stored."""
         await ui.context.client.connected()
         try:
-            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=3.0)
+            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=_ANSWERS)
         except TimeoutError:
             return
         page = json.loads(stored or "{}")

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
+from concurrent.futures import Future
 from functools import partial
 from typing import Any
 
-from nicegui import ui
+from nicegui import background_tasks, ui
 
 from beamdyn.common.app.draggable_drawing import DraggableDrawing
 from beamdyn.common.app.folded_drawing import FoldedDrawing
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, changed_texts, describe_place, draw_sheet
-from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.open_document import Attempt, OpenDocument
 from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.app.sweep_panel import SweepPanel
+from beamdyn.common.app.threads import in_thread
 from beamdyn.common.edge.rendering import csv_text, html, png
+
+SOON = 0.3  # how long the page waits for an answer before it goes on without [s]
 
 
 class ScreenView:
@@ -35,6 +40,8 @@ class ScreenView:
     def __init__(self, work: OpenDocument, screen: Screen, edited: Callable[[], object]) -> None:
         self.work, self.screen, self._edited = work, screen, edited
         self._drawn = ""
+        self._newest: Attempt | None = None  # until it has been solved
+        self._awaits: asyncio.Task[None] | None = None  # an answer that did not come soon
         with ui.element("div").classes("screen"):
             self._left: Any = ui.column().classes("left gap-1")
             with ui.column().classes("right gap-2"):
@@ -89,19 +96,65 @@ class ScreenView:
         if self.work.entries.get(path) == text:
             return  # written by a point of the drawing that was moved
         self.work.put(path, text)
-        if [entry.path for entry in self.work.inputs] != self._shape:
+        if not self._has_shape:
             self.rebuild()
         self.solve()
         self._edited()
 
     def enter(self) -> None:
-        """Solve if the answer shown is stale; called when the screen comes to the front."""
+        """Come to the front: show what other screens have written, and solve if the answer shown is stale."""
+        if not (self._has_shape and self.form.shows(self.work.entries)):
+            self.rebuild()
         if self.work.stale(self.screen) or self.work.mistakes.get(self.screen.name) or not self._drawn:
             self.solve()
 
+    @property
+    def _has_shape(self) -> bool:
+        """Whether the form has a field for each input that there is now."""
+        return [entry.path for entry in self.work.inputs] == self._shape
+
     def solve(self) -> None:
-        """Solve and show the answer; on failure say why and leave the last answer, greyed."""
-        self.work.solve(self.screen)
+        """Solve and show the answer: at once where it comes soon, else when it comes; the last one is greyed.
+
+        What changes meanwhile is solved next, its last state alone.
+        """
+        self._newest = self.work.attempt(self.screen)
+        if self._awaits is None:
+            future = in_thread(self._newest.solve)
+            try:
+                self._settle(future.result(SOON))
+            except TimeoutError:
+                self._awaits = background_tasks.create(self._await(self._newest, future))
+                self.form.mark({})  # it is no quick mistake
+        self.state()
+
+    async def _await(self, attempt: Attempt, future: Future[Any]) -> None:
+        """Show the answer to the newest entries when it comes."""
+        try:
+            outcome = await asyncio.wrap_future(future)
+            while self._newest is not None and self._newest != attempt:
+                attempt = self._newest
+                outcome = await asyncio.wrap_future(in_thread(attempt.solve))
+        finally:
+            self._awaits = None
+            if not self._left.is_deleted:
+                self.state()  # also where a point that was moved has been answered meanwhile
+        if self._newest is not None and not self._left.is_deleted:
+            self._settle(outcome)
+            self._edited()
+
+    async def settled(self) -> None:
+        """Wait until the present entries have been solved."""
+        if self._awaits is not None:
+            await asyncio.wait([self._awaits])
+
+    def _settle(self, outcome: Any) -> None:
+        self.work.keep(self.screen, outcome)
+        self._tell()
+
+    def _tell(self) -> None:
+        """Show the answer; or say why there is none, and leave the last one, greyed."""
+        self._newest = None
         mistakes = self.work.mistakes[self.screen.name]
         self.form.mark(mistakes)
         if not mistakes:
@@ -110,7 +163,7 @@ class ScreenView:
         self._say(mistakes)
 
     def state(self) -> None:
-        """Grey the answer shown while it is stale."""
+        """Grey the answer shown while it is stale, and say when another is on its way."""
         stale = self.work.stale(self.screen)
         self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
         failed = self.work.mistakes.get(self.screen.name)
@@ -118,7 +171,8 @@ class ScreenView:
             "Below is the last good result." if self.work.answered.get(self.screen.name) else "No result yet."
         )
         later = "An input has changed since: this result is stale."
-        self._status.set_text((words if failed else later) if stale else "Up to date.")
+        now = (words if failed else later) if stale else "Up to date."
+        self._status.set_text(f"Computing. {words if stale else ''}".strip() if self._awaits else now)
         if self._sweep is not None:
             self._sweep.state()
 
@@ -127,7 +181,7 @@ class ScreenView:
         self._said.clear()
         answered = self.work.answered.get(self.screen.name)
         elsewhere = [s for path, said in mistakes.items() if path not in self.form.fields for s in said]
-        warnings = self.screen.notes(answered.answer) if answered and not mistakes else ()
+        warnings = answered.notes if answered and not mistakes else ()
         with self._said:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
@@ -135,12 +189,12 @@ class ScreenView:
                 ui.label(f"Warning: {sentence}").classes("warning")
 
     def _show(self) -> None:
-        answer = self.work.answered[self.screen.name].answer
-        self._tables.set_content(html(self.screen.tables(answer)))
+        answered = self.work.answered[self.screen.name]
+        self._tables.set_content(html(answered.tables))
         self._draw()
         if self.board.held is None:  # while a point is moved, its drawing alone follows
             for more in self._more:
-                more.show(answer)
+                more.show(answered.answer)
 
     def _draw(self) -> None:
         answered = self.work.answered.get(self.screen.name)
@@ -164,7 +218,8 @@ class ScreenView:
             self.work.put(path, text)
         for path, text in texts.items():
             self.form.fields[path].set_value(text)
-        self.solve()
+        self.work.solve(self.screen)  # waited for: the point is held
+        self._tell()
         mistakes = self.work.mistakes[self.screen.name]
         if "" in mistakes:  # about no single field: about those written
             self.form.mark(mistakes | dict.fromkeys(texts, mistakes[""]))
@@ -175,16 +230,19 @@ class ScreenView:
         """Place of the slider."""
         return float(self._at.value) if self._at is not None else self.screen.last
 
-    def _svg(self) -> None:
-        ui.download.content(self._drawn, f"{self._name}.svg")
+    async def _svg(self) -> None:
+        await self.settled()
+        ui.download.content(self._drawn.encode(), f"{self._name}.svg")
 
-    def _png(self) -> None:
+    async def _png(self) -> None:
+        await self.settled()
         if answered := self.work.answered.get(self.screen.name):
             ui.download.content(png(self.screen.draw(answered.answer, self.progress)), f"{self._name}.png")
 
-    def _csv(self) -> None:
+    async def _csv(self) -> None:
+        await self.settled()
         if answered := self.work.answered.get(self.screen.name):
-            ui.download.content(csv_text(self.screen.rows(answered.answer)), f"{self._name}.csv")
+            ui.download.content(csv_text(self.screen.rows(answered.answer)).encode(), f"{self._name}.csv")
 
     @property
     def _name(self) -> str:

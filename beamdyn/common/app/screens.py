@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.app.form_entries import Entries, entries_of
+from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -32,12 +33,15 @@ class Sweeps:
         Names of results to begin with, separated by commas.
     run : callable
         Tables, text of the sweep and names of results in; a sweep out.
+    draw : callable
+        The sweep in, its figure out.
     """
 
     names: Callable[[Mapping[str, Any]], Sequence[str]]
     example: str
     results: str
     run: Callable[[Mapping[str, Any], str, str], InputSweep]
+    draw: Callable[[InputSweep], Figure] = sweep_figure
 
 
 @dataclass(frozen=True)
@@ -184,6 +188,8 @@ class Document:
         In the order in which results are handed on.
     aside : mapping
         Initial entries that are not part of the file, such as options of a command.
+    in_fields : callable
+        The tables of a file as the form has them, each value at the path of its input.
     """
 
     name: str
@@ -192,6 +198,7 @@ class Document:
     check: Callable[[str, str], Any]
     screens: tuple[Screen, ...]
     aside: Mapping[str, str] = field(default_factory=dict)
+    in_fields: Callable[[dict[str, Any]], dict[str, Any]] = lambda tables: tables
 
     def opened(self, text: str, source: str) -> Entries:
         """Entries for the text of a file, which the parser of the commands accepts.
@@ -202,7 +209,7 @@ class Document:
             If it does not.
         """
         self.check(text, source)
-        tables = parse(text, source)
+        tables = self.in_fields(parse(text, source))
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
 
     @property

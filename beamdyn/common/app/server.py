@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
 
 MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
 _HOME = "127.0.0.1"
+_TURN = 5e-4  # how long a thread that computes keeps the interpreter from the one that serves [s]
 
 
 def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
@@ -92,6 +94,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     _free(host, port)
     made = program()
     app.add_middleware(OwnNames, host=host)
+    sys.setswitchinterval(_TURN)
     ui.run(
         root_of(made),
         host=host,

@@ -13,7 +13,6 @@ from nicegui import run, ui
 from beamdyn.common.app.form_entries import Entries, in_unit, tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Screen, Sweeps
-from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
 from beamdyn.common.edge.inputs import Input
@@ -51,7 +50,7 @@ class SweepPanel:
                     ui.button(
                         f"Sweep as {kind}", icon="download", on_click=getattr(self, kind.lower())
                     ).props("flat no-caps")
-            self._said: Any = ui.label().classes("mistake").props('role="alert"')
+            self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
             self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
             self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
 
@@ -96,19 +95,23 @@ class SweepPanel:
         try:
             swept = await run.io_bound(self.sweeps.run, self._tables(), text, names)
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            self._said.set_text(str(error))
+            self._say(str(error), "mistake")
             return None
         if swept is None:  # the program ends
             return None
-        self._said.set_text(" ".join(swept.warnings))
+        self._say("\n".join(swept.warnings), "warning")
         self._found = request, swept
         return swept
+
+    def _say(self, words: str, kind: str) -> None:
+        self._said.set_text(words)
+        self._said.classes(add=kind if words else "", remove="mistake warning")
 
     async def show(self) -> None:
         """Show the sweep."""
         if swept := await self._run():
             words = f"{', '.join(swept.results)} over {swept.inputs[0]}"
-            self._picture.set_content(picture(drawing(lambda: sweep_figure(swept)), words))
+            self._picture.set_content(picture(drawing(lambda: self.sweeps.draw(swept)), words))
             self._shown = self._found[0][0] if self._found else None
             self.state()
 
@@ -120,12 +123,12 @@ class SweepPanel:
     async def svg(self) -> None:
         """Download its picture as SVG."""
         if swept := await self._run():
-            ui.download.content(drawing(lambda: sweep_figure(swept)).encode(), "sweep.svg")
+            ui.download.content(drawing(lambda: self.sweeps.draw(swept)).encode(), "sweep.svg")
 
     async def png(self) -> None:
         """Download its picture as PNG."""
         if swept := await self._run():
-            ui.download.content(png(sweep_figure(swept)), "sweep.png")
+            ui.download.content(png(self.sweeps.draw(swept)), "sweep.png")
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
