@@ -12,7 +12,7 @@ import numpy as np
 
 from beamdyn.equations.discretization import Functions, RootConditions, Space, Spaces
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import FRACTION, Profile
+from beamdyn.scene.profile import FRACTION, Profile, mean
 
 
 def gram_by_mass(beam: Beam, space: Space) -> np.ndarray:
@@ -46,6 +46,15 @@ def product_at_lumps(beam: Beam, rows: Functions, columns: Functions) -> np.ndar
     if not mass.size:
         return np.zeros((rows.size, columns.size))
     return (rows.evaluate(xi) * mass) @ columns.evaluate(xi).T
+
+
+def moments_about_root(beam: Beam) -> tuple[float, float, float]:
+    """Mass [kg], and its first and second moments about the root [kg m, kg m2], without the tip body."""
+    (xi, mass), weight, moments = beam.lumps, beam.mass_per_length, []
+    for k in range(3):
+        moments.append(beam.length ** (k + 1) * mean(weight) + float(mass @ (xi * beam.length) ** k))
+        weight = weight * FRACTION
+    return moments[0], moments[1], moments[2]
 
 
 @lru_cache(maxsize=64)
