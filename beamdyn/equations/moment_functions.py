@@ -14,6 +14,9 @@ which have the small roughness of M that polynomials lack: as one step of invers
 deflection by shear and of a stretch, it is the slope that is a force over a stiffness.  Twisted sections bend
 in both directions under a moment in one: curvatures are products with entries of their compliance.
 
+At a point mass the moment has a kink, and the shear force a jump: polynomials are those on each part of the
+beam between point masses, of moments such that they are continuous.
+
 The quotients are interpolated by polynomials on cells.  The functions are thus piecewise polynomials, of
 which integrals are exact, and eigenvalues are upper bounds as those of other assumed modes.
 """
@@ -22,7 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -34,9 +37,10 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions
+from beamdyn.equations.piecewise_polynomials import PiecewisePolynomials
 from beamdyn.equations.sampled_space import SampledSpace, Sampler, product_of
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import Profile
+from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
 NODES = 16  # on each cell, through which the quotients are interpolated
@@ -66,7 +70,8 @@ class MomentSpaces(FieldsOnly):
     beam : Beam
         The beam, with the modelled properties.
     forces : int
-        Number of forces or moments in each direction.
+        Number of forces or moments in each direction; with point masses, by the square root of its share of
+        the length on each part between them.
     """
 
     beam: Beam
@@ -83,6 +88,11 @@ class MomentSpaces(FieldsOnly):
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @cached_property
+    def polynomials(self) -> PiecewisePolynomials:
+        """Polynomials on the parts of the beam between point masses."""
+        return PiecewisePolynomials(merge_breakpoints(np.concatenate([[0.0], self.beam.lumps[0], [1.0]])))
+
+    @cached_property
     def cells(self) -> np.ndarray:
         """Ends of cells on which every compliance and the highest polynomial are resolved, as x/L."""
         ends = np.array(self.beam.breakpoints)
@@ -92,7 +102,7 @@ class MomentSpaces(FieldsOnly):
 
     def _are_coarse(self, ends: np.ndarray) -> np.ndarray:
         """Whether each cell is to be halved."""
-        coarse = np.diff(np.arccos(1 - 2 * ends)) * self.forces > _PHASE
+        coarse = self.polynomials.phases(ends, self.forces) > _PHASE
         xi = gauss_points_on(ends, NODES)
         for name in _ORDERS:
             values = {entry: p(xi) for entry, p in stiffness_tensor(self.beam, name).items()}
@@ -244,17 +254,20 @@ class MomentSpace(SampledSpace):
         Polynomials, and what displacements by the first of them cause by inertia and by tension.
         """
         spaces, causes = self.spaces, [*self._causes(direction)]
-        first = spaces.forces // (1 + len(causes))
-        P = legendre.legvander(2 * spaces.nodes.xi - 1, spaces.forces - len(causes) * first - 1).T
+        of_moments = self.conditions.derivatives == 2
+        counts = spaces.polynomials.counts(spaces.forces)
+        first = [count // (1 + len(causes)) for count in counts]
+        others = [count - len(causes) * n for count, n in zip(counts, first, strict=True)]
+        polynomials = partial(spaces.polynomials, spaces.nodes.xi, continuous=of_moments)
         caused = (
             _integrate_from_tip(
                 spaces.nodes,
-                weight * spaces.displacements(P[:first], name, direction)[order],
+                weight * spaces.displacements(polynomials(first), name, direction)[order],
                 self.conditions.derivatives - order,
             )
             for name, order, weight in causes
         )
-        return np.concatenate([P, *caused])
+        return np.concatenate([polynomials(others), *caused])
 
     def _causes(self, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
         """Yield of loads: the stiffness against the displacement, the derivative of that, and its weight."""
