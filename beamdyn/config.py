@@ -23,7 +23,7 @@ from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
@@ -201,9 +201,9 @@ def _auto_as_table(given: Any) -> Any:
 
 
 if TYPE_CHECKING:
-    _TipInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
+    _TipInput = _PointMassInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
 else:
-    _TipInput, _MountInput = section_of(TipMass), section_of(Mount)
+    _TipInput, _PointMassInput, _MountInput = map(section_of, (TipMass, PointMass, Mount))
     _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
     _MotionInput = one_of_kinds(MOTIONS)
 
@@ -211,6 +211,7 @@ else:
 class _BeamInput(CoreSection):
     length: Annotated[float, Quantity("m", "L", "length", above=0)]
     tip: _TipInput | None = None
+    point_mass: list[_PointMassInput] = []  # noqa: RUF012  (pydantic copies it)
     breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
     stations: Annotated[
         list[list[Any]] | None,
@@ -227,9 +228,11 @@ class _BeamInput(CoreSection):
     @property
     def _arguments(self) -> dict[str, Any]:
         """What the constructors of `Beam` take."""
-        given = {name: value for name, value in self if value is not None and name != "stations"}
+        others = ("stations", "point_mass")
+        given = {name: value for name, value in self if value is not None and name not in others}
         given = {name: _to_fractions(value, self.length) for name, value in given.items()}
-        return given | {"tip": self.tip and self.tip.core}
+        lumps = tuple(lump.core for lump in self.point_mass)
+        return given | {"tip": self.tip and self.tip.core, "point_masses": lumps}
 
 
 class RectangularInput(_BeamInput):
@@ -247,7 +250,7 @@ class RectangularInput(_BeamInput):
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        with _of_stations(self.stations):
+        with _of_stations(self.stations), _of_point_masses():
             return Beam.rectangular(**self._arguments)
 
 
@@ -285,7 +288,7 @@ class StiffnessInput(_BeamInput):
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        with _of_stations(self.stations), _naming_missing_key(StiffnessInput):
+        with _of_stations(self.stations), _of_point_masses(), _naming_missing_key(StiffnessInput):
             return Beam.from_stiffness(**self._arguments)
 
 
@@ -297,6 +300,15 @@ def _to_fractions(given: Any, length: float) -> Any:
         # Rounded, or 20 mm of 50 mm would lie beside the fraction 0.4, with a sliver between them.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
+
+
+@contextmanager
+def _of_point_masses() -> Iterator[None]:
+    """Within it, what the core says about a point mass is said of its table."""
+    try:
+        yield
+    except InvalidValue as error:
+        raise replace(error, field=error.field.replace("point_masses[", "point_mass[")) from None
 
 
 @contextmanager

@@ -195,7 +195,7 @@ class TransverseField(Field):
     rotates: ClassVar[bool]
     partners: ClassVar[tuple[TransverseField, ...]]  # the fields before this one, the first of all first
     explanations: ClassVar[Mapping[str, Explanation]] = {
-        "mass": Explanation("M22 q2''", "always"),
+        "mass": Explanation("M22 q2''", why.say_mass),
         "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),
         "centrifugal stiffening": Explanation("ω² KGB q2", "the carrier turns", (why.TURNS,)),
         "spin softening": Explanation("-ω² c² S22 q2", why.say_softening, (why.TURNS, why.SOFTENED)),
