@@ -200,6 +200,13 @@ def _auto_as_table(given: Any) -> Any:
     return {AUTO_NAME: True}
 
 
+def _in_a_list(given: Any) -> Any:
+    """Refuse one table where there may be several."""
+    if isinstance(given, Mapping):
+        raise InvalidInput("", dict(given), "give a table [[beam.point_mass]] in two brackets, one for each")
+    return given
+
+
 if TYPE_CHECKING:
     _TipInput = _PointMassInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
 else:
@@ -211,7 +218,7 @@ else:
 class _BeamInput(CoreSection):
     length: Annotated[float, Quantity("m", "L", "length", above=0)]
     tip: _TipInput | None = None
-    point_mass: list[_PointMassInput] = []  # noqa: RUF012  (pydantic copies it)
+    point_mass: Annotated[list[_PointMassInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012  (the same)
     breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
     stations: Annotated[
         list[list[Any]] | None,

@@ -126,7 +126,7 @@ class PointMass:
     mass: Annotated[float, Described("kg", "m_k", "mass", least=0)]
 
     def __post_init__(self) -> None:
-        remedy = "a mass at the root does not move with the beam: leave it out"
+        remedy = "it is the distance from the root, where a mass would not move"
         position = positive("point_mass.position", self.position, "m", remedy)
         set_fields(self, position=position, mass=not_negative("point_mass.mass", self.mass, "kg"))
 
