@@ -218,7 +218,6 @@ else:
 class _BeamInput(CoreSection):
     length: Annotated[float, Quantity("m", "L", "length", above=0)]
     tip: _TipInput | None = None
-    point_mass: Annotated[list[_PointMassInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012  (the same)
     breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
     stations: Annotated[
         list[list[Any]] | None,
@@ -231,6 +230,7 @@ class _BeamInput(CoreSection):
         Along | None,
         Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
     ] = None
+    point_mass: Annotated[list[_PointMassInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012  (the same)
 
     @property
     def _arguments(self) -> dict[str, Any]:
