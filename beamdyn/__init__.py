@@ -25,7 +25,7 @@ _NAMES = {
     "equations.ritz": ("Ritz",),
     "equations.left_out": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
-    "scene.beam": ("Beam", "TipMass"),
+    "scene.beam": ("Beam", "PointMass", "TipMass"),
     "scene.motion": (
         "Line",
         "Motion",
@@ -91,7 +91,7 @@ if TYPE_CHECKING:
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.modal.equilibrium import NoEquilibrium
-    from beamdyn.scene.beam import Beam, TipMass
+    from beamdyn.scene.beam import Beam, PointMass, TipMass
     from beamdyn.scene.motion import (
         Line,
         Motion,

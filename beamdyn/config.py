@@ -23,7 +23,7 @@ from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
@@ -205,10 +205,17 @@ def _auto_as_table(given: Any) -> Any:
     return {AUTO_NAME: True}
 
 
+def _in_a_list(given: Any) -> Any:
+    """Refuse one table where there may be several."""
+    if isinstance(given, Mapping):
+        raise InvalidInput("", dict(given), "give a table [[beam.point_mass]] in two brackets, one for each")
+    return given
+
+
 if TYPE_CHECKING:
-    _TipInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
+    _TipInput = _PointMassInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
 else:
-    _TipInput, _MountInput = section_of(TipMass), section_of(Mount)
+    _TipInput, _PointMassInput, _MountInput = map(section_of, (TipMass, PointMass, Mount))
     _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
     _MotionInput = one_of_kinds(MOTIONS)
 
@@ -228,13 +235,16 @@ class _BeamInput(CoreSection):
         Along | None,
         Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
     ] = None
+    point_mass: Annotated[list[_PointMassInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012  (the same)
 
     @property
     def _arguments(self) -> dict[str, Any]:
         """What the constructors of `Beam` take."""
-        given = {name: value for name, value in self if value is not None and name != "stations"}
+        others = ("stations", "point_mass")
+        given = {name: value for name, value in self if value is not None and name not in others}
         given = {name: _to_fractions(value, self.length) for name, value in given.items()}
-        return given | {"tip": self.tip and self.tip.core}
+        lumps = tuple(lump.core for lump in self.point_mass)
+        return given | {"tip": self.tip and self.tip.core, "point_masses": lumps}
 
 
 class RectangularInput(_BeamInput):
@@ -252,7 +262,7 @@ class RectangularInput(_BeamInput):
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        with _of_stations(self.stations):
+        with _of_stations(self.stations), _of_point_masses():
             return Beam.rectangular(**self._arguments)
 
 
@@ -290,7 +300,7 @@ class StiffnessInput(_BeamInput):
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        with _of_stations(self.stations), _naming_missing_key(StiffnessInput):
+        with _of_stations(self.stations), _of_point_masses(), _naming_missing_key(StiffnessInput):
             return Beam.from_stiffness(**self._arguments)
 
 
@@ -302,6 +312,15 @@ def _to_fractions(given: Any, length: float) -> Any:
         # Rounded, or 20 mm of 50 mm would lie beside the fraction 0.4, with a sliver between them.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
+
+
+@contextmanager
+def _of_point_masses() -> Iterator[None]:
+    """Within it, what the core says about a point mass is said of its table."""
+    try:
+        yield
+    except InvalidValue as error:
+        raise replace(error, field=error.field.replace("point_masses[", "point_mass[")) from None
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, get_args
 
 from pydantic import BaseModel, Field
@@ -25,6 +25,8 @@ DRAGS = (
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
 )
+# Lists of tables, and what they are.
+_LISTS = {"beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }'}
 _FASTEST = 10  # times the first natural frequency at rest
 
 
@@ -55,12 +57,26 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         return [by_kind.get(_kind(entries, table, next(iter(by_kind))), _NoKind)]
 
     inputs = [*describe(OptionsInput, "options."), *describe(SceneInput, choose=choose)]
-    return [
+    inputs = [
         dataclasses.replace(entry, choices=kinds[entry.path], required=False, default=None)
         if entry.path in kinds
         else entry
         for entry in inputs
     ]
+    return [*_with_lists_whole(inputs)]
+
+
+def _with_lists_whole(inputs: Sequence[Input]) -> Iterator[Input]:
+    """The inputs, with one field for all tables of a list."""
+    seen: set[str] = set()
+    for entry in inputs:
+        table = next((table for table in _LISTS if entry.path.startswith(f"{table}.")), "")
+        if not table:
+            yield entry
+        elif table not in seen:
+            seen.add(table)
+            words = Quantity(meaning=_LISTS[table])
+            yield Input(table, entry.section, list[dict], words, (), False, None)
 
 
 def _beam(entries: Mapping[str, str]) -> type[Section]:

@@ -9,10 +9,11 @@ import numpy as np
 
 from beamdyn.common.results import Result
 from beamdyn.decks.blade import Blade
+from beamdyn.equations.mass import moments_about_root
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
-from beamdyn.scene.profile import FRACTION, Profile, mean
+from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.modes import natural_modes
 
@@ -85,7 +86,8 @@ class ShapeCheck:
 class DeckAudit(Result):
     """What a deck amounts to.
 
-    Properties are linear between stations.  Mass and moments are those of the blade without its tip body.
+    Properties are linear between stations.  Mass and moments are those of the blade with
+    point masses along it, without its tip body.
 
     Parameters
     ----------
@@ -127,7 +129,7 @@ class DeckAudit(Result):
 def audit(blade: Blade, scene: Scene) -> DeckAudit:
     """Audit a blade, by the beam of its scene."""
     beam, hub = scene.beam, scene.mount.radius
-    mass, first, second = moments(beam)
+    mass, first, second = moments_about_root(beam)
     speed = blade.speed * math.pi / 30
     shapes = tuple(_check_shape(scene, mode, row, speed) for mode, row in blade.polynomials.items())
     return DeckAudit(
@@ -147,15 +149,6 @@ def audit(blade: Blade, scene: Scene) -> DeckAudit:
         shape_speed=speed,
         warnings=tuple(_warnings(shapes)),
     )
-
-
-def moments(beam: Beam) -> tuple[float, float, float]:
-    """Mass [kg], and first and second moments about the root [kg m, kg m2], of a beam without tip body."""
-    weighted = [beam.mass_per_length]
-    for _ in range(2):
-        weighted.append(weighted[-1] * FRACTION)
-    mass, first, second = (beam.length ** (k + 1) * mean(profile) for k, profile in enumerate(weighted))
-    return mass, first, second
 
 
 def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
@@ -193,7 +186,14 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
     second = scene.beam.second_bending_stiffness
     stiffness: Profile | None = scene.beam.bending_stiffness if plane == "flap" else second
     assert stiffness is not None
-    beam = Beam(scene.beam.length, scene.beam.mass_per_length, stiffness, tip=_turned(scene.beam.tip, plane))
+    blade = scene.beam
+    beam = Beam(
+        blade.length,
+        blade.mass_per_length,
+        stiffness,
+        tip=_turned(blade.tip, plane),
+        point_masses=blade.point_masses,
+    )
     angle = math.pi / 2 if plane == "flap" else 0.0
     mount = Mount(scene.mount.radius, scene.mount.setting_angle, angle)
     return replace(scene, beam=beam, mount=mount, physics=Physics())

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from beamdyn.equations.mass import outboard_moments
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import FRACTION, Profile
+from beamdyn.scene.profile import Profile
 
 
 @lru_cache(maxsize=64)
@@ -14,12 +15,10 @@ def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
 
     The axial force at steady speed is omega^2 N_B - a_O1 N_A: Lee and Yoo (2019), eqs. (18), (19).
     """
-    length, mass = beam.length, beam.mass_per_length
-    n_a = mass.scaled(length).outboard_integral()
-    n_b = (mass * FRACTION).scaled(length**2).outboard_integral()
+    n_a, n_b = outboard_moments(beam)
     if beam.tip is None:
         return n_a, n_b
-    reach = length + beam.tip.offset
+    reach = beam.length + beam.tip.offset
     return _add_constant(n_a, beam.tip.mass), _add_constant(n_b, beam.tip.mass * reach)
 
 

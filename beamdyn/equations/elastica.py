@@ -38,9 +38,9 @@ _BENDING = "bending"
 
 @dataclass(frozen=True)
 class MassPoints:
-    """Masses along the beam: the N points of a Gauss rule, then the centre of gravity of the tip body.
+    """Masses along the beam: the N points of a Gauss rule, the centre of gravity of the tip body, k lumps.
 
-    The angles that are given are those at the N points and at the tip.
+    The angles that are given are those at the N points and at the tip: lumps have no moments of inertia.
 
     Parameters
     ----------
@@ -48,7 +48,9 @@ class MassPoints:
         Integration along the beam.
     length, offset : float
         Length of the beam, and distance of the tip body's centre of gravity beyond it [m].
-    mass : ndarray, shape (N + 1,)
+    lumps : ndarray, shape (k,)
+        Positions x/L of the point masses of the beam.
+    mass : ndarray, shape (N + 1 + k,)
         Masses [kg].
     inertia : ndarray, shape (N + 1,)
         Moments of inertia about the axis of bending [kg m2].
@@ -59,6 +61,7 @@ class MassPoints:
     quadrature: ArcQuadrature
     length: float
     offset: float
+    lumps: np.ndarray
     mass: np.ndarray
     inertia: np.ndarray
     tilting: np.ndarray
@@ -73,20 +76,31 @@ class MassPoints:
         return slopes[..., :-1] @ (self.quadrature.weights * self.length)
 
     def positions(self, slopes: np.ndarray) -> np.ndarray:
-        """Positions (..., N + 1) of the masses from cosines or sines (..., N + 1) of the angles [m]."""
+        """Positions (..., N + 1 + k) of the masses from cosines or sines (..., N + 1) of the angles [m]."""
         positions = self.length * self.quadrature.integrate(slopes[..., :-1])
         positions[..., -1] += self.offset * slopes[..., -1]
-        return positions
+        if not self.lumps.size:
+            return positions
+        return np.concatenate([positions, slopes[..., :-1] @ self._to_lumps.T], axis=-1)
+
+    @cached_property
+    def _to_lumps(self) -> np.ndarray:
+        """Weights (k, N) of the integrals from the root to the lumps [m]."""
+        return self.length * self.quadrature.integrate_to(self.lumps)
 
     def moments(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `positions`: moments at the angles [N m] by forces (..., N + 1) [N]."""
+        """Apply the transpose of `positions`: moments at the angles [N m] by forces (..., N + 1 + k) [N]."""
+        forces, on_lumps = np.split(forces, [self.quadrature.xi.size + 1], axis=-1)
         along_beam = self.length * self.quadrature.transposed(forces)
+        if self.lumps.size:
+            along_beam += on_lumps @ self._to_lumps
         return np.concatenate([along_beam, self.offset * forces[..., -1:]], axis=-1)
 
 
 def lump_mass(scene: Scene, quadrature: ArcQuadrature) -> MassPoints:
-    """Lump the mass of beam and tip body of a scene at the points of a quadrature."""
+    """Lump the mass of a scene at the points of a quadrature, beside tip body and point masses."""
     beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
+    lumps, lumped = beam.lumps
     weights, sections = quadrature.weights * beam.length, np.zeros_like(quadrature.weights)
     if beam.rotary_inertia is not None:
         sections = weights * beam.rotary_inertia(quadrature.xi)
@@ -94,7 +108,8 @@ def lump_mass(scene: Scene, quadrature: ArcQuadrature) -> MassPoints:
         quadrature,
         beam.length,
         tip.offset,
-        mass=np.append(weights * beam.mass_per_length(quadrature.xi), tip.mass),
+        lumps,
+        mass=np.concatenate([weights * beam.mass_per_length(quadrature.xi), [tip.mass], lumped]),
         inertia=np.append(sections, tip.inertia),
         tilting=np.append(-sections, tip.inertia_about_bending_direction - tip.axial_inertia),
     )
@@ -102,7 +117,7 @@ def lump_mass(scene: Scene, quadrature: ArcQuadrature) -> MassPoints:
 
 @dataclass(frozen=True)
 class NodalForces:
-    """Forces along b1 and e [N] and moments [N m] on the mass points, each of shape (..., N + 1)."""
+    """Forces along b1 and e on the masses [N], (..., N + 1 + k), and moments at the angles [N m]."""
 
     axial: np.ndarray
     transverse: np.ndarray
@@ -197,17 +212,17 @@ class DeflectedState:
 
     @cached_property
     def u(self) -> np.ndarray:
-        """Positions along b1 (..., N + 1) [m]."""
+        """Positions of the masses along b1 (..., N + 1 + k) [m]."""
         return self.elastica.points.positions(self.cos)
 
     @cached_property
     def v(self) -> np.ndarray:
-        """Positions along e (..., N + 1) [m]."""
+        """Positions of the masses along e (..., N + 1 + k) [m]."""
         return self.elastica.points.positions(self.sin)
 
     @cached_property
     def gradients(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of `u` and `v` by the coordinates, each (..., n, N + 1)."""
+        """Derivatives of `u` and `v` by the coordinates, each (..., n, N + 1 + k)."""
         angles, points = self.elastica.angles, self.elastica.points
         return points.positions(-self.sin[..., None, :] * angles), points.positions(
             self.cos[..., None, :] * angles
@@ -224,15 +239,15 @@ class DeflectedState:
     def inertial_forces(self, quantity: Quantity) -> NodalForces:
         """Mass times acceleration per unit of a quantity that acts on the beam at rest on its carrier."""
         points, c = self.elastica.points, self.elastica.in_plane
-        mass, none = points.mass, np.zeros_like(self.u)
+        mass, none, unturned = points.mass, np.zeros_like(self.u), np.zeros_like(self.sin)
         if quantity == "speed_squared":
             tilting = (1 - c**2) * points.tilting * self.sin * self.cos
             return NodalForces(-mass * self.u, -(c**2) * mass * self.v, tilting)
         if quantity == "acceleration":
-            return NodalForces(c * mass * self.v, -c * mass * self.u, none - c * points.inertia)
+            return NodalForces(c * mass * self.v, -c * mass * self.u, unturned - c * points.inertia)
         if quantity == "root_axial":
-            return NodalForces(none + mass, none, none)
-        return NodalForces(none, none + mass, none)
+            return NodalForces(none + mass, none, unturned)
+        return NodalForces(none, none + mass, unturned)
 
     def generalized(self, forces: NodalForces) -> np.ndarray:
         """Generalized forces (..., n): the virtual work of nodal forces, per coordinate."""

@@ -19,6 +19,7 @@ from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 _ROUNDING = 1e-15  # relative to the largest acceleration of the root: rounding error of pi
 _SAMPLES = 501  # times in each of the two parts of a motion: until the speed is steady, and at steady speed
 _TURNS = 10  # revolutions sampled at steady speed
+_MOST_PLACES = 6  # of point masses, that are listed
 _HORIZON = 100.0  # time sampled of a motion that is never steady and has no end [s]
 
 
@@ -122,6 +123,19 @@ class Explanation:
         failed = [c.otherwise for c in self.conditions if not c.is_met(scene)]
         text = self.reason if present else [*failed, "its coefficient is zero"][0]
         return text if isinstance(text, str) else text(scene)
+
+
+def say_mass(scene: SampledScene) -> str:
+    """Say that there is mass in every scene, and which of it is that of point masses."""
+    heavy = [lump for lump in scene.scene.beam.point_masses if lump.mass]
+    if not heavy:
+        return "always"
+    total = f"{math.fsum(lump.mass for lump in heavy):.4g} kg of it"
+    places = sorted({f"{lump.position:.4g}": lump.position for lump in heavy}.items(), key=lambda p: p[1])
+    names = [name for name, _ in places]
+    among = len(names) > _MOST_PLACES
+    where = f"{len(heavy)} places from x = {names[0]} m to {names[-1]} m" if among else None
+    return f"always; {total} in point masses at {where or f'x = {_enumerate(names)} m'}"
 
 
 def say_tension(scene: SampledScene) -> str:

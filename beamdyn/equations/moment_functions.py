@@ -14,15 +14,18 @@ which have the small roughness of M that polynomials lack: as one step of invers
 deflection by shear and of a stretch, it is the slope that is a force over a stiffness.  Twisted sections bend
 in both directions under a moment in one: curvatures are products with entries of their compliance.
 
+At a point mass the moment has a kink, and the shear force a jump: polynomials are those on each part of the
+beam between point masses, of moments such that they are continuous.
+
 The quotients are interpolated by polynomials on cells.  The functions are thus piecewise polynomials, of
 which integrals are exact, and eigenvalues are upper bounds as those of other assumed modes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -34,9 +37,10 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions
+from beamdyn.equations.piecewise_polynomials import PiecewisePolynomials
 from beamdyn.equations.sampled_space import SampledSpace, Sampler, product_of
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import Profile
+from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
 NODES = 10  # on each cell, through which the quotients are interpolated
@@ -66,7 +70,8 @@ class MomentSpaces(FieldsOnly):
     beam : Beam
         The beam, with the modelled properties.
     forces : int
-        Number of forces or moments in each direction.
+        Number of forces or moments in each direction; with point masses, by the square root of its share of
+        the length on each part between them.
     coarse : int
         Number of those that the coarser discretization has.
     """
@@ -86,6 +91,11 @@ class MomentSpaces(FieldsOnly):
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @cached_property
+    def polynomials(self) -> PiecewisePolynomials:
+        """Polynomials on the parts of the beam between point masses."""
+        return PiecewisePolynomials(merge_breakpoints(np.concatenate([[0.0], self.beam.lumps[0], [1.0]])))
+
+    @cached_property
     def cells(self) -> np.ndarray:
         """Ends of cells on which every compliance and the highest polynomial are resolved, as x/L."""
         breakpoints = np.array(self.beam.breakpoints)
@@ -99,7 +109,7 @@ class MomentSpaces(FieldsOnly):
 
     def _are_coarse(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
         """Whether each cell, of these ends, is to be halved."""
-        coarse = (np.arccos(1 - 2 * right) - np.arccos(1 - 2 * left)) * self.forces > _PHASE
+        coarse = self.polynomials.phases(left, right, self.forces) > _PHASE
         half = (right - left)[:, None] / 2
         xi = left[:, None] + half * (1 + gauss_rule(NODES)[0])
         for name, tensor in self._stiffnesses.items():
@@ -201,23 +211,28 @@ def _interpolation(points: int) -> np.ndarray:
 @lru_cache(maxsize=8)  # sections that are twisted bend in both directions under the same moments
 def _build_forces(
     spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Forces or moments in a direction at the nodes: those of the coarser discretization, and the others.
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Forces or moments in a direction at the nodes, shape (n, N).
 
-    They are polynomials, and what displacements by the first of these cause by inertia and by tension: two
-    arrays of shape (n, N).
+    They are polynomials, and what displacements by the first of these cause by inertia and by tension.  Also
+    whether each is one of the coarser discretization (n,); None if that has others.
     """
-    causes = [*_causes(spaces, stiffness, direction)]
-    first, polynomials = _share(spaces.forces, len(causes))
-    P = legendre.legvander(2 * spaces.nodes.xi - 1, polynomials - 1).T
-    displaced = {name: _displace(spaces, P[:first], name, direction) for name, _, _ in causes}
+    causes, parts = [*_causes(spaces, stiffness, direction)], spaces.polynomials
+    counts = parts.counts(spaces.forces)
+    first, others = _share(counts, len(causes))
+    fewer, lower = _share(parts.counts(spaces.coarse), len(causes))
+    polynomials = partial(parts, spaces.nodes.xi, continuous=derivatives == 2)
+    P, causing = polynomials(others), polynomials(first)
+    displaced = {name: _displace(spaces, causing, name, direction) for name, _, _ in causes}
     caused = [
         _integrate_from_tip(spaces.nodes, weight * displaced[name][order], derivatives - order)
         for name, order, weight in causes
     ]
-    fewer, lower = _share(spaces.coarse, len(causes))
-    coarse, further = [P[:lower], *(c[:fewer] for c in caused)], [P[lower:], *(c[fewer:] for c in caused)]
-    return np.concatenate(coarse), np.concatenate(further)
+    contained = partial(parts.contained, continuous=derivatives == 2)
+    if not all(m <= n for m, n in zip([*fewer, *lower], [*first, *others], strict=True)):
+        return np.concatenate([P, *caused]), None
+    of_coarse = [contained(others, lower), *[contained(first, fewer)] * len(causes)]
+    return np.concatenate([P, *caused]), np.concatenate(of_coarse)
 
 
 def _causes(spaces: MomentSpaces, stiffness: str, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
@@ -233,10 +248,10 @@ def _causes(spaces: MomentSpaces, stiffness: str, direction: int) -> Iterator[tu
         yield "bending_stiffness", 1, at_nodes(rotary)
 
 
-def _share(forces: int, causes: int) -> tuple[int, int]:
-    """Share a number of forces: how many polynomials cause others, by each cause, and how many there are."""
-    causing = forces // (1 + causes)
-    return causing, forces - causes * causing
+def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
+    """Share forces on each part: how many polynomials cause others, by each cause, and how many there are."""
+    causing = [count // (1 + causes) for count in counts]
+    return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]
 
 
 def _displace(spaces: MomentSpaces, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
@@ -298,28 +313,30 @@ class MomentSpace(SampledSpace):
     def _quotients(self) -> tuple[int, np.ndarray]:
         """Orthonormal quotients of forces and stiffness at the points, shape (m, k).
 
-        The first of them, whose number is returned, span those of the coarser discretization.
+        The first of them, whose number is returned, span those of the coarser discretization; 0 if none do.
         """
         stiffness, direction = self.conditions.stiffness, self.conditions.direction
         compliance = self.spaces.compliance[stiffness]
         forces_against = self.spaces, stiffness, self.conditions.derivatives
-        caused = (
-            [compliance[direction, other] * forces for forces in _build_forces(*forces_against, other)]
-            for other in (0, 1)
-            if (direction, other) in compliance
-        )
-        coarse, further = (np.concatenate(parts) for parts in zip(*caused, strict=True))
+        entries = [compliance[direction, other] for other in (0, 1) if (direction, other) in compliance]
+        others = (other for other in (0, 1) if (direction, other) in compliance)
+        forces, of_coarse = zip(*(_build_forces(*forces_against, other) for other in others), strict=True)
+        quotients = np.concatenate([entry * part for entry, part in zip(entries, forces, strict=True)])
         own = stiffness_tensor(self.spaces.beam, stiffness)[direction, direction]
         weight = self.spaces.nodes.weights * self.spaces.at_nodes(own)
-        first, others = _orthonormalize(coarse.T, further.T, weight)
-        on_cells = np.concatenate([first, others], axis=1).T.reshape(-1, len(self.spaces.cells) - 1, NODES)
+        if any(mask is None for mask in of_coarse):
+            coarse = 0
+            functions = orthonormalize(quotients.T, weight)
+        else:
+            coarse, functions = _orthonormalize_nested(quotients.T, np.concatenate(of_coarse), weight)
+        on_cells = functions.T.reshape(-1, len(self.spaces.cells) - 1, NODES)
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
-        return first.shape[1], at_points.reshape(len(on_cells), -1)
+        return coarse, at_points.reshape(len(on_cells), -1)
 
     @property
-    def coarse(self) -> np.ndarray:
+    def coarse(self) -> np.ndarray | None:
         """The first functions."""
-        return np.arange(self._turns + self._quotients[0])
+        return np.arange(self._turns + self._quotients[0]) if self._quotients[0] else None
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
@@ -355,19 +372,15 @@ class MomentSpace(SampledSpace):
         return values
 
 
-def _orthonormalize(
-    coarse: np.ndarray, further: np.ndarray, weight: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Orthonormal bases, with a weight (k,), of the span of columns (k, n), and of what others add to it.
-
-    They are orthonormal but for rounding.
-    """
+def _orthonormalize_nested(
+    columns: np.ndarray, of_coarse: np.ndarray, weight: np.ndarray
+) -> tuple[int, np.ndarray]:
+    """Orthonormal basis as `orthonormalize`, the first of which, so many, span the marked columns."""
     root = np.sqrt(weight)[:, None]
-    first = _span(_unit(coarse * root))
-    rest = _unit(further * root)
+    first, rest = _span(_unit(columns[:, of_coarse] * root)), _unit(columns[:, ~of_coarse] * root)
     for _ in range(2):  # the first time leaves rounding errors relative to what was there before
         rest = rest - first @ (first.T @ rest)
-    return first / root, _span(rest) / root
+    return first.shape[1], np.concatenate([first, _span(rest)], axis=1) / root
 
 
 def orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:

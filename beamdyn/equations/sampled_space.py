@@ -56,8 +56,8 @@ class SampledSpace(FieldsOnly, ABC):
 
     @property
     @abstractmethod
-    def coarse(self) -> np.ndarray:
-        """Indices of functions that span those of the coarser discretization."""
+    def coarse(self) -> np.ndarray | None:
+        """Indices of functions that span those of the coarser discretization; None where none do."""
 
     def weights(self, weight: Profile) -> np.ndarray:
         """Multiply the weights of the rule by a property."""

@@ -1,4 +1,4 @@
-"""The beam: its length, its properties along it, and a rigid body at its tip."""
+"""The beam: its length, its properties along it, point masses, and a rigid body at its tip."""
 
 from __future__ import annotations
 
@@ -9,7 +9,17 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind, not_negative, positive, real, refuse, set_fields, size
+from beamdyn.common.checks import (
+    InvalidValue,
+    kind,
+    not_negative,
+    positive,
+    real,
+    refuse,
+    set_fields,
+    several,
+    size,
+)
 from beamdyn.common.described import Described
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.profile import (
@@ -20,6 +30,8 @@ from beamdyn.scene.profile import (
     merge_breakpoints,
     to_profile,
 )
+
+_ROUNDING = 1e-12  # of a position, relative to the length: the distance at which breakpoints merge
 
 
 @dataclass(frozen=True)
@@ -92,6 +104,35 @@ class TipMass:
 
 
 @dataclass(frozen=True)
+class PointMass:
+    """A mass at a point of the beam, on its axis: without moments of inertia of its own.
+
+    Parameters
+    ----------
+    position : float
+        Distance from the root along the beam [m], above 0 and at most the length: one at the tip is a
+        `TipMass` without offset and inertia.
+    mass : float
+        Mass [kg].
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, the position is not positive, or the mass is negative.
+    """
+
+    position: Annotated[
+        float, Described("m", "x_k", "distance from the root along the beam, at most its length", above=0)
+    ]
+    mass: Annotated[float, Described("kg", "m_k", "mass", least=0)]
+
+    def __post_init__(self) -> None:
+        remedy = "it is the distance from the root, where a mass would not move"
+        position = positive("point_mass.position", self.position, "m", remedy)
+        set_fields(self, position=position, mass=not_negative("point_mass.mass", self.mass, "kg"))
+
+
+@dataclass(frozen=True)
 class Beam:
     """A straight beam, held at its root.  Build it by `rectangular` or `from_stiffness`.
 
@@ -119,6 +160,8 @@ class Beam:
         Shear stiffness kappa G A [N] over x/L, for bending in either direction of the section.
     rotary_inertia, second_rotary_inertia : Profile, optional
         Rotary inertia of the section per length, rho I [kg m] over x/L, for bending in either direction.
+    point_masses : sequence of PointMass
+        Point masses along the beam; those at one place add up.
     """
 
     length: float
@@ -133,6 +176,7 @@ class Beam:
     second_shear_stiffness: Profile | None = None
     rotary_inertia: Profile | None = None
     second_rotary_inertia: Profile | None = None
+    point_masses: Sequence[PointMass] = ()
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
@@ -152,6 +196,7 @@ class Beam:
         if self.tip is not None and self.length + self.tip.offset < 0:
             bound, remedy = "it puts the body behind the root", "give an offset above {limit}"
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
+        set_fields(self, point_masses=_check_point_masses(self.point_masses, self.length))
 
     @classmethod
     def rectangular(
@@ -165,6 +210,7 @@ class Beam:
         breakpoints: Sequence[float] = (),
         twist: Property | None = None,
         poissons_ratio: float | None = None,
+        point_masses: Sequence[PointMass] = (),
     ) -> Beam:
         """Build a beam of rectangular section that bends in the direction of its thickness.
 
@@ -191,6 +237,8 @@ class Beam:
             Poisson's ratio, above -1 and at most 0.5; without it there is no shear stiffness.  That is
             kappa G A with kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33,
             335-340.
+        point_masses : sequence of PointMass
+            Point masses along the beam; those at one place add up.
 
         Returns
         -------
@@ -233,6 +281,7 @@ class Beam:
             second_shear_stiffness=shear,
             rotary_inertia=flat.scaled(rho / 12),
             second_rotary_inertia=edge.scaled(rho / 12),
+            point_masses=point_masses,
         )
 
     @classmethod
@@ -251,6 +300,7 @@ class Beam:
         second_shear_stiffness: Property | None = None,
         rotary_inertia: Property | None = None,
         second_rotary_inertia: Property | None = None,
+        point_masses: Sequence[PointMass] = (),
     ) -> Beam:
         """Build a beam of any section from its stiffness and mass.
 
@@ -279,6 +329,8 @@ class Beam:
             kappa G A [N] for bending in either direction; without the second it is as the first.
         rotary_inertia, second_rotary_inertia : float, Polynomial, Table or callable, optional
             rho I [kg m], rotary inertia of the section per length for bending in either direction.
+        point_masses : sequence of PointMass
+            Point masses along the beam; those at one place add up.
 
         Returns
         -------
@@ -316,6 +368,7 @@ class Beam:
             ),
             rotary_inertia=profile("rotary_inertia", rotary_inertia),
             second_rotary_inertia=profile("second_rotary_inertia", second_rotary_inertia),
+            point_masses=point_masses,
         )
         warn_of_stiffness(
             beam.length,
@@ -329,10 +382,18 @@ class Beam:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Fractions x/L where a property may jump or have a kink, with the ends 0 and 1."""
+        """Fractions x/L where a property may jump or have a kink, or a mass stands, with the ends 0 and 1."""
         names = (name for name in OPTIONAL_PROPERTIES if name != "outer_fibre")
         profiles = (self.mass_per_length, self.bending_stiffness, *(getattr(self, name) for name in names))
-        return merge_breakpoints(np.array([b for p in profiles if p is not None for b in p.breakpoints]))
+        ends = np.array([b for p in profiles if p is not None for b in p.breakpoints])
+        return merge_breakpoints(np.concatenate([ends, self.lumps[0]]))
+
+    @property
+    def lumps(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions x/L (k,) of the point masses that are not 0, and the masses (k,) [kg]."""
+        heavy = [(lump.position, lump.mass) for lump in self.point_masses if lump.mass]
+        position, mass = np.array(heavy, dtype=float).reshape(-1, 2).T
+        return np.minimum(position / self.length, 1.0), mass
 
     @property
     def root_twist(self) -> float:
@@ -363,6 +424,16 @@ def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float
     bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
     refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")
     return axial_stiffness.scaled(10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu)))
+
+
+def _check_point_masses(given: object, length: float) -> tuple[PointMass, ...]:
+    """The point masses as a tuple; refuse what is none, and one beyond the tip."""
+    lumps = several("point_masses", given, PointMass, "PointMass(position, mass) makes one")
+    for k, lump in enumerate(lumps):
+        beyond, name = lump.position > length * (1 + _ROUNDING), f"point_masses[{k}].position"
+        bound, remedy = "it must be at most {limit}, the length", "a body beyond the tip is a TipMass"
+        refuse(beyond, name, lump.position, "m", bound, remedy, limit=length)
+    return lumps
 
 
 def _check_section(length: float, width: Profile, thickness: Profile) -> None:

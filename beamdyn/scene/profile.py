@@ -145,6 +145,15 @@ class Profile(FieldsOnly):
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 
+    def stepped(self, xi: np.ndarray, steps: np.ndarray) -> Profile:
+        """Add to the property at all places inboard of each xi (k,) the step (k,) there."""
+        if not len(xi):
+            return self
+        parts = self.split(xi.tolist())
+        ends, series = np.array(parts.breakpoints), parts.series.copy()
+        series[0] += steps @ (ends[:-1] + ends[1:] < 2 * xi[:, None])
+        return _of_series(parts.breakpoints, series)
+
 
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
     """The piecewise polynomial of Legendre coefficients, those of each segment in a column."""

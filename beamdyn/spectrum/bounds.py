@@ -19,7 +19,7 @@ from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 from beamdyn.spectrum.coupled_head import MOST_MOMENTS
@@ -208,7 +208,10 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    scaled = Beam(1.0, mass, stiffness, tip=_nondimensional_tip(beam.tip or TipMass(0.0), m * length, length))
+    tip = _nondimensional_tip(beam.tip or TipMass(0.0), m * length, length)
+    xi, lumped = (values.tolist() for values in beam.lumps)
+    lumps = tuple(PointMass(x, lump / (m * length)) for x, lump in zip(xi, lumped, strict=True))
+    scaled = Beam(1.0, mass, stiffness, tip=tip, point_masses=lumps)
     if scene.physics.planes == 2 and beam.second_bending_stiffness is not None:
         second = beam.second_bending_stiffness.scaled(1 / e)
         scaled = replace(scaled, second_bending_stiffness=second, twist=beam.twist)

@@ -8,6 +8,8 @@ with the tension N = N_B - a N_A per squared speed, a = r cos(phi), t = u(L) + e
 in docs/conventions.md.  Bending stiffness is not in F.  So any deflection counts that is 0 at the root,
 whatever its slope there, and D does not depend on it: a short bend at the tip gives any D.
 
+rho A dx is the mass, that of point masses along the beam with it; N is less beyond each of them.
+
 **Tension.**  Where N < 0, short waves make F negative.  As N' = -rho A (x - a), N is least at an end.
 
 **Tip body.**  Let T be the matrix of F in (u(L), D) after completing a square with u = x, a rigid turn:
@@ -56,10 +58,11 @@ from scipy.linalg import eigh
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.fields.transverse import plane_components
+from beamdyn.equations.mass import gram_by_mass, moments_about_root
 from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import exact_cos_sin
-from beamdyn.scene.profile import FRACTION, Profile
+from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 from beamdyn.spectrum.toppling import (
@@ -69,6 +72,7 @@ from beamdyn.spectrum.toppling import (
 )
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
+_SHORTEST = 1e-12  # distance from the tip below which a point mass stands there, as x/L
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
 _RESOLVED = 10  # distance of an eigenvalue from its limit, relative to that of the two bases
 
@@ -192,13 +196,15 @@ class _SpinForm:
         L, tip = beam.length, beam.tip or TipMass(0.0)
         m, eps, reach = tip.mass, tip.offset, L + tip.offset - a
         n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
+        xi, lumped = beam.lumps
+        lump = float(lumped[xi > 1 - _SHORTEST].sum())
         return cls(
             beam=beam,
             inward=a,
             cos_squared=cos2,
             tip_mass=m,
             tension_at_root=_sum(n_b, -a * n_a),
-            tension_at_tip=_sum(m * L, m * eps, -m * a),
+            tension_at_tip=_sum((m + lump) * L, m * eps, -(m + lump) * a),
             toppling=_sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps),
             coupling=cos2 * m * eps,
             tip_determinant=_sum(
@@ -245,12 +251,9 @@ def _least_turning(scene: Scene) -> float:
     hinges = np.flatnonzero(np.array(springs) == 0)
     if not hinges.size:
         return math.inf
-    tip, L = scene.beam.tip or TipMass(0.0), scene.beam.length
-    mass = scene.beam.mass_per_length
-    first, second = (
-        L ** (1 + k) * _integral(mass * weight) for k, weight in ((1, FRACTION), (2, FRACTION * FRACTION))
-    )
-    reach = L + tip.offset
+    tip = scene.beam.tip or TipMass(0.0)
+    _, first, second = moments_about_root(scene.beam)
+    reach = scene.beam.length + tip.offset
     d, n = plane_components(scene)
     cosine, sine = exact_cos_sin(scene.mount.precone)
     by_turn = (cosine**2 - sine**2) * np.outer(n, n) - sine**2 * np.outer(d, d)
@@ -298,6 +301,6 @@ def _lowest_of_string(form: _SpinForm, size: int) -> float:
     n_a, n_b = axial_tension(beam)
     tension = space.gram(n_b, 1) - form.inward * space.gram(n_a, 1)
     end, length = space.end(0), beam.length
-    spin = form.cos_squared * length**2 * space.gram(beam.mass_per_length, 0)
+    spin = form.cos_squared * length * gram_by_mass(beam, space)
     spin += form.end_mass * length * np.outer(end, end)
     return float(1 / eigh(spin, tension, eigvals_only=True)[-1])

@@ -12,6 +12,7 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.legendre import gauss_rule, legendre_series
 from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.mass import outboard_moments
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 
@@ -30,7 +31,7 @@ def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
     """
     tip = beam.tip or TipMass(0.0)
     n_a, n_b = axial_tension(beam)
-    moment = beam.mass_per_length.outboard_integral().outboard_integral().outboard_integral().scaled(2.0)
+    moment = outboard_moments(beam)[0].outboard_integral().outboard_integral().scaled(2.0)
     arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # 1 - s + eps
     loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)
     tension_b, tension_a, inertia = (_integral(flexibility * load) for load in loads)

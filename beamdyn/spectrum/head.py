@@ -67,7 +67,7 @@ class Head:
     """Trial functions on a clamped beam, orthonormal in energy, and the moments that their loads cause.
 
     Forms and loads are, in this order, those of the tension N_B per squared speed, of the tension N_A per
-    acceleration of the root, of the mass with that of the tip body, and of the slope at the tip.
+    acceleration of the root, of the mass with point masses and tip body, and of the slope at the tip.
 
     Parameters
     ----------
@@ -139,6 +139,11 @@ class Head:
         return self.deflection[:, -1] + self._tip.offset * self.slope[:, -1]
 
     @cached_property
+    def _at_lumps(self) -> np.ndarray:
+        """Deflections of the point masses, shape (n, k)."""
+        return self.slope[:, :-1] @ self.quadrature.integrate_to(self.beam.lumps[0]).T
+
+    @cached_property
     def _loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Properties N_B, N_A and the mass, at the points."""
         n_a, n_b = axial_tension(self.beam)
@@ -155,6 +160,7 @@ class Head:
         tension_b, tension_a, mass = self._loads
         slope, tip, centre = self.slope[:, :-1], self.slope[:, -1], self._centre
         inertia = self._gram(self.deflection[:, :-1], mass) + self._tip.mass * np.outer(centre, centre)
+        inertia += (self._at_lumps * self.beam.lumps[1]) @ self._at_lumps.T
         by_tension = (self._gram(slope, tension) for tension in (tension_b, tension_a))
         return np.array([*by_tension, inertia, np.outer(tip, tip)])
 
@@ -167,7 +173,8 @@ class Head:
         tension_b, tension_a, mass = self._loads
         slope = self.slope[:, :-1]
         inertia = self._from_tip(self._from_tip(mass * self.deflection[:, :-1]))
-        arm = 1 - self.quadrature.xi + self._tip.offset
+        arm, (xi, lumped) = 1 - self.quadrature.xi + self._tip.offset, self.beam.lumps
+        inertia += (self._at_lumps * lumped) @ np.maximum(xi[:, None] - self.quadrature.xi, 0.0)
         return np.array(
             [
                 self._from_tip(tension_b * slope),

@@ -65,12 +65,21 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
     for name, value in springs.items():
         if math.isfinite(value):
             raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
+    _refuse_coupled_lumps(scene, speed)
     if scene.physics.planes == 2 and speed and scene.mount.precone:
         gyroscopic = (
             "it couples the velocities of two planes, and bounds are of equations without such forces"
         )
         remedy = "give 0, or speed = 0, or model one plane"
         raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
+
+
+def _refuse_coupled_lumps(scene: Scene, speed: float) -> None:
+    """Refuse point masses on a beam whose two planes are coupled."""
+    lumps = scene.beam.point_masses
+    if lumps and scene.physics.planes == 2 and not separate_planes(scene, spinning=bool(speed)):
+        bound = "bounds of two planes that twist or bending angle couples are known without point masses"
+        raise InvalidValue("point_masses", len(lumps), bound, "leave them out, or model one plane")
 
 
 def _quarter_turns(beam: Beam) -> int | None:

@@ -6,7 +6,8 @@ All quantities are nondimensional: x is x/L, mass and stiffness are relative to 
 
     P1(u, u) = int N_B u'^2,  P2 = int N_A u'^2,  P3 = int rho A u^2 + m t^2,  P4 = u'(1)^2,
 
-where t = u(1) + eps u'(1), the eigenvalues z = lambda^2 are those at which the form
+where t = u(1) + eps u'(1) and int rho A u^2 contains m_k u(x_k)^2 of each point mass, the eigenvalues
+z = lambda^2 are those at which the form
 
     Q_z = a + sum_j c_j(z) P_j,    c_j(z) = omega^2 spin_j - z mass_j,
 

@@ -98,7 +98,7 @@ class ElasticaSystem:
         velocity = points.positions(-sin * turning), points.positions(cos * turning)
         kinetic = (velocity[0] ** 2 + velocity[1] ** 2) @ points.mass + turning**2 @ points.inertia
         shortening, across = points.positions(-2 * np.sin(theta / 2) ** 2), points.positions(sin)
-        straight, c2 = points.positions(np.ones(len(points.mass))), elastica.in_plane**2
+        straight, c2 = points.positions(np.ones(len(points.xi))), elastica.in_plane**2
         by_speed = (shortening * (2 * straight + shortening) + c2 * across**2) @ points.mass
         by_speed -= (1 - c2) * sin**2 @ points.tilting
         by_root = root.root_axial * (shortening @ points.mass) + root.root_transverse * (across @ points.mass)
@@ -110,8 +110,9 @@ class ElasticaSystem:
     @cached_property
     def kernel(self) -> np.ndarray:
         """Matrix H (N + 1, N + 1) of the mass, by the slope angles [kg m2]."""
-        positions = self.elastica.points.positions(np.eye(len(self.elastica.points.mass)))
-        return (positions * self.elastica.points.mass) @ positions.T
+        points = self.elastica.points
+        positions = points.positions(np.eye(len(points.xi)))
+        return (positions * points.mass) @ positions.T
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:

@@ -174,6 +174,7 @@ def right_calls() -> list[Call]:
             | {"second_bending_stiffness": 9.0, "twist": 0.1, "shear_stiffness": 1e5, "rotary_inertia": 1e-3}
             | {"second_shear_stiffness": 1e5, "second_rotary_inertia": 1e-3},
         ),
+        Call("PointMass", bd.PointMass, {"position": 0.02, "mass": 1e-3}),
         Call("TipMass", bd.TipMass, {"mass": 1e-3, "offset": 1e-3, "inertia": 1e-9}),
         Call(
             "Mount",

@@ -1,6 +1,7 @@
 """Powers of x as a discretization: with exact integrals, for derivations over the same trial functions."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -81,7 +82,12 @@ class PowerSeries:
 
 
 def over_the_beam(weight, p):
-    """Integral of a profile of one segment times a polynomial over xi."""
-    series = np.polynomial.Legendre(weight.coefficients[0], domain=[0, 1]).convert(kind=Polynomial)
+    """Integral of a profile times a polynomial over xi."""
+    segments = zip(pairwise(weight.breakpoints), weight.coefficients, strict=True)
+    return sum(_over_segment(ends, row, p) for ends, row in segments)
+
+
+def _over_segment(ends, coefficients, p):
+    series = np.polynomial.Legendre(coefficients, domain=list(ends)).convert(kind=Polynomial)
     whole = (series * p).integ()
-    return whole(1.0) - whole(0.0)
+    return whole(ends[1]) - whole(ends[0])

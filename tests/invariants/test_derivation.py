@@ -1,9 +1,10 @@
 """The equations of motion, derived again from a Lagrangian, agree with beamdyn's term by term.
 
 The derivation here knows nothing of beamdyn's formulas.  It writes down where every point of the
-beam and of the tip body is in fixed axes, forms kinetic and potential energy to second order in
-the coordinates, and applies Lagrange's equations.  All is polynomial arithmetic with exact
-rational coefficients: cosines and sines are symbols, whose rates are given and whose squares are reduced.
+beam, of a point mass on it and of the tip body is in fixed axes, forms kinetic and potential energy
+to second order in the coordinates, and applies Lagrange's equations.  All is polynomial arithmetic with
+exact rational coefficients: cosines and sines are symbols, whose rates are given and whose squares are
+reduced.
 
 The trial functions are powers of x: with them as a discretization, beamdyn's operators are
 checked as well, for a tapered beam.
@@ -20,7 +21,7 @@ from sympy import QQ
 from sympy.polys.rings import ring
 
 from beamdyn.equations.equations_of_motion import assemble_equations
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
@@ -38,7 +39,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")
 COUNT = len(FIELDS)
 DERIVATIVES = [[f"q{'d' * order}{i}" for i in range(COUNT)] for order in range(3)]
 COORDINATES = [name for names in DERIVATIVES for name in names]
-SHAPE = ["L", "r", "cphi", "sphi", "cpsi", "spsi", "m", "eps", "Jn", "Je", "J1", "g"]
+SHAPE = ["L", "r", "cphi", "sphi", "cpsi", "spsi", "m", "eps", "Jn", "Je", "J1", "g", "mk", "xk"]
 SECTION = ["rho0", "rho1", "EI0", "EI1", "EA0", "EA1"]  # rho A, EI and EA are linear in x
 MOTION = ["ctheta", "stheta", "omega", "domega", "X", "Y", "Z", "VX", "VY", "VZ", "AX", "AY", "AZ"]
 NAMES = ["x", *SHAPE, *SECTION, *MOTION, *COORDINATES]
@@ -167,11 +168,12 @@ def derive(stretched_slope=False):
 
     w = spin([tangent, across, normal])
     inertia = (S["J1"], S["Je"], S["Jn"])
-    T = integral(rho * kinetic(point), S["L"]) + S["m"] * kinetic(centre)
+    lump = [at(p, S["xk"]) for p in point]
+    T = integral(rho * kinetic(point), S["L"]) + S["mk"] * kinetic(lump) + S["m"] * kinetic(centre)
     T += HALF * upto(trig(sum((J * p**2 for J, p in zip(inertia, w, strict=True)), RING.zero)), 2)
     strain, curvature = s.diff(S["x"]), u.diff(S["x"]).diff(S["x"])
     V = HALF * integral(EA * strain**2 + EI * curvature**2, S["L"])
-    V += S["g"] * (integral(rho * point[1], S["L"]) + S["m"] * centre[1])
+    V += S["g"] * (integral(rho * point[1], S["L"]) + S["mk"] * lump[1] + S["m"] * centre[1])
 
     lagrange = []
     for q, qd in zip(*DERIVATIVES[:2], strict=True):
@@ -303,6 +305,7 @@ class Case:
             value[name] *= rng.choice([-1, 1])
         for name in ("eps", "rho1", "EI1", "EA1"):
             value[name] *= 0.1
+        value["xk"] *= value["L"] / 2
         value["Je"] = value["Jn"] * rng.uniform(0.8, 1.2)
         value["J1"] = value["Jn"] * rng.uniform(0.3, 0.7)
         angles = tuple(rng.uniform(-3, 3) if a is None else a for a in (setting, bending, None))
@@ -327,7 +330,9 @@ class Case:
         v = self.value
         taper = {k: Polynomial([v[k + "0"], v[k + "1"] * v["L"]]) for k in ("rho", "EI", "EA")}
         tip = TipMass(v["m"], v["eps"], v["Jn"], transverse_inertia=v["Je"], axial_inertia=v["J1"])
-        beam = Beam.from_stiffness(v["L"], taper["rho"], taper["EI"], taper["EA"], tip=tip)
+        lumps = (PointMass(v["xk"], v["mk"]),)
+        given = taper["rho"], taper["EI"], taper["EA"]
+        beam = Beam.from_stiffness(v["L"], *given, tip=tip, point_masses=lumps)
         return Scene(beam, Mount(v["r"], *self.angles[:2]), gravity=v["g"], physics=Physics(stretch=True))
 
     def equations(self):

@@ -12,10 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
+from beamdyn.app.inputs import inputs_of
+from beamdyn.common.app.form_entries import entries_of, tables_of, toml_of
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.units import quantity
 from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, scene_from_dict
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
@@ -132,6 +134,24 @@ def test_every_input_of_the_tip_arrives():
     tip = {"mass": "1 g", "offset": "-1 mm", "inertia": "3 g mm2"}
     tip |= {"transverse_inertia": "2 g mm2", "axial_inertia": "4 g mm2"}
     assert scene_from_dict(changed("beam.tip", tip)).beam.tip == TipMass(1e-3, -1e-3, 3e-9, 2e-9, 4e-9)
+
+
+@pytest.mark.parametrize("scene", [HARVESTER, BY_STIFFNESS])
+def test_point_masses_are_read(scene):
+    given = [{"position": "50 mm", "mass": "1 g"}, {"position": "0.02 m", "mass": "0 kg"}]
+    beam = scene_from_dict(changed("beam.point_mass", given, scene)).beam
+    assert beam.point_masses == (PointMass(0.05, 1e-3), PointMass(0.02, 0.0))
+
+
+def test_point_masses_are_written_back():
+    """As the form keeps them, and writes them to a file."""
+    given = [{"position": "50 mm", "mass": "1 g"}, {"position": "0.02 m", "mass": "2 g"}]
+    tables = changed("beam.point_mass", given)
+    inputs = inputs_of(entries_of(tables, ()))
+    back = tables_of(entries_of(tables, inputs), inputs)
+    assert back["beam"]["point_mass"] == given
+    assert "[[beam.point_mass]]" in toml_of(back)
+    assert parse_scene(toml_of(back)) == scene_from_dict(tables)
 
 
 def test_physics_of_a_rectangular_beam():
@@ -380,6 +400,31 @@ def test_rolling():
             "beam.tip",
             {"mass": "1 g", "offset": "-60 mm"},
             'beam.tip.offset = "-60 mm": it puts the body behind the root; give an offset above -50 mm',
+        ),
+        (
+            "beam.point_mass",
+            {"position": "1 mm", "mass": "1 g"},
+            'beam.point_mass = { position = "1 mm", mass = "1 g" }: give a table [[beam.point_mass]] in two',
+        ),
+        (
+            "beam.point_mass",
+            [{"position": 0.4, "mass": "1 g"}],
+            'beam.point_mass[0].position = 0.4: give a unit, e.g. "0.4 m" or "0.4 mm"',
+        ),
+        (
+            "beam.point_mass",
+            [{"position": "20 mm", "mass": "1 g"}, {"position": "60 mm", "mass": "1 g"}],
+            'beam.point_mass[1].position = "60 mm": it must be at most 50 mm, the length; a body beyond the',
+        ),
+        (
+            "beam.point_mass",
+            [{"position": "0 mm", "mass": "1 g"}],
+            'beam.point_mass[0].position = "0 mm": it must be greater than 0 mm',
+        ),
+        (
+            "beam.point_mass",
+            [{"position": "1 mm", "mass": "-1 g"}],
+            'beam.point_mass[0].mass = "-1 g": it must be at least 0 g',
         ),
         ("beam", None, "beam: missing; give a table [beam]"),
         ("beam", "50 mm", 'beam = "50 mm": give a table'),

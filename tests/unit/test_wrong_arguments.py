@@ -53,15 +53,16 @@ CALLS = {
     "Beam.rectangular": (
         bd.Beam.rectangular,
         {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
-        | {"tip": None, "breakpoints": (), "twist": 0.1, "poissons_ratio": 0.3},
+        | {"tip": None, "breakpoints": (), "twist": 0.1, "poissons_ratio": 0.3, "point_masses": ()},
     ),
     "Beam.from_stiffness": (
         bd.Beam.from_stiffness,
         {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3, "axial_stiffness": 4e5}
         | {"outer_fibre": 1e-4, "tip": None, "breakpoints": (), "second_bending_stiffness": 3.0, "twist": 0.1}
         | {"shear_stiffness": 1e5, "second_shear_stiffness": 1e5}
-        | {"rotary_inertia": 5e-11, "second_rotary_inertia": 1e-7},
+        | {"rotary_inertia": 5e-11, "second_rotary_inertia": 1e-7, "point_masses": ()},
     ),
+    "PointMass": (bd.PointMass, {"position": 0.02, "mass": 1e-3}),
     "TipMass": (
         bd.TipMass,
         dict.fromkeys(("mass", "offset", "inertia", "transverse_inertia", "axial_inertia"), 1e-9),
@@ -182,6 +183,7 @@ ALLOWED = {
     "load_scene.path": {"text"},
     "read_deck.path": {"text"},
     **{f"{name}.breakpoints": {"empty", "empty array"} for name in CALLS},
+    **{f"{name}.point_masses": {"empty", "empty array"} for name in CALLS},
 }
 
 
@@ -406,7 +408,7 @@ def test_a_road_of_too_short_waves_is_refused():
 def test_a_size_beyond_all_use_is_refused_before_it_overflows(size):
     for call in ("Beam.rectangular", "Beam.from_stiffness"):
         make, good = CALLS[call]
-        for name in set(good) - {"tip", "breakpoints", "twist", "poissons_ratio"}:
+        for name in set(good) - {"tip", "point_masses", "breakpoints", "twist", "poissons_ratio"}:
             varying = (bd.Table([0, 1], [size, size]), lambda xi, size=size: size * (1 + xi))
             for value in (size, *varying) if name not in ("length", "youngs_modulus", "density") else (size,):
                 with pytest.raises(ValueError, match=name):

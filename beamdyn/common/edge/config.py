@@ -166,16 +166,19 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
     if isinstance(reason, InvalidInput) and not reason.field:
         return str(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
-        inner = key.removeprefix(path).lstrip(".") + _part(reason.field, key)
+        inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
         kind = InvalidInput if type(reason) is InvalidValue else type(reason)
         said: dict[str, Any] = vars(reason) | {"field": f"{place}.{inner}".lstrip(".")}
         return str(_as_written(kind(**said), _found(given, inner))), key
     return f"{place or 'model'}: {reason}", path
 
 
-def _part(field: str, key: str) -> str:
-    """What a field of the core adds to the path of the input that it is a part of, such as ".values[1]"."""
-    return next(field.removeprefix(name) for name in _wholes(field) if f".{key}".endswith(f".{name}"))
+def _place_in(field: str, key: str) -> str:
+    """The path of an input with what a field of the core adds to it: ".values[1]", or which of several."""
+    parts = (field.removeprefix(name) for name in _wholes(field) if f".{key}".endswith(f".{name}"))
+    if (part := next(parts, None)) is not None:
+        return key + part
+    return key.removesuffix(_without_indices(field)) + field
 
 
 def _wholes(field: str) -> Iterator[str]:
@@ -212,6 +215,11 @@ def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
     return replace(refusal, value=given, unit=written, limit=limit)
 
 
+def _without_indices(field: str) -> str:
+    """The field as inputs are described, the same for each table of a list: "point_mass.mass"."""
+    return re.sub(r"\[\d+\]", "", field)
+
+
 def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
     """The path of the input that an error of the core is about; empty if it is about no single one.
 
@@ -226,7 +234,8 @@ def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
     """
     field = error.field if isinstance(error, InvalidValue) else ""
     paths = list(paths)
-    return next(filter(None, (_path_ending(name, paths, table) for name in _wholes(field))), "")
+    names = (*_wholes(field), _without_indices(field))
+    return next(filter(None, (_path_ending(name, paths, table) for name in names)), "")
 
 
 def _path_ending(field: str, paths: list[str], table: str) -> str:

@@ -14,9 +14,9 @@ from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.shear import SecondShear
 from beamdyn.equations.fields.transverse import TransverseField, Trial, plane_components
+from beamdyn.equations.mass import first_moment_by_mass, gram_by_mass, load_by_mass, product_by_mass
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import exact_cos_sin
-from beamdyn.scene.profile import FRACTION
 from beamdyn.scene.scene import Scene
 
 _CONDITIONS = FIXED.against("axial_stiffness")
@@ -81,7 +81,7 @@ def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
     s, beam, space = Stretch.name, scene.beam, spaces.functions(_CONDITIONS)
     assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
     end = space.end(0)
-    M = space.gram(beam.mass_per_length, 0) * beam.length + _tip(scene).mass * np.outer(end, end)
+    M = gram_by_mass(beam, space) + _tip(scene).mass * np.outer(end, end)
     yield Term("stretch mass", s, s, 2, M)
     yield Term("axial stiffness", s, s, 0, space.gram(beam.axial_stiffness, 1) / beam.length)
     cosine, _ = exact_cos_sin(scene.mount.precone)
@@ -91,7 +91,7 @@ def _own_terms(scene: Scene, spaces: Spaces) -> Iterator[Term]:
 def _coupling(trial: Trial) -> Iterator[Term]:
     """Yield the coupling, by the mass M12 (15), with a deflection in the plane, or by precone any."""
     b, s, beam = trial.field.name, Stretch.name, trial.beam
-    by_beam = trial.spaces.product(beam.mass_per_length, _CONDITIONS, trial.conditions) * beam.length
+    by_beam = product_by_mass(beam, trial.spaces, _CONDITIONS, trial.conditions)
     M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(_CONDITIONS).end(0), trial.centre)
     d, n = plane_components(trial.scene)
     cosine, sine = exact_cos_sin(trial.scene.mount.precone)
@@ -107,9 +107,9 @@ def _coupling(trial: Trial) -> Iterator[Term]:
 def _loads(scene: Scene, spaces: Spaces) -> Iterator[Load]:
     """Yield the loads of eqs. (21) and (20)."""
     beam, tip, space = scene.beam, _tip(scene), spaces.functions(_CONDITIONS)
-    length, mass, end = beam.length, beam.mass_per_length, space.end(0)
-    P = space.load(mass) * length + tip.mass * end
-    Q = space.load(mass * FRACTION) * length**2 + tip.mass * (length + tip.offset) * end
+    end = space.end(0)
+    P = load_by_mass(beam, space) + tip.mass * end
+    Q = first_moment_by_mass(beam, space) + tip.mass * (beam.length + tip.offset) * end
     cosine, _ = exact_cos_sin(scene.mount.precone)
     yield Load("centrifugal stretching", Stretch.name, Q, "speed_squared", cosine**2)
     yield Load("axial root acceleration", Stretch.name, P, "root_axial", -1.0)

@@ -34,10 +34,11 @@ from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Load, Term
+from beamdyn.equations.mass import first_moment_by_mass, load_by_mass, product_at_lumps
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount, exact_cos_sin
-from beamdyn.scene.profile import FRACTION, ONE, Profile
+from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
 
@@ -114,10 +115,8 @@ class Trial:
     @cached_property
     def first_moment(self) -> np.ndarray:
         """Load under a transverse acceleration that is proportional to x [kg m], shape (n,)."""
-        length, tip = self.beam.length, self.tip
-        by_mass = self.space.load(self.beam.mass_per_length * FRACTION) * length**2
-        reach = length + tip.offset
-        return by_mass + tip.mass * reach * self.centre
+        reach = self.beam.length + self.tip.offset
+        return first_moment_by_mass(self.beam, self.space) + self.tip.mass * reach * self.centre
 
     def toppling_load(self, n: tuple[float, float]) -> np.ndarray:
         """Centrifugal inertia (n,) that tilts the sections [kg m], as rotation presses to the direction n."""
@@ -138,7 +137,7 @@ class Trial:
     @cached_property
     def P(self) -> np.ndarray:
         """Load under a unit root acceleration in the direction of the field [kg], shape (n,)."""
-        return self.space.load(self.beam.mass_per_length) * self.beam.length + self.tip.mass * self.centre
+        return load_by_mass(self.beam, self.space) + self.tip.mass * self.centre
 
 
 @dataclass(frozen=True)
@@ -177,9 +176,11 @@ class Pair:
 
     @cached_property
     def translation(self) -> np.ndarray:
-        """Mass of the centres of gravity of sections and tip body [kg]."""
-        tips = np.outer(self.rows.centre, self.columns.centre)
-        return self.integrate(self.rows.beam.mass_per_length, 0) + self.rows.tip.mass * tips
+        """Mass of the centres of gravity of sections, point masses and tip body [kg]."""
+        rows, columns = self.rows, self.columns
+        lumps = product_at_lumps(rows.beam, rows.space, columns.space)
+        by_mass = self.integrate(rows.beam.mass_per_length, 0) + lumps
+        return by_mass + rows.tip.mass * np.outer(rows.centre, columns.centre)
 
     @cached_property
     def tilts(self) -> np.ndarray:
@@ -194,7 +195,7 @@ class TransverseField(Field):
     rotates: ClassVar[bool]
     partners: ClassVar[tuple[TransverseField, ...]]  # the fields before this one, the first of all first
     explanations: ClassVar[Mapping[str, Explanation]] = {
-        "mass": Explanation("M22 q2''", "always"),
+        "mass": Explanation("M22 q2''", why.say_mass),
         "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),
         "centrifugal stiffening": Explanation("ω² KGB q2", "the carrier turns", (why.TURNS,)),
         "spin softening": Explanation("-ω² c² S22 q2", why.say_softening, (why.TURNS, why.SOFTENED)),
