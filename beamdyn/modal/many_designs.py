@@ -66,7 +66,7 @@ class ManyModes:
 
     def meet(self, target: float) -> np.ndarray:
         """Which designs (N,) have all errors below a target or at the level of rounding."""
-        return (self.error <= np.maximum(target, 3 * self.rounding)).all(axis=(1, 2))
+        return np.all(self.error <= np.maximum(target, 3 * self.rounding), axis=(1, 2))
 
 
 class StackedSolver:

@@ -67,6 +67,11 @@ class VariedInput:
     unit: str
     values: np.ndarray
 
+    @property
+    def label(self) -> str:
+        """For tables and pictures: name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
 
 def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
     """The inputs of a study with their values as arrays.
@@ -168,7 +173,12 @@ def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
         bound = "the properties of the beam are not those of a rectangular section"
         raise InvalidValue(f"beam.{name}", given[name], bound, "vary beam.bending_stiffness or the like")
     arguments = {field.name: getattr(section, field.name) for field in fields(section)}
-    own = {"length": beam.length, "tip": beam.tip, "twist": beam.twist, "breakpoints": beam.breakpoints[1:-1]}
+    own: dict[str, Any] = {
+        "length": beam.length,
+        "tip": beam.tip,
+        "twist": beam.twist,
+        "breakpoints": beam.breakpoints[1:-1],
+    }
     return Beam.rectangular(**(own | arguments | dict(given)))
 
 

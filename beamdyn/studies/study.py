@@ -1,13 +1,13 @@
-"""Answers over all combinations of inputs: frequencies and critical speeds of many designs."""
+"""Frequencies and critical speeds over all combinations of inputs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from beamdyn._version import __version__
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, count, one_of, real, within
 from beamdyn.common.parallel.workers import Workers, one_blas_thread
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -43,77 +43,12 @@ from beamdyn.studies.inputs import (
     shape_of,
 )
 from beamdyn.studies.one_by_one import ANALYSES, CHUNK, REFUSED, DesignAnswer, Question, answer_designs
+from beamdyn.studies.result import Study
 from beamdyn.studies.similar import SimilarDesigns, differ_in_numbers_only
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _MOST_CORNERS = 10  # inputs of which all combinations of smallest and largest values are checked first
 _LARGE_ERROR = 1e-6  # of a frequency, beyond which it is said to be unresolved
 Progress = Callable[[int, int], None]
-
-
-@dataclass(frozen=True)
-class Study(Result):
-    """An answer over combinations of inputs; made by `study`.
-
-    The shape (n1, ..., nd) has an axis for each input, in order, or one for all that are taken together.
-
-    Parameters
-    ----------
-    what : str
-        What was asked for: "frequencies" or "critical_speed".
-    unit : str
-        Unit of the answer.
-    inputs : tuple of VariedInput
-        Each with its `name`, `unit` and `values` in SI.
-    combine : {"product", "zip"}
-        Whether the inputs are combined each with each, or taken together.
-    value : ndarray, shape (n1, ..., nd, m) or (n1, ..., nd)
-        Frequencies of m modes [Hz], nan where a mode does not vibrate; or critical speeds [rad/s], inf where
-        the beam does not buckle.
-    error : ndarray, of the same shape
-        Estimated relative error; inf where unresolved.
-    status : ndarray of str, of the same shape
-        Of a mode as for `natural_modes`; "buckles", "does not buckle" or "not found"; "refused" where
-        there is no answer.
-    warnings : tuple of str
-        What limits the answer, and of how many designs.
-    provenance : Provenance
-        How it was found.
-    """
-
-    what: str
-    unit: str
-    inputs: tuple[VariedInput, ...]
-    combine: str
-    value: np.ndarray
-    error: np.ndarray
-    status: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape (n1, ..., nd) of the designs."""
-        return shape_of(self.inputs, self.combine)
-
-    def design(self, *place: int) -> dict[str, float]:
-        """Inputs of the design at a place (i1, ..., id): values in SI, by name."""
-        columns = columns_of(self.inputs, self.combine)
-        index = np.ravel_multi_index(place, self.shape)
-        return {name: float(values[index]) for name, values in columns.items()}
-
-    def scene_at(self, *place: int) -> Scene:
-        """The scene of the design at a place (i1, ..., id), for any other analysis of it."""
-        return scene_of(self.scene, self.design(*place))
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the answer over the first input; of further inputs, one curve for each value of the second."""
-        from beamdyn.studies.picture import plot_study
-
-        return plot_study(self, ax)
 
 
 @announced
@@ -367,7 +302,7 @@ def _warn_of_batch(task: SimilarFrequencies, found: SolvedDesigns, question: Que
     """Yield what `natural_modes` warns of, for the design where it is worst, with the number of such."""
     yield from warn_of_left_out(question.scene)
     speeds = task.speeds
-    unstable = (found.squared < 0).any(axis=2)
+    unstable = np.any(found.squared < 0, axis=2)
     if unstable.any():
         yield f"{_of(unstable)}: the beam diverges; see status"
     strain = task.designs.strains(speeds)
@@ -378,14 +313,14 @@ def _warn_of_batch(task: SimilarFrequencies, found: SolvedDesigns, question: Que
         worst = np.unravel_index(np.nanargmax(found.deflection), speeds.shape)
         said = warn_of_static_deflection(found.deflection[worst][None], 1.0, speeds[worst][None])
         yield f"{_of(bent)}: {next(said)}"
-    missing = np.isnan(found.squared).any(axis=2)
+    missing = np.any(np.isnan(found.squared), axis=2)
     if missing.any():
         yield f"{_of(missing)} there is no answer: rounding of the matrices leaves none"
     largest = found.error.max(initial=0.0)
     if question.tolerance is not None:
         yield from warn_of_missed_tolerance(largest, question.tolerance)
     elif largest > _LARGE_ERROR:
-        inexact = (found.error > _LARGE_ERROR).any(axis=2)
+        inexact = np.any(found.error > _LARGE_ERROR, axis=2)
         yield f"{_of(inexact)} the estimated relative error is above {_LARGE_ERROR:g}: see error"
 
 
