@@ -172,14 +172,14 @@ def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
         name = next(iter(given.keys() & _OF_RECTANGLE.keys()))
         bound = "the properties of the beam are not those of a rectangular section"
         raise InvalidValue(f"beam.{name}", given[name], bound, "vary beam.bending_stiffness or the like")
-    arguments = {field.name: getattr(section, field.name) for field in fields(section)}
+    arguments: dict[str, Any] = {field.name: getattr(section, field.name) for field in fields(section)}
     own: dict[str, Any] = {
         "length": beam.length,
         "tip": beam.tip,
         "twist": beam.twist,
         "breakpoints": beam.breakpoints[1:-1],
     }
-    return Beam.rectangular(**(own | arguments | dict(given)))
+    return Beam.rectangular(**{**own, **arguments, **given})
 
 
 def corners(columns: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
