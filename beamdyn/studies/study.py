@@ -13,7 +13,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
-from beamdyn.common.checks import InvalidValue, count, one_of, real, within
+from beamdyn.common.checks import InvalidValue, count, function, one_of, real, within
 from beamdyn.common.parallel.workers import Workers, one_blas_thread
 from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import (
@@ -114,7 +114,8 @@ def study(
     check_combination(combine, inputs)
     one_of("what", what, tuple(ANALYSES))
     check_discretization(discretization)
-    speed, modes, workers = real("speed", speed, "rad/s"), count("modes", modes), count("workers", workers)
+    speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
+    workers = _check_means(workers, executor, progress)
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     question = Question(scene, what, speed, modes, discretization, tolerance)
     request = _Request(question, inputs, combine)
@@ -134,6 +135,17 @@ def study(
         provenance=Provenance(__version__, answer.method, answer.compared_with, perf_counter() - start),
         scene=scene,
     )
+
+
+def _check_means(workers: int, executor: Executor | None, progress: Progress | None) -> int:
+    if executor is not None and not hasattr(executor, "submit"):
+        raise InvalidValue("executor", executor, "give an Executor, as in concurrent.futures")
+    workers = count("workers", workers)
+    if executor is not None and workers > 1:
+        raise InvalidValue("workers", workers, "an executor is given too", "give one of them")
+    if progress is not None:
+        function("progress", progress, "it takes the numbers of finished designs and of all")
+    return workers
 
 
 @dataclass(frozen=True)
