@@ -22,6 +22,8 @@ from beamdyn.modal.eigen import (
 )
 from beamdyn.modal.error_estimate import error_of_assumed_modes
 
+_MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
+
 
 @dataclass(frozen=True)
 class PencilStack:
@@ -159,15 +161,24 @@ def solve_many(
     -------
     ManyModes
     """
-    fine = StackedSolver(stack)
+    fine, coarser = StackedSolver(stack), StackedSolver(stack.part(coarse))
+    parts = np.split(speeds, range(_MOST_SPEEDS, speeds.shape[1], _MOST_SPEEDS), axis=1)
+    solved = [_solve_at(fine, coarser, part, count) for part in parts]
+    of_rows = (np.concatenate(values, axis=1) for values in zip(*solved, strict=True))
+    return ManyModes(*of_rows, static=fine.static(speeds, load, output))
+
+
+def _solve_at(
+    fine: StackedSolver, coarser: StackedSolver, speeds: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Squared frequencies, their errors and the part of rounding in these, (N, S, k), at speeds (N, S)."""
     squared, rounding = fine.solve(speeds, count)
-    distance = squared - StackedSolver(stack.part(coarse)).squares(speeds, count)
+    distance = squared - coarser.squares(speeds, count)
     lowest = np.repeat(fine.lowest_at_rest, speeds.shape[1])
     # The eigenvalues s are imaginary where the beam vibrates: s^2 = -w^2.
     error = error_of_assumed_modes(-squared, -distance, rounding, lowest)
     shape = *speeds.shape, count
-    of_rows = (values.reshape(shape) for values in (squared, error, rounding))
-    return ManyModes(*of_rows, static=fine.static(speeds, load, output))
+    return squared.reshape(shape), error.reshape(shape), rounding.reshape(shape)
 
 
 def _rows(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -88,10 +88,18 @@ class SimilarFrequencies(FieldsOnly):
         first = next(self.bases())
         return isinstance(first, Ritz) and first.basis != "moments"
 
-    def solve(self, rows: slice) -> SolvedDesigns:
-        """Solve some of the designs, in finer and finer bases until all errors meet the target."""
-        pending = np.arange(self.designs.count)[rows]
-        start, shape = pending[0] if len(pending) else 0, (len(pending), self.speeds.shape[1], self.modes)
+    def split(self) -> list[SimilarFrequencies]:
+        """The designs of each task: they follow from the request, not from the workers."""
+        return [self._part(slice(start, start + CHUNK)) for start in range(0, self.designs.count, CHUNK)]
+
+    def _part(self, rows: slice) -> SimilarFrequencies:
+        part = replace(self, designs=self.designs.part(rows), speeds=self.speeds[rows])
+        part.__dict__["_families"] = self._families  # common to all within a process
+        return part
+
+    def solve(self) -> SolvedDesigns:
+        """Solve the designs, in finer and finer bases until all errors meet the target."""
+        pending, shape = np.arange(self.designs.count), (*self.speeds.shape, self.modes)
         squared, error = np.full(shape, np.nan), np.full(shape, np.inf)
         deflection, functions = np.full(shape[:2], np.nan), 0
         for basis in self.bases():
@@ -99,14 +107,13 @@ class SimilarFrequencies(FieldsOnly):
             for batch in self._batches(pending, basis):
                 if (found := self._solve_batch(batch, basis)) is None:
                     continue  # rounding of so many functions: the last result is the best
-                places = batch - start
-                squared[places], error[places], functions = found.squared, found.error, _size(basis)
+                squared[batch], error[batch], functions = found.squared, found.error, _size(basis)
                 across = self.designs.across[batch][:, None] / self.designs.reference.beam.length
-                deflection[places] = np.abs(found.static) * across
+                deflection[batch] = np.abs(found.static) * across
                 unmet.append(batch[~found.meet(self.target)])
             if not (pending := np.concatenate([np.empty(0, dtype=int), *unmet])).size:
                 break
-        time = self.designs.time[rows, None, None]
+        time = self.designs.time[:, None, None]
         return SolvedDesigns(squared / time**2, error, deflection, functions)
 
     def _batches(self, designs: np.ndarray, basis: Discretization) -> list[np.ndarray]:
@@ -133,10 +140,6 @@ class SimilarFrequencies(FieldsOnly):
         found = [self._solve_batch(half, basis) or _none(half, self.speeds, self.modes) for half in halves]
         joined = zip(*((f.squared, f.error, f.rounding, f.static) for f in found), strict=True)
         return ManyModes(*map(np.concatenate, joined))
-
-    def split(self) -> list[slice]:
-        """The designs of each task: they follow from the request, not from the workers."""
-        return [slice(start, start + CHUNK) for start in range(0, self.designs.count, CHUNK)]
 
 
 def join(parts: list[SolvedDesigns]) -> SolvedDesigns:

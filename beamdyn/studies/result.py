@@ -9,7 +9,7 @@ import numpy as np
 
 from beamdyn.common.results import Provenance, Result
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.inputs import VariedInput, columns_of, scene_of, shape_of
+from beamdyn.studies.inputs import VariedInput, scene_of, shape_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,9 +65,10 @@ class Study(Result):
 
     def design(self, *place: int) -> dict[str, float]:
         """Inputs of the design at a place (i1, ..., id): values in SI, by name."""
-        columns = columns_of(self.inputs, self.combine)
-        index = np.ravel_multi_index(place, self.shape)
-        return {name: float(values[index]) for name, values in columns.items()}
+        if len(place) != len(self.shape):
+            raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
+        places = place * len(self.inputs) if self.combine == "zip" else place
+        return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
 
     def scene_at(self, *place: int) -> Scene:
         """The scene of the design at a place (i1, ..., id), for any other analysis of it."""

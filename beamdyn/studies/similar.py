@@ -65,13 +65,24 @@ class SimilarDesigns(FieldsOnly):
     Parameters
     ----------
     reference : Scene
-        The scene of one of them.
+        The scene of a reference.
+    first : mapping of str to float
+        Inputs of the reference.
     columns : mapping of str to ndarray, shape (N,)
-        Inputs that differ; the first value is that of the reference.
+        The same inputs of each design.
+    nodes : mapping of str to ndarray, optional
+        Values of each quantity between which the matrices are interpolated, where designs are some of many.
     """
 
     reference: Scene
+    first: Mapping[str, float]
     columns: Mapping[str, np.ndarray]
+    nodes: Mapping[str, np.ndarray] | None = None
+
+    def part(self, rows: slice) -> SimilarDesigns:
+        """Some of the designs, interpolated as all are."""
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        return SimilarDesigns(self.reference, self.first, columns, self._nodes)
 
     @property
     def count(self) -> int:
@@ -85,14 +96,14 @@ class SimilarDesigns(FieldsOnly):
         scale = np.ones(self.count)
         for name, powers in _POWERS.items():
             if name in self.columns:
-                scale = scale * (self.columns[name] / self.columns[name][0]) ** powers[which]
+                scale = scale * (self.columns[name] / self.first[name]) ** powers[which]
         return scale
 
     @cached_property
     def length(self) -> np.ndarray:
         """Length over the reference's, (N,)."""
         given = self.columns.get("beam.length")
-        return np.ones(self.count) if given is None else given / given[0]
+        return np.ones(self.count) if given is None else given / self.first["beam.length"]
 
     @cached_property
     def time(self) -> np.ndarray:
@@ -150,8 +161,10 @@ class SimilarDesigns(FieldsOnly):
         return np.abs(self._radius * sine * _cos(self._angles["bending_angle"]))
 
     @cached_property
-    def _nodes(self) -> dict[str, np.ndarray]:
+    def _nodes(self) -> Mapping[str, np.ndarray]:
         """Values of each quantity between which the matrices are interpolated."""
+        if self.nodes is not None:
+            return self.nodes
         return {name: _nodes_of(values, _DEGREES[name]) for name, values in self.quantities.items()}
 
     @cached_property

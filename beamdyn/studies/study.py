@@ -225,9 +225,8 @@ class _Request:
         task = self._similar()
         if not task.can_be_batched:
             return None
-        rows = task.split()
-        sizes = [len(task.speeds[each]) * task.speeds.shape[1] for each in rows]
-        found = join(run.map(task.solve, rows, sizes))
+        parts = task.split()
+        found = join(run.map(SimilarFrequencies.solve, parts, [part.speeds.size for part in parts]))
         squared, error = (self._in_order(values) for values in (found.squared, found.error))
         cases = [squared > 0, squared < 0, squared == 0]
         status = np.select(cases, ["stable", "divergence", "neutral"], REFUSED)
@@ -246,7 +245,7 @@ class _Request:
         question, others = self.question, self._others
         columns = columns_of(others, self.combine) if others else {}
         first = {name: float(values[0]) for name, values in columns.items()}
-        designs = SimilarDesigns(scene_of(question.scene, first), columns)
+        designs = SimilarDesigns(scene_of(question.scene, first), first, columns)
         own = next((each.values for each in self.inputs if each.name == SPEED), np.array([question.speed]))
         together = self.combine == "zip" and SPEED in self.names and bool(others)
         speeds = own[:, None] if together else np.tile(own, (designs.count, 1))

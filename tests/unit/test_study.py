@@ -177,8 +177,10 @@ def test_the_static_deflection_that_is_warned_of_is_that_of_single_calls():
 
     columns = {"beam.thickness": np.array([3e-4, 2e-4]), "mount.setting_angle": np.array([1.0, 2.0])}
     scenes = [scene_of(SCENE, {name: v[i] for name, v in columns.items()}) for i in range(2)]
-    request = SimilarFrequencies(SimilarDesigns(scenes[0], columns), np.full((2, 1), 20.0), 3, "ritz", None)
-    found = request.solve(slice(0, 2))
+    first = {name: float(values[0]) for name, values in columns.items()}
+    designs = SimilarDesigns(scenes[0], first, columns)
+    request = SimilarFrequencies(designs, np.full((2, 1), 20.0), 3, "ritz", None)
+    found = request.solve()
     singles = [bd.natural_modes(scene, 20.0) for scene in scenes]
     deflection = [abs(single.static_deflection) / 0.05 for single in singles]
     np.testing.assert_allclose(found.deflection[:, 0], deflection, rtol=1e-10)  # error of the basis
