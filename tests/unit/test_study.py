@@ -9,6 +9,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.cli import main
 from beamdyn.common.checks import InvalidValue
+from beamdyn.modal.eigen import solve_diagonal
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.studies.inputs import NAMES, scene_of
 
@@ -175,14 +176,16 @@ def test_the_static_deflection_that_is_warned_of_is_that_of_single_calls():
     from beamdyn.studies.frequencies import SimilarFrequencies
     from beamdyn.studies.similar import SimilarDesigns
 
-    columns = {"beam.thickness": np.array([3e-4, 2e-4]), "mount.setting_angle": np.array([1.0, 2.0])}
+    columns = {"beam.thickness": [3e-4, 2e-4], "beam.length": [0.05, 0.04], "mount.setting_angle": [1.0, 2.0]}
+    columns |= {"beam.youngs_modulus": [2e11, 1e11], "beam.tip.mass": [0.0, 1e-4], "mount.radius": [0.1, 0.3]}
+    columns = {name: np.array(values) for name, values in columns.items()}
     scenes = [scene_of(SCENE, {name: v[i] for name, v in columns.items()}) for i in range(2)]
     first = {name: float(values[0]) for name, values in columns.items()}
     designs = SimilarDesigns(scenes[0], first, columns)
     request = SimilarFrequencies(designs, np.full((2, 1), 20.0), 3, "ritz", None)
     found = request.solve()
     singles = [bd.natural_modes(scene, 20.0) for scene in scenes]
-    deflection = [abs(single.static_deflection) / 0.05 for single in singles]
+    deflection = [abs(single.static_deflection) / single.scene.beam.length for single in singles]
     np.testing.assert_allclose(found.deflection[:, 0], deflection, rtol=1e-10)  # error of the basis
     strain = [single.axial_strain for single in singles]
     np.testing.assert_allclose(request.designs.strains(request.speeds)[:, 0], strain, rtol=ROUNDING)
@@ -204,6 +207,20 @@ def test_what_is_not_batched_is_solved_one_by_one(scene):
     single = bd.natural_modes(scene, 30.0, 2)
     assert np.array_equal(study.value[1], single.frequency) and np.array_equal(study.error[1], single.error)
     assert study.provenance.method == "single calls"
+
+
+def test_many_eigenproblems_at_once_are_those_of_each():
+    """To the bit: stiff ones, and soft ones, which are shifted each by its own amount."""
+    random = np.random.default_rng(3)
+    factor = random.normal(size=(6, 5, 5))
+    mass = np.eye(5) + factor @ np.swapaxes(factor, 1, 2) * 10.0 ** random.uniform(-3, 1, (6, 1, 1))
+    stiffness = 1 + random.uniform(0, 3, (6, 5))
+    stiffness[2:, 1] = [-3.0, -0.02, 0.0, -40.0]
+    lowest = 1 / np.linalg.eigvalsh(mass)[:, -1]
+    together = solve_diagonal(mass, stiffness, 3, lowest)
+    for i in range(6):
+        alone = solve_diagonal(mass[i], stiffness[i : i + 1], 3, float(lowest[i]))
+        assert all(np.array_equal(one[0], all_[i]) for one, all_ in zip(alone, together, strict=True))
 
 
 def test_plots_of_one_input_and_of_more():
