@@ -34,7 +34,7 @@ def study(
     /,
     *,
     vary: Varied,
-    what: Literal["frequencies", "critical_speed"] = "frequencies",
+    what: Literal["frequencies", "critical_speed", "amplitude"] = "frequencies",
     speed: Text | None = None,
     modes: ModeCount = 3,
     together: Annotated[bool, Parameter(negative="")] = False,
@@ -44,7 +44,7 @@ def study(
     physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Frequencies or critical speeds over all combinations of inputs of the scene.
+    """Frequencies, critical speeds or amplitudes over all combinations of inputs of the scene.
 
     For example: beamdyn study scene.toml --vary "beam.thickness=0.1:0.4:31 mm" --vary "speed=0:100:11 rad/s"
 
@@ -56,12 +56,13 @@ def study(
         An input and its values, name=start:stop:count and a unit: "beam.thickness=0.1:0.4:31 mm". Names are
         those of the file, or "speed"; give the option once for each input.
     what
-        frequencies, with their errors; or critical_speed, at which the beam buckles.
+        frequencies, with their errors; critical_speed, at which the beam buckles; or amplitude, of the tip in
+        steady motion.
     speed
-        Speed of frequencies with its unit, where it is not varied; default: the final speed of the scene's
-        motion, or 0 without one.
+        Speed of frequencies and amplitudes with its unit, where it is not varied; default: the final speed of
+        the scene's motion, or 0 without one.
     modes
-        Number of modes, from the lowest.
+        Number of frequencies, from the lowest.
     together
         Take the first values of all inputs, then the second, in place of all combinations.
     discretization

@@ -13,10 +13,12 @@ from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint, critical_point
 from beamdyn.spectrum.modes import natural_modes
+from beamdyn.steady.response import steady_response
 from beamdyn.studies.inputs import SPEED, scene_of
 
 CHUNK = 16  # designs of a task
 REFUSED = "refused"
+_OF_RESPONSES = 1e-5  # tolerance of `steady_response` by default
 
 
 class DesignAnswer(NamedTuple):
@@ -73,6 +75,15 @@ def _critical_speed(question: Question, design: Mapping[str, float]) -> DesignAn
     return DesignAnswer(*answer, warnings=found.warnings)
 
 
+def _amplitude(question: Question, design: Mapping[str, float]) -> DesignAnswer:
+    scene, tolerance = scene_of(question.scene, design), question.tolerance or _OF_RESPONSES
+    speeds = [design.get(SPEED, question.speed)]
+    found = steady_response(scene, speeds, tolerance=tolerance, discretization=question.discretization)
+    with np.errstate(divide="ignore", invalid="ignore"):  # the errors of a response are relative to its bound
+        error = (found.error + found.mode_error) * found.bound / found.amplitude
+    return DesignAnswer(found.amplitude, np.nan_to_num(error, nan=np.inf), found.status, found.warnings)
+
+
 def _state_of(found: CriticalPoint) -> str:
     if np.isinf(found.error):
         return "not found"
@@ -83,6 +94,7 @@ def _state_of(found: CriticalPoint) -> str:
 ANALYSES: dict[str, tuple[str, Callable[[Question, Mapping[str, float]], DesignAnswer]]] = {
     "frequencies": ("Hz", _frequencies),
     "critical_speed": ("rad/s", _critical_speed),
+    "amplitude": ("m", _amplitude),
 }
 
 

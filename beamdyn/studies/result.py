@@ -14,7 +14,7 @@ from beamdyn.studies.inputs import VariedInput, scene_of, shape_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-WORDS = {"frequencies": "frequency", "critical_speed": "critical speed"}
+WORDS = {"frequencies": "frequency", "critical_speed": "critical speed", "amplitude": "steady amplitude"}
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Study(Result):
     Parameters
     ----------
     what : str
-        What was asked for: "frequencies" or "critical_speed".
+        What was asked for: "frequencies", "critical_speed" or "amplitude".
     unit : str
         Unit of the answer.
     inputs : tuple of VariedInput
@@ -34,13 +34,13 @@ class Study(Result):
     combine : {"product", "zip"}
         Whether the inputs are combined each with each, or taken together.
     value : ndarray, shape (n1, ..., nd, m) or (n1, ..., nd)
-        Frequencies of m modes [Hz], nan where a mode does not vibrate; or critical speeds [rad/s], inf where
-        the beam does not buckle.
+        Frequencies of m modes [Hz], nan where a mode does not vibrate; critical speeds [rad/s], inf where
+        the beam does not buckle; or steady amplitudes [m], nan where there is none.
     error : ndarray, of the same shape
         Estimated relative error; inf where unresolved.
     status : ndarray of str, of the same shape
-        Of a mode as for `natural_modes`; "buckles", "does not buckle" or "not found"; "refused" where
-        there is no answer.
+        Of a mode as for `natural_modes`; "buckles", "does not buckle" or "not found"; of a response as for
+        `steady_response`; "refused" where there is no answer.
     warnings : tuple of str
         What limits the answer, and of how many designs.
     provenance : Provenance

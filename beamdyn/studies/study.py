@@ -1,4 +1,4 @@
-"""Frequencies and critical speeds over all combinations of inputs."""
+"""Frequencies, critical speeds and amplitudes over all combinations of inputs."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ Progress = Callable[[int, int], None]
 def study(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
-    what: Literal["frequencies", "critical_speed"] = "frequencies",
+    what: Literal["frequencies", "critical_speed", "amplitude"] = "frequencies",
     *,
     speed: float = 0.0,
     modes: int = 3,
@@ -77,21 +77,22 @@ def study(
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is not used.
+        The scene; its motion is used for amplitudes alone.
     vary : mapping of str to sequence of float
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
         "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; and "speed" [rad/s].
         Sides and material are those of a rectangular section.
-    what : {"frequencies", "critical_speed"}
-        The answer.
+    what : {"frequencies", "critical_speed", "amplitude"}
+        The answer: natural frequencies, the speed at which the beam buckles, or the steady amplitude of its
+        tip under its motion.
     speed : float
-        Speed of frequencies [rad/s] where it is not varied.
+        Speed of frequencies and amplitudes [rad/s] where it is not varied.
     modes : int
-        Number of modes.
+        Number of frequencies.
     combine : {"product", "zip"}
         Combine each value with each of the other inputs, or take the first of all, the second of all, ...
     discretization, tolerance
-        As for `natural_modes`.
+        As for `natural_modes`; the tolerance of amplitudes as for `steady_response`.
     workers : int
         Number of processes; the answer is the same to the bit for any.
     executor : Executor, optional
@@ -205,7 +206,7 @@ class _Request:
         """Refuse designs of which any is no scene, before anything is computed."""
         question, columns = self.question, columns_of(self.inputs, self.combine)
         if SPEED in columns:
-            if question.what != "frequencies":
+            if question.what == "critical_speed":
                 bound, remedy = f"{question.what} belongs to no speed", "vary other inputs"
                 raise InvalidValue("vary", SPEED, bound, remedy)
             check_speeds(columns[SPEED], SPEED)

@@ -133,6 +133,19 @@ def test_critical_speeds():
     assert np.isinf(study.value[1]) and study.error[1] == 0
 
 
+def test_amplitudes():
+    """Their errors are relative to the amplitude, those of a response to its bound."""
+    road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
+    wheel = bd.RollingWheel(rolling_radius=0.3, speed=bd.SteadyRotation(50.0), road=road)
+    scene = bd.Scene(SCENE.beam, SCENE.mount, wheel, damping_ratio=0.02)
+    study = bd.study(scene, {"model.damping_ratio": [0.02, 0.05], "speed": [20.0, 30.0]}, "amplitude")
+    single = bd.steady_response(study.scene_at(1, 0), [20.0])
+    assert study.value[1, 0] == single.amplitude[0] and study.status[1, 0] == single.status[0]
+    assert study.unit == "m" and study.value.shape == (2, 2)
+    of_bound = study.error[1, 0] * study.value[1, 0] / single.bound[0]
+    np.testing.assert_allclose(of_bound, single.error[0] + single.mode_error[0], rtol=ROUNDING)
+
+
 @pytest.mark.parametrize(
     ("vary", "options", "named"),
     [
