@@ -81,6 +81,7 @@ def study(
     from beamdyn.common.edge.html_report import Question
     from beamdyn.common.edge.input_sweep import check_cases, parse_axis
     from beamdyn.common.edge.tables import progress_bar
+    from beamdyn.common.edge.wording import of_file
     from beamdyn.study_tables import study_csv, study_table
 
     outputs.check(scene)
@@ -92,7 +93,7 @@ def study(
     question = Question.on_file(
         "beamdyn study", scene, vary=", ".join(vary), what=what, speed=speed, **options, physics=physics
     )
-    with progress_bar("designs") as progress:
+    with progress_bar("designs") as progress, of_file({}):
         result = study(
             loaded,
             {axis.input.path: axis.values for axis in axes},

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -140,9 +141,20 @@ def scene_of(scene: Scene, design: Mapping[str, float]) -> Scene:
         If a value is out of its range, or the beam is of no rectangular section where a side or the
         material of one is given.
     """
-    of_model = _part(design, "model.")
-    mount = replace(scene.mount, **_part(design, "mount."))
-    return replace(scene, beam=_beam_of(scene.beam, design), mount=mount, **of_model)
+    with _naming_inputs(design):
+        of_model = _part(design, "model.")
+        mount = replace(scene.mount, **_part(design, "mount."))
+        return replace(scene, beam=_beam_of(scene.beam, design), mount=mount, **of_model)
+
+
+@contextmanager
+def _naming_inputs(design: Mapping[str, float]) -> Iterator[None]:
+    """Within it, a refusal of an argument of a constructor names the input."""
+    try:
+        yield
+    except InvalidValue as error:
+        path = next((name for name in design if name.endswith(f".{error.field}")), error.field)
+        raise replace(error, field=path) from None
 
 
 def _part(design: Mapping[str, float], prefix: str) -> dict[str, Any]:
