@@ -53,6 +53,9 @@ def compare() -> Iterator[Row]:
     yield f"{number} designs, three modes: a design of a study [us]", f"{1e6 * at_once:.0f}", "-"
     yield "... one by one, this commit [us]", f"{1e6 * one:.0f}", "-"
     yield "... one by one over a study", f"{one / at_once:.0f}", "50"
+    drawn = {name: random.uniform(values[0], values[-1], number) for name, values in VARY.items()}
+    together = best_time(lambda: bd.study(scene, drawn, combine="zip"), runs=3) / number
+    yield "... over random designs, each with a speed of its own", f"{one / together:.0f}", "-"
     worst = max(map(_deviation, singles, (study.value[p] for p in places), (study.error[p] for p in places)))
     yield f"{SAMPLE} of them: largest deviation over the stated errors of both", f"{worst:.2f}", "1"
 
