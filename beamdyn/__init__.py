@@ -64,6 +64,9 @@ _NAMES = {
     "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
+    "studies.inputs": ("VariedInput",),
+    "studies.result": ("Study",),
+    "studies.study": ("study",),
     "tradeoffs": ("Tradeoff", "tradeoff"),
     "transient.chunk_collector": ("SweepInterrupted",),
     "transient.gauss": ("GaussCollocation",),
@@ -129,6 +132,9 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
+    from beamdyn.studies.inputs import VariedInput
+    from beamdyn.studies.result import Study
+    from beamdyn.studies.study import study
     from beamdyn.tradeoffs import Tradeoff, tradeoff
     from beamdyn.transient.chunk_collector import SweepInterrupted
     from beamdyn.transient.gauss import GaussCollocation

@@ -26,6 +26,7 @@ from benchmarks import (
     stated_physics_errors,
     stated_transient_errors,
     steady,
+    study,
     sweep,
     tradeoff,
     transient,
@@ -35,6 +36,7 @@ from benchmarks.rows import Row, show
 PAGE = Path(__file__).parents[1] / "docs" / "measured.md"
 SECTIONS = {
     "Frequencies": frequencies,
+    "Many designs": study,
     "Transients": transient,
     "Steady response": steady,
     "Sweeps": sweep,

@@ -8,6 +8,7 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
     interactive,
     published,
     steady_state,
+    studies,
     tradeoff,
     transients,
 )

@@ -114,9 +114,7 @@ class Solver(Eigensolver):
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         if not self.pencil.conservative or stiffness.min() < LEAST_STIFFNESS or self.pencil.shift:
             return self.solve(speeds, count).eigenvalue
-        scale = 1 / np.sqrt(stiffness)
-        mu = np.linalg.eigvalsh(scale[:, :, None] * self.mass * scale[:, None, :])
-        return 1j / np.sqrt(_above_rounding(mu[:, : -count - 1 : -1]))
+        return 1j / np.sqrt(inverse_squares(self.mass, stiffness, count))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
         """In the coordinates of the solver, in which each is by itself."""
@@ -132,13 +130,7 @@ class Solver(Eigensolver):
 
     def _solve_conservative(self, speeds: np.ndarray, count: int) -> Eigen:
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
-        stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
-        squared, z = np.empty((len(speeds), count)), np.empty((len(speeds), self.size, count))
-        rounding = np.empty((len(speeds), count))
-        for mask, solve in ((stiff, _solve_scaled), (~stiff, _solve_shifted)):
-            if mask.any():
-                modes = solve(self.mass, stiffness[mask], count, self.lowest_at_rest)
-                squared[mask], z[mask], rounding[mask] = modes
+        squared, z, rounding = solve_diagonal(self.mass, stiffness, count, self.lowest_at_rest)
         rounding += self._estimate_rounding(speeds, squared, z)
         if self.pencil.shift:
             squared, rounding = remove_shift(self.pencil, speeds, squared, self.basis @ z, rounding)
@@ -148,15 +140,9 @@ class Solver(Eigensolver):
 
     def _estimate_rounding(self, speeds: np.ndarray, squared: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Estimate the relative error (S, k) of squared frequencies due to rounding of the matrices."""
-        terms = 1 + speeds[:, None] ** 2 * np.abs(self.growth)
-        modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # the modal stiffness without cancellation
-        modal_norm = (z**2).sum(axis=1) * terms.max(axis=1, keepdims=True)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
         vector = np.abs(self.basis @ z)
-        modal_mass = (vector * (np.abs(self.pencil.M) @ vector)).sum(axis=1)  # 1 without cancellation
-        growth = max(1.0, self.size / ROUNDING_SIZE)  # rounding adds up over the functions
-        rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
+        terms = 1 + speeds[:, None] ** 2 * np.abs(self.growth)
+        rounding = rounding_of_matrices(terms, squared, z, vector, np.abs(self.pencil.M))
         return rounding_of_scene(self.pencil, speeds, squared, vector, rounding)
 
     # Gyroscopic and damped equations ----------------------------------------------------------------
@@ -210,6 +196,31 @@ class Solver(Eigensolver):
         return find_free_turns(self.pencil, conservative.eigenvalue[0], conservative.vector[0])
 
 
+def rounding_of_matrices(
+    terms: np.ndarray, squared: np.ndarray, z: np.ndarray, size: np.ndarray, mass: np.ndarray
+) -> np.ndarray:
+    """Relative error (S, k) of frequencies by rounding of the matrices of conservative equations.
+
+    Parameters
+    ----------
+    terms : ndarray, shape (S, n)
+        The diagonal stiffness with the absolute value of each of its terms.
+    squared, z : ndarray, shapes (S, k) and (S, n, k)
+        Squared frequencies and modes, in coordinates in which the stiffness is diagonal.
+    size : ndarray, shape (S, n, k)
+        Absolute values of the modes in the coordinates of the pencil.
+    mass : ndarray, shape (n, n) or (S, n, n)
+        Absolute values of the mass matrix of the pencil.
+    """
+    modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # the modal stiffness without cancellation
+    modal_norm = (z**2).sum(axis=1) * terms.max(axis=1, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
+    modal_mass = (size * (mass @ size)).sum(axis=1)  # 1 without cancellation
+    growth = max(1.0, terms.shape[1] / ROUNDING_SIZE)  # rounding adds up over the functions
+    return growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
+
+
 def rounding_of_scene(
     pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray, rounding: np.ndarray
 ) -> np.ndarray:
@@ -255,8 +266,51 @@ def _symmetrize(A: np.ndarray) -> np.ndarray:
     return (A + np.swapaxes(A, -1, -2)) / 2
 
 
+def solve_diagonal(
+    mass: np.ndarray, stiffness: np.ndarray, count: int, lowest_at_rest: float | np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Solve diag(d) z = w^2 M z for the lowest modes of each of many problems.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (n, n) or (S, n, n)
+        M of all problems, or of each.
+    stiffness : ndarray, shape (S, n)
+        d of each.
+    count : int
+        Number of modes k.
+    lowest_at_rest : float or ndarray, shape (S,)
+        Lowest squared frequency at rest.
+
+    Returns
+    -------
+    squared : ndarray, shape (S, k)
+        Squared frequencies w^2.
+    z : ndarray, shape (S, n, k)
+        Mass-normalised modes.
+    rounding : ndarray, shape (S, k)
+        Relative error of w by the eigensolver.
+    """
+    S, n = stiffness.shape
+    squared, z, rounding = np.empty((S, count)), np.empty((S, n, count)), np.empty((S, count))
+    stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
+    lowest = np.broadcast_to(lowest_at_rest, (S,))
+    for mask, solve in ((stiff, _solve_scaled), (~stiff, _solve_shifted)):
+        if mask.any():
+            M = mass[mask] if mass.ndim == 3 else mass
+            squared[mask], z[mask], rounding[mask] = solve(M, stiffness[mask], count, lowest[mask])
+    return squared, z, rounding
+
+
+def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.ndarray:
+    """Find 1/w^2 (S, k) of `solve_diagonal`, where no stiffness is below `LEAST_STIFFNESS`."""
+    scale = 1 / np.sqrt(stiffness)
+    mu = np.linalg.eigvalsh(scale[:, :, None] * mass * scale[:, None, :])
+    return _above_rounding(mu[:, : -count - 1 : -1])
+
+
 def _solve_scaled(
-    M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: float
+    M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Solve diag(d) z = w^2 M z for positive d (S, n): squared frequencies w^2, vectors z, rounding of w."""
     scale = 1 / np.sqrt(d)
@@ -265,12 +319,12 @@ def _solve_scaled(
 
 
 def _solve_shifted(
-    M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: float
+    M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Solve as `_solve_scaled`, but for any d, with the positive definite diag(d) + shift M."""
     shift = _find_shift(M, d, lowest_at_rest)
     K = shift[:, None, None] * M
-    K[:, np.arange(len(M)), np.arange(len(M))] += d
+    K[:, np.arange(d.shape[1]), np.arange(d.shape[1])] += d
     L = np.linalg.cholesky(K)
     half = np.linalg.solve(L, np.broadcast_to(M, K.shape))
     mu, x = _solve_largest(_symmetrize(np.linalg.solve(L, np.swapaxes(half, 1, 2))), count)
@@ -301,8 +355,8 @@ def forward_error(mu: np.ndarray) -> np.ndarray:
     return _FORWARD * mu[..., :1] / mu
 
 
-def _find_shift(M: np.ndarray, d: np.ndarray, smallest: float) -> np.ndarray:
-    """Find shifts (S,), `smallest` times a power of 4, that make diag(d) + shift M positive definite.
+def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarray:
+    """Find shifts (S,), `smallest` (S,) times a power of 4, that make diag(d) + shift M positive definite.
 
     Raises
     ------
@@ -310,24 +364,27 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: float) -> np.ndarray:
         If rounding hides whether a shift does.
     """
     low, high = np.full(len(d), -1), np.zeros(len(d), dtype=int)  # exponents that fail, and that are tried
-    failing = np.arange(len(d))
-    while (failing := failing[~_are_definite(M, d[failing], smallest * 4.0 ** high[failing])]).size:
+    failing, M = np.arange(len(d)), np.broadcast_to(M, (len(d), *M.shape[-2:]))
+    while (
+        failing := failing[~_are_definite(M[failing], d[failing], smallest[failing] * 4.0 ** high[failing])]
+    ).size:
         low[failing], high[failing] = high[failing], np.maximum(1, 2 * high[failing])
         if high.max() > _LARGEST_SHIFT:
             raise np.linalg.LinAlgError
     while (wide := np.flatnonzero(high - low > 1)).size:
         middle = (low[wide] + high[wide]) // 2
-        definite = _are_definite(M, d[wide], smallest * 4.0**middle)
+        definite = _are_definite(M[wide], d[wide], smallest[wide] * 4.0**middle)
         low[wide], high[wide] = np.where(definite, low[wide], middle), np.where(definite, middle, high[wide])
     return smallest * 4.0**high
 
 
 def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """Whether diag(d) + shift M is positive definite beyond rounding, for d (S, n) and shifts (S,)."""
+    """Whether diag(d) + shift M is positive definite beyond rounding: M (S, n, n), d (S, n), shifts (S,)."""
+    n = d.shape[1]
     K = shift[:, None, None] * M
-    K[:, np.arange(len(M)), np.arange(len(M))] += d
+    K[:, np.arange(n), np.arange(n)] += d
     values = np.linalg.eigvalsh(K)
-    return values[:, 0] >= np.maximum(LEAST_STIFFNESS / 2, len(M) * BACKWARD * values[:, -1])
+    return values[:, 0] >= np.maximum(LEAST_STIFFNESS / 2, n * BACKWARD * values[:, -1])
 
 
 def _solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -75,13 +75,42 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
-        truncation = relative / 3 if order is not None else _ritz_error(distance, squared, model)
+        truncation = relative / 3 if order is not None else _ritz_error_of(model, distance, squared)
     error = truncation + fine.rounding[:, :modes] + integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
     return EstimatedModes(model, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
+
+
+def error_of_assumed_modes(
+    squared: np.ndarray, distance: np.ndarray, rounding: np.ndarray, lowest_at_rest: np.ndarray
+) -> np.ndarray:
+    """Errors that `solve_with_error` states of slender beams clamped in one plane, by a Legendre basis.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (S, k)
+        Squares of the eigenvalues, which are real.
+    distance : ndarray, shape (S, k)
+        Their distances from those of the coarser basis.
+    rounding : ndarray, shape (S, k)
+        Relative error of the eigenvalues by rounding.
+    lowest_at_rest : ndarray, shape (S,)
+        Lowest squared frequency at rest of each.
+
+    Returns
+    -------
+    ndarray, shape (S, k)
+        inf where unresolved.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.abs(distance) / (2 * np.abs(squared))
+        error = _ritz_error(distance, squared, lowest_at_rest, _MARGIN, _REGULAR) + rounding
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
+    resolved &= ~_may_be_passed(squared, distance, resolved)
+    return np.where(resolved, error, np.inf)
 
 
 def integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
@@ -119,23 +148,32 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
     return -np.real(squared) > lowest
 
 
-def _ritz_error(distance: np.ndarray, squared: np.ndarray, model: Model) -> np.ndarray:
+def _ritz_error_of(model: Model, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
+    """The error `_ritz_error` of a model, by its basis and by what it may lack."""
+    margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_FIELDS
+    parts = _REGULAR if model.discretization.converges_regularly else _IRREGULAR
+    return _ritz_error(distance, squared, np.asarray(model.solver.lowest_at_rest), margin, parts)
+
+
+def _ritz_error(
+    distance: np.ndarray, squared: np.ndarray, lowest: np.ndarray, of_few: float, parts: tuple[float, float]
+) -> np.ndarray:
     """Relative truncation error of Ritz eigenvalues, by the distance of their squares from a smaller basis's.
 
-    Squares and distances have shape (S, k), as has the error.
+    Squares and distances have shape (S, k), as has the error; the lowest squared frequency at rest has shape
+    () or (S,).
     Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are modes that
     only every other function changes, and modes whose distance is small by accident: where convergence is
     slow, a margin measured on random scenes is added, for the distances of all modes, relative to the higher
-    mode of two.
+    mode of two; it is `of_few` where a basis may have too few functions of one field.
     Where an eigenvalue vanishes, the scale of its square is the lowest squared frequency at rest.
     """
     half, size = np.abs(distance) / 2, np.abs(squared)
-    scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), model.solver.lowest_at_rest)
+    scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size
-    may_lack = (largest > _FEW) & (not model.scene.is_slender_beam_in_one_plane)
-    margin = np.where(may_lack, _MARGIN_OF_FIELDS, _MARGIN)
-    own, others = _REGULAR if model.discretization.converges_regularly else _IRREGULAR
+    margin = np.where(largest > _FEW, of_few, _MARGIN)
+    own, others = parts
     is_slow = largest > _SLOW
     of_largest = np.where(is_slow, margin / 10, others) * largest
     return np.maximum(np.where(is_slow, own * margin, own) * relative, of_largest)

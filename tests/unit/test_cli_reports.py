@@ -36,6 +36,7 @@ COMMANDS = {
     "locus": (beamdyn.cli, BLADE, ["--speeds", "0:150:7 rad/s"], 1),
     "resonances": (beamdyn.cli, ROLLING, ["--top-speed", "150 rad/s"], 1),
     "campbell": (beamdyn.cli, ROLLING, ["--top-speed", "150 rad/s"], 1),
+    "study": (beamdyn.cli, BLADE, ["--vary", "mount.radius=1:2:3 m"], 1),
     "steady": (beamdyn.cli, ROLLING, ["--speeds", "40:60:5 rad/s"], 1),
     "simulate": (beamdyn.cli, ROLLING, ["--t-end", "0.5 s", "--modes", "1"], 1),
     "sweep": (

@@ -163,6 +163,12 @@ CALLS = {
             "tolerance": 0.1,
         },
     ),
+    "study": (
+        bd.study,
+        {"scene": SCENE, "vary": {"mount.radius": [0.1]}, "what": "frequencies", "speed": 5.0, "modes": 2}
+        | {"combine": "product", "discretization": "ritz", "tolerance": 0.1}
+        | {"workers": 1, "executor": None, "progress": None},
+    ),
     "terms": (bd.terms, {"scene": MOVING}),
     "tradeoff": (
         bd.tradeoff,
@@ -180,6 +186,7 @@ ALLOWED = {
     "campbell.bounds": {"truth", "numpy's truth"},
     "sweep.progress": {"class"},
     "tradeoff.progress": {"class"},
+    "study.progress": {"class"},
     "load_scene.path": {"text"},
     "read_deck.path": {"text"},
     **{f"{name}.breakpoints": {"empty", "empty array"} for name in CALLS},
@@ -222,6 +229,7 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere |= {"OmittedEffect"}  # in the terms of a scene
     made_elsewhere |= {"EquilibriumBranch", "JudgedEffect", "PhysicsChoice"}  # parts of results
     made_elsewhere |= {"LineCrossing", "Margin"}  # parts of a diagram
+    made_elsewhere |= {"VariedInput"}  # parts of studies
     made_elsewhere |= {"IgnoredProperty", "PropertyStep", "ShapeCheck"}  # parts of decks
     made_elsewhere |= {"load"}  # reads files: tests/unit/test_load.py
     assert rest == made_elsewhere | {"Discretization", "Motion", "Rotation"}  # the last are base classes

@@ -1,0 +1,1 @@
+"""Answers over all combinations of inputs of a scene: many designs at once."""

@@ -1,0 +1,202 @@
+"""Inputs that a study varies, by the names of scene files, and the scene of one design."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue, one_of, real_array
+from beamdyn.common.described import descriptions
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import as_profile, to_profile
+from beamdyn.scene.rectangle import rectangle_of
+from beamdyn.scene.scene import Scene
+
+SPEED = "speed"
+COMBINATIONS = ("product", "zip")
+_OF_RECTANGLE = {
+    "width": "m",
+    "thickness": "m",
+    "youngs_modulus": "Pa",
+    "density": "kg/m3",
+    "poissons_ratio": "",
+}
+_OF_STIFFNESS = {
+    "mass_per_length": "kg/m",
+    "bending_stiffness": "N m2",
+    "axial_stiffness": "N",
+    "outer_fibre": "m",
+    "second_bending_stiffness": "N m2",
+    "shear_stiffness": "N",
+    "second_shear_stiffness": "N",
+    "rotary_inertia": "kg m",
+    "second_rotary_inertia": "kg m",
+}
+_OF_BEAM = {"length": "m", "twist": "rad"}
+_UNITS: dict[str, str] = {
+    **{f"beam.{name}": unit for name, unit in (_OF_BEAM | _OF_RECTANGLE | _OF_STIFFNESS).items()},
+    **{f"beam.tip.{name}": found.unit for name, found in descriptions(TipMass).items()},
+    **{f"mount.{name}": found.unit for name, found in descriptions(Mount).items()},
+    "model.damping_ratio": "",
+    "model.gravity": "m/s2",
+    SPEED: "rad/s",
+}
+NAMES = tuple(_UNITS)
+
+
+@dataclass(frozen=True)
+class VariedInput:
+    """An input that a study varies.
+
+    Parameters
+    ----------
+    name : str
+        Its path in scene files, such as "beam.thickness", or "speed".
+    unit : str
+        Its SI unit.
+    values : ndarray, shape (n,)
+        Its values [unit].
+    """
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures: name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
+    """The inputs of a study with their values as arrays.
+
+    Raises
+    ------
+    InvalidValue
+        If there are none, an input is unknown, or its values are no finite numbers.
+    """
+    remedy = 'give a dictionary, such as {"beam.thickness": [1e-4, 2e-4], "speed": [0.0, 50.0]}'
+    if not isinstance(vary, Mapping) or not vary:
+        raise InvalidValue("vary", vary, "it names no input", remedy)
+    return tuple(_check_input(name, values) for name, values in vary.items())
+
+
+def _check_input(name: str, values: Any) -> VariedInput:
+    if name not in _UNITS:
+        near = difflib.get_close_matches(str(name), NAMES, n=1)
+        raise InvalidValue("vary", name, "unknown input", f"give {near[0] if near else ', '.join(NAMES)}")
+    array = real_array(name, values)
+    if not array.size:
+        raise InvalidValue(name, values, "it is empty; give at least one value")
+    return VariedInput(name, _UNITS[name], array)
+
+
+def check_combination(combine: str, inputs: Sequence[VariedInput]) -> None:
+    """Refuse an unknown combination, and inputs of different lengths that are to be taken together."""
+    one_of("combine", combine, COMBINATIONS)
+    lengths = {len(each.values) for each in inputs}
+    if combine == "zip" and len(lengths) > 1:
+        bound = f"the inputs have {' and '.join(map(str, sorted(lengths)))} values"
+        raise InvalidValue("combine", combine, bound, 'give as many of each, or combine="product"')
+
+
+def shape_of(inputs: Sequence[VariedInput], combine: str) -> tuple[int, ...]:
+    """Shape of the answers: one axis an input, or one for all that are taken together."""
+    if combine == "zip":
+        return (len(inputs[0].values),)
+    return tuple(len(each.values) for each in inputs)
+
+
+def columns_of(inputs: Sequence[VariedInput], combine: str) -> dict[str, np.ndarray]:
+    """The value of each input in each of N designs, (N,): the last input of a product changes fastest."""
+    if combine == "zip":
+        return {each.name: each.values for each in inputs}
+    grids = np.meshgrid(*(each.values for each in inputs), indexing="ij")
+    return {each.name: grid.ravel() for each, grid in zip(inputs, grids, strict=True)}
+
+
+# The scene of a design ----------------------------------------------------------------------------
+
+
+def scene_of(scene: Scene, design: Mapping[str, float]) -> Scene:
+    """The scene with the inputs of a design, made by the same constructors as the scene itself.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    design : mapping of str to float
+        Values by name, in SI; that of the speed is not used.
+
+    Raises
+    ------
+    InvalidValue
+        If a value is out of its range, or the beam is of no rectangular section where a side or the
+        material of one is given.
+    """
+    with _naming_inputs(design):
+        of_model = _part(design, "model.")
+        mount = replace(scene.mount, **_part(design, "mount."))
+        return replace(scene, beam=_beam_of(scene.beam, design), mount=mount, **of_model)
+
+
+@contextmanager
+def _naming_inputs(design: Mapping[str, float]) -> Iterator[None]:
+    """Within it, a refusal of an argument of a constructor names the input."""
+    try:
+        yield
+    except InvalidValue as error:
+        path = next((name for name in design if name.endswith(f".{error.field}")), error.field)
+        raise replace(error, field=path) from None
+
+
+def _part(design: Mapping[str, float], prefix: str) -> dict[str, Any]:
+    return {name.removeprefix(prefix): float(v) for name, v in design.items() if name.startswith(prefix)}
+
+
+def _beam_of(beam: Beam, design: Mapping[str, float]) -> Beam:
+    of_tip = _part(design, "beam.tip.")
+    given = {name: v for name, v in _part(design, "beam.").items() if not name.startswith("tip.")}
+    if of_tip:
+        beam = replace(beam, tip=replace(beam.tip or TipMass(0.0), **of_tip))
+    if "twist" in given:
+        beam = replace(beam, twist=to_profile("twist", given.pop("twist")))
+    of_section = {name: v for name, v in given.items() if name in _OF_RECTANGLE}
+    of_stiffness = {name: as_profile(name, v) for name, v in given.items() if name in _OF_STIFFNESS}
+    if of_section and of_stiffness:
+        bound = f"{next(iter(of_stiffness))} does not go together with it"
+        raise InvalidValue(f"beam.{next(iter(of_section))}", next(iter(of_section.values())), bound)
+    length = {"length": given["length"]} if "length" in given else {}
+    return _rectangular(beam, length | of_section) if of_section else replace(beam, **length, **of_stiffness)
+
+
+def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
+    """The beam with another section or material, by `Beam.rectangular`."""
+    section = rectangle_of(beam)
+    if section is None:
+        name = next(iter(given.keys() & _OF_RECTANGLE.keys()))
+        bound = "the properties of the beam are not those of a rectangular section"
+        raise InvalidValue(f"beam.{name}", given[name], bound, "vary beam.bending_stiffness or the like")
+    arguments: dict[str, Any] = {field.name: getattr(section, field.name) for field in fields(section)}
+    own: dict[str, Any] = {
+        "length": beam.length,
+        "tip": beam.tip,
+        "twist": beam.twist,
+        "breakpoints": beam.breakpoints[1:-1],
+    }
+    return Beam.rectangular(**{**own, **arguments, **given})
+
+
+def corners(columns: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
+    """The designs of the smallest and largest value of each input: every bound is kept if they keep it."""
+    ends = {name: np.unique([values.min(), values.max()]) for name, values in columns.items()}
+    grids = np.meshgrid(*ends.values(), indexing="ij")
+    points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
+    return [dict(zip(ends, point, strict=True)) for point in points]

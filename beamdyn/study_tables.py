@@ -1,0 +1,82 @@
+"""Studies as tables for reading and as rows of CSV files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from rich.console import Group
+from rich.text import Text
+
+from beamdyn.common.digits import supported
+from beamdyn.common.edge.tables import table
+from beamdyn.studies.inputs import columns_of
+from beamdyn.studies.result import WORDS, Study
+
+_MOST_ROWS = 30  # of a table for reading
+_DIGITS = 10  # most digits of a number
+_PER_UNIT = {"/": "_per_", " ": "_"}
+
+
+def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None) -> Group:
+    """Inputs and answers of some designs, spread evenly.
+
+    Parameters
+    ----------
+    result : Study
+        The study.
+    units : dict, optional
+        By input: the unit in which its values are shown, and that unit in SI; others are shown in SI.
+    """
+    shown = _spread(int(np.prod(result.shape)), _MOST_ROWS)
+    columns, value, error, status = _flat(result)
+    in_units = {each.name: (each.unit, 1.0) for each in result.inputs} | (units or {})
+    inputs = [columns[name][shown] / in_units[name][1] for name in columns]
+    heads = [f"{name} [{in_units[name][0]}]" if in_units[name][0] else name for name in columns]
+    rows = (
+        (*(f"{column[k]:.6g}" for column in inputs), *_answers(value[i], error[i], status[i]))
+        for k, i in enumerate(shown)
+    )
+    own = [f"mode {m + 1} [{result.unit}]" for m in range(value.shape[1])]
+    own = own if result.what == "frequencies" else [f"{WORDS[result.what]} [{result.unit}]"]
+    number = len(value)
+    title = f"{number} design{'s' * (number > 1)}, by {result.provenance.method}"
+    made = table(title, (*heads, *own, "error"), rows, ())
+    note = f"{len(shown)} of {number} designs are shown; --csv has all." if len(shown) < number else ""
+    return Group(made, Text(note)) if note else made
+
+
+def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterator[str]:
+    for number, wrong, state in zip(value, error, status, strict=True):
+        yield supported(number, wrong * number, _DIGITS) if np.isfinite(number) else str(state)
+    yield f"{error.max():.1g}"
+
+
+def study_csv(result: Study) -> Iterator[Sequence[object]]:
+    """Inputs in SI, answers, relative errors and states, a row a design; the last input changes fastest."""
+    columns, value, error, status = _flat(result)
+    numbers = [f"_{m + 1}" for m in range(value.shape[1])] if value.shape[1] > 1 else [""]
+    units = {each.name: each.unit for each in result.inputs}
+    heads = [_head(name.replace(".", "_"), units[name]) for name in columns]
+    answers = [_head(f"{WORDS[result.what].replace(' ', '_')}{n}", result.unit) for n in numbers]
+    yield *heads, *answers, *(f"relative_error{n}" for n in numbers), *(f"status{n}" for n in numbers)
+    inputs = np.array([*columns.values()]).T.tolist()
+    for row in zip(inputs, value.tolist(), error.tolist(), status.tolist(), strict=True):
+        yield [cell for cells in row for cell in cells]
+
+
+def _head(name: str, unit: str) -> str:
+    for sign, word in _PER_UNIT.items():
+        unit = unit.replace(sign, word)
+    return f"{name}_{unit}" if unit else name
+
+
+def _flat(result: Study) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]:
+    """Inputs (N,) by name, and answers, errors and states (N, k) of all designs."""
+    number = int(np.prod(result.shape))
+    value, error, status = (each.reshape(number, -1) for each in (result.value, result.error, result.status))
+    return columns_of(result.inputs, result.combine), value, error, status
+
+
+def _spread(count: int, most: int) -> np.ndarray:
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)

@@ -1,0 +1,275 @@
+"""Studies: inputs and their names, shapes, results in files, refusals, and the command."""
+
+import csv
+import pickle
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import main
+from beamdyn.common.checks import InvalidValue
+from beamdyn.modal.eigen import solve_diagonal
+from beamdyn.scene.rectangle import rectangle_of
+from beamdyn.studies.inputs import NAMES, scene_of
+
+BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
+SCENE = bd.Scene(bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-10)), bd.Mount(0.2))
+ROUNDING = 1e-12  # a few ulp of the inputs, times what frequencies amplify them
+TOML = """
+[beam]
+length = "50 mm"
+width = "10 mm"
+thickness = "0.2 mm"
+youngs_modulus = "200 GPa"
+density = "7850 kg/m3"
+
+[mount]
+radius = "0.2 m"
+"""
+
+
+def close_to_single(study, *place, **options):
+    """Whether the answer of a design is that of a single call, within the stated errors of both."""
+    speed = study.design(*place).get("speed", 0.0)
+    modes = bd.natural_modes(study.scene_at(*place), speed, study.value.shape[-1], **options)
+    return np.array_equal(modes.status, study.status[place]) and np.allclose(
+        np.nan_to_num(study.value[place] / modes.frequency, nan=1.0),
+        1.0,
+        rtol=0.0,
+        atol=(modes.error + study.error[place]).max(),
+    )
+
+
+def test_axes_are_the_inputs_in_their_order():
+    speeds = [0.0, 30.0, 60.0, 10.0]
+    study = bd.study(
+        SCENE, {"beam.thickness": [2e-4, 3e-4], "speed": speeds, "mount.radius": [0.1, 0.2, 0.3]}
+    )
+    assert study.shape == (2, 4, 3)
+    assert study.value.shape == study.error.shape == study.status.shape == (2, 4, 3, 3)
+    assert study.design(1, 2, 0) == {"beam.thickness": 3e-4, "speed": 60.0, "mount.radius": 0.1}
+    for place in ((0, 0, 0), (1, 2, 0), (0, 3, 2)):
+        assert close_to_single(study, *place)
+
+
+def test_values_taken_together():
+    study = bd.study(SCENE, {"speed": [0.0, 60.0], "beam.tip.mass": [1e-4, 2e-4]}, combine="zip", modes=2)
+    assert study.value.shape == (2, 2)
+    assert close_to_single(study, 0) and close_to_single(study, 1)
+
+
+def test_speed_alone():
+    study = bd.study(SCENE, {"speed": [0.0, 25.0]})
+    assert close_to_single(study, 1)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        bd.Beam.rectangular(**BEAM),
+        bd.Beam.rectangular(**BEAM, poissons_ratio=0.3, breakpoints=(0.4,)),
+        bd.Beam.rectangular(
+            **BEAM | {"width": np.polynomial.Polynomial([0.01, -0.004])}, poissons_ratio=-0.2
+        ),
+        bd.Beam.rectangular(**BEAM | {"thickness": bd.Table([0, 0.5, 1], [3e-4, 2e-4, 1e-4])}),
+    ],
+)
+def test_a_rectangular_beam_is_made_again_from_its_properties(made):
+    """Within rounding: the sides are square roots and quotients of the properties."""
+    section = rectangle_of(made)
+    again = bd.Beam.rectangular(
+        length=made.length, **{name: getattr(section, name) for name in section.__dataclass_fields__},
+        breakpoints=made.breakpoints[1:-1],
+    )  # fmt: skip
+    xi = np.linspace(0, 1, 41)
+    for name in ("mass_per_length", "bending_stiffness", "axial_stiffness", "second_bending_stiffness"):
+        np.testing.assert_allclose(getattr(again, name)(xi), getattr(made, name)(xi), rtol=ROUNDING)
+    assert (section.poissons_ratio is None) == (made.shear_stiffness is None)
+    if made.shear_stiffness is not None:
+        np.testing.assert_allclose(again.shear_stiffness(xi), made.shear_stiffness(xi), rtol=ROUNDING)
+
+
+def test_a_beam_of_another_section_is_no_rectangle():
+    assert rectangle_of(bd.Beam.from_stiffness(0.05, 0.0157, 1.3e-3)) is None
+    rectangular = bd.Beam.rectangular(**BEAM)
+    other = bd.Beam.from_stiffness(
+        0.05, 0.0157, 2e-3, 4e5, 1e-4, second_bending_stiffness=rectangular.second_bending_stiffness
+    )
+    assert rectangle_of(other) is None
+
+
+def test_every_name_replaces_what_it_names():
+    blade = bd.Beam.from_stiffness(
+        1.0, 2.0, 30.0, 1e6, 0.01, second_bending_stiffness=40.0, shear_stiffness=1e5,
+        second_shear_stiffness=2e5, rotary_inertia=1e-3, second_rotary_inertia=2e-3, twist=0.1,
+        tip=bd.TipMass(0.1, 0.0, 0.01, 0.01, 0.01),
+    )  # fmt: skip
+    plate = bd.Beam.rectangular(**BEAM, poissons_ratio=0.3)
+    mount = bd.Mount(0.1, np.pi)
+    others = {"width": 0.02, "poissons_ratio": 0.2, "thickness": 3e-4, "youngs_modulus": 1e11, "density": 5e3}
+    of_section = ("width", "thickness", "youngs_modulus", "density", "poissons_ratio")
+    for name in (name for name in NAMES if name != "speed"):
+        last = name.rpartition(".")[2]
+        scene = bd.Scene(plate if last in of_section else blade, mount)
+        value = others.get(last, 0.011)
+        assert scene_of(scene, {name: value}) != scene, name
+
+
+def test_saved_and_pickled(tmp_path):
+    study = bd.study(SCENE, {"beam.thickness": [2e-4, 3e-4]})
+    study.save(tmp_path / "study.json")
+    for again in (bd.load(tmp_path / "study.json"), pickle.loads(pickle.dumps(study))):
+        assert np.array_equal(again.value, study.value) and again.scene == study.scene
+        assert again.scene_at(1) == study.scene_at(1)
+
+
+def test_critical_speeds():
+    study = bd.study(SCENE, {"mount.setting_angle": [0.0, np.pi]}, "critical_speed")
+    assert study.value[0] == bd.critical_speed(SCENE) and study.status.tolist() == [
+        "buckles",
+        "does not buckle",
+    ]
+    assert np.isinf(study.value[1]) and study.error[1] == 0
+
+
+def test_amplitudes():
+    """Their errors are relative to the amplitude, those of a response to its bound."""
+    road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
+    wheel = bd.RollingWheel(rolling_radius=0.3, speed=bd.SteadyRotation(50.0), road=road)
+    scene = bd.Scene(SCENE.beam, SCENE.mount, wheel, damping_ratio=0.02)
+    study = bd.study(scene, {"model.damping_ratio": [0.02, 0.05], "speed": [20.0, 30.0]}, "amplitude")
+    single = bd.steady_response(study.scene_at(1, 0), [20.0])
+    assert study.value[1, 0] == single.amplitude[0] and study.status[1, 0] == single.status[0]
+    assert study.unit == "m" and study.value.shape == (2, 2)
+    of_bound = study.error[1, 0] * study.value[1, 0] / single.bound[0]
+    np.testing.assert_allclose(of_bound, single.error[0] + single.mode_error[0], rtol=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("vary", "options", "named"),
+    [
+        ({}, {}, "vary"),
+        ({"beam.thicknes": [1e-4]}, {}, "beam.thickness"),
+        ({"beam.thickness": []}, {}, "beam.thickness"),
+        ({"beam.thickness": [2e-4, 0.02]}, {}, "thickness"),
+        ({"beam.thickness": [2e-4, -1e-4]}, {}, "^beam.thickness = -"),
+        ({"mount.radius": [-1.0]}, {}, "^mount.radius = -1"),
+        ({"beam.tip.mass": [-1.0]}, {}, "^beam.tip.mass = -1"),
+        ({"beam.thickness": [2e-4], "mount.radius": [0.1, 0.2]}, {"combine": "zip"}, "combine"),
+        ({"beam.thickness": [2e-4], "beam.bending_stiffness": [1.0]}, {}, "bending_stiffness"),
+        ({"speed": [1.0]}, {"what": "critical_speed"}, "speed"),
+        ({"speed": [1e60]}, {}, "speed"),
+    ],
+)
+def test_refusals_name_the_input(vary, options, named):
+    with pytest.raises(InvalidValue, match=named):
+        bd.study(SCENE, vary, **options)
+
+
+def test_values_that_are_fine_together_but_not_with_each_other():
+    """Widths below the other design's thickness: no design is refused that is a beam."""
+    together = {"beam.width": [0.001, 0.01], "beam.thickness": [5e-4, 5e-3]}
+    assert bd.study(SCENE, together, combine="zip").value.shape == (2, 3)
+    with pytest.raises(InvalidValue, match="width"):
+        bd.study(SCENE, together)
+
+
+def test_a_section_of_no_rectangle_is_refused():
+    scene = bd.Scene(bd.Beam.from_stiffness(0.05, 0.0157, 1.3e-3), bd.Mount(0.2))
+    with pytest.raises(InvalidValue, match="not those of a rectangular section"):
+        bd.study(scene, {"beam.thickness": [1e-4]})
+
+
+def test_warnings_say_of_how_many_designs():
+    with pytest.warns(UserWarning, match="outside linear theory"):
+        study = bd.study(SCENE, {"mount.setting_angle": [0.0, 0.8], "speed": [0.0, 60.0]})
+    assert any(said.startswith("at 1 of 4 designs") for said in study.warnings)
+
+
+def test_the_static_deflection_that_is_warned_of_is_that_of_single_calls():
+    from beamdyn.studies.frequencies import SimilarFrequencies
+    from beamdyn.studies.similar import SimilarDesigns
+
+    columns = {"beam.thickness": [3e-4, 2e-4], "beam.length": [0.05, 0.04], "mount.setting_angle": [1.0, 2.0]}
+    columns |= {"beam.youngs_modulus": [2e11, 1e11], "beam.tip.mass": [0.0, 1e-4], "mount.radius": [0.1, 0.3]}
+    columns = {name: np.array(values) for name, values in columns.items()}
+    scenes = [scene_of(SCENE, {name: v[i] for name, v in columns.items()}) for i in range(2)]
+    first = {name: float(values[0]) for name, values in columns.items()}
+    designs = SimilarDesigns(scenes[0], first, columns)
+    request = SimilarFrequencies(designs, np.full((2, 1), 20.0), 3, "ritz", None)
+    found = request.solve()
+    singles = [bd.natural_modes(scene, 20.0) for scene in scenes]
+    deflection = [abs(single.static_deflection) / single.scene.beam.length for single in singles]
+    np.testing.assert_allclose(found.deflection[:, 0], deflection, rtol=1e-10)  # error of the basis
+    strain = [single.axial_strain for single in singles]
+    np.testing.assert_allclose(request.designs.strains(request.speeds)[:, 0], strain, rtol=ROUNDING)
+
+
+def test_a_tolerance_takes_the_basis_of_a_single_call():
+    study = bd.study(SCENE, {"speed": [0.0, 60.0]}, tolerance=1e-4)
+    assert close_to_single(study, 1, tolerance=1e-4)
+    assert study.error.max() <= 1e-4
+
+
+@pytest.mark.parametrize("scene", [
+    bd.Scene(SCENE.beam, SCENE.mount, damping_ratio=0.02),
+    bd.Scene(SCENE.beam, bd.Mount(0.2, root_stiffness=0.1)),
+    bd.Scene(SCENE.beam, SCENE.mount, physics=bd.Physics(planes=2)),
+])  # fmt: skip
+def test_what_is_not_batched_is_solved_one_by_one(scene):
+    study = bd.study(scene, {"speed": [0.0, 30.0]}, modes=2)
+    single = bd.natural_modes(scene, 30.0, 2)
+    assert np.array_equal(study.value[1], single.frequency) and np.array_equal(study.error[1], single.error)
+    assert study.provenance.method == "single calls"
+
+
+def test_many_eigenproblems_at_once_are_those_of_each():
+    """To the bit: stiff ones, and soft ones, which are shifted each by its own amount."""
+    random = np.random.default_rng(3)
+    factor = random.normal(size=(6, 5, 5))
+    mass = np.eye(5) + factor @ np.swapaxes(factor, 1, 2) * 10.0 ** random.uniform(-3, 1, (6, 1, 1))
+    stiffness = 1 + random.uniform(0, 3, (6, 5))
+    stiffness[2:, 1] = [-3.0, -0.02, 0.0, -40.0]
+    lowest = 1 / np.linalg.eigvalsh(mass)[:, -1]
+    together = solve_diagonal(mass, stiffness, 3, lowest)
+    for i in range(6):
+        alone = solve_diagonal(mass[i], stiffness[i : i + 1], 3, float(lowest[i]))
+        assert all(np.array_equal(one[0], all_[i]) for one, all_ in zip(alone, together, strict=True))
+
+
+def test_plots_of_one_input_and_of_more():
+    one = bd.study(SCENE, {"mount.radius": [0.1, 0.2, 0.3]}).plot()
+    assert len(one.get_lines()) == 3 and one.get_xlabel() == "mount.radius [m]"
+    three = bd.study(
+        SCENE, {"mount.radius": [0.1, 0.2], "speed": [0.0, 9.0], "beam.width": [0.01, 0.02]}
+    ).plot()
+    assert len(three.get_lines()) == 2 and "beam.width = 0.01 m" in three.get_ylabel()
+
+
+def test_the_command_writes_what_it_shows(tmp_path, capsys):
+    (tmp_path / "scene.toml").write_text(TOML)
+    files = {kind: tmp_path / f"study.{kind}" for kind in ("csv", "json", "png")}
+    arguments = ["study", str(tmp_path / "scene.toml"), "--vary", "thickness=0.2:0.3:2 mm", "--vary"]
+    arguments += [
+        "speed=0:30:2 rad/s",
+        "--csv",
+        files["csv"],
+        "--json",
+        files["json"],
+        "--plot",
+        files["png"],
+    ]
+    assert main([str(each) for each in arguments]) == 0
+    assert "beam.thickness [mm]" in capsys.readouterr().out
+    study = bd.load(files["json"])
+    head, *rows = csv.reader(files["csv"].read_text().splitlines())
+    assert head[:3] == ["beam_thickness_m", "speed_rad_per_s", "frequency_1_Hz"]
+    assert len(rows) == 4 and float(rows[3][2]) == study.value[1, 1, 0]
+    assert files["png"].stat().st_size > 1000
+
+
+def test_the_command_refuses_an_unknown_input(tmp_path, capsys):
+    (tmp_path / "scene.toml").write_text(TOML)
+    assert main(["study", str(tmp_path / "scene.toml"), "--vary", "beam.thicknes=1:2:3 mm"]) == 2
+    assert "beam.thickness" in capsys.readouterr().err
