@@ -189,6 +189,7 @@ def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
         "length": beam.length,
         "tip": beam.tip,
         "twist": beam.twist,
+        "point_masses": beam.point_masses,
         "breakpoints": beam.breakpoints[1:-1],
     }
     return Beam.rectangular(**{**own, **arguments, **given})

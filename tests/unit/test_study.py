@@ -224,6 +224,14 @@ def test_what_is_not_batched_is_solved_one_by_one(scene):
     assert study.provenance.method == "single calls"
 
 
+def test_point_masses_stay_where_they_are():
+    lumps = (bd.PointMass(0.02, 1e-4),)
+    scene = bd.Scene(bd.Beam.rectangular(**BEAM, point_masses=lumps), SCENE.mount)
+    study = bd.study(scene, {"beam.thickness": [1e-4, 3e-4]}, modes=2)
+    single = bd.Scene(bd.Beam.rectangular(**BEAM | {"thickness": 3e-4}, point_masses=lumps), SCENE.mount)
+    np.testing.assert_allclose(study.value[1], bd.natural_modes(single, 0.0, 2).frequency, rtol=ROUNDING)
+
+
 def test_many_eigenproblems_at_once_are_those_of_each():
     """To the bit: stiff ones, and soft ones, which are shifted each by its own amount."""
     random = np.random.default_rng(3)
