@@ -59,6 +59,16 @@ class Model(FieldsOnly):
             return self.coarser.solver
         return solver_over(self.equations, self.equations.coarse)
 
+    @property
+    def exceeds_coarser(self) -> bool:
+        """Whether every field has more functions than in the coarser model, which else says nothing of it."""
+        blocks, coarse = self.equations.blocks.values(), self.equations.coarse
+        if coarse is None:
+            fewer = [block.stop - block.start for block in self.coarser.equations.blocks.values()]
+        else:
+            fewer = [np.count_nonzero((coarse >= block.start) & (coarse < block.stop)) for block in blocks]
+        return all(few < block.stop - block.start for few, block in zip(fewer, blocks, strict=True))
+
     def equations_at(self, speed: float) -> Equations:
         """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
         if isinstance(self.solver, DeflectedSolver):
