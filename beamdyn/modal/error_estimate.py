@@ -30,7 +30,7 @@ class EstimatedModes:
         Modes of `model`.
     error : ndarray, shape (S, k)
         Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved, and
-        where a field of the coarser model has as many functions.
+        where the model does not exceed the coarser one.
     """
 
     model: Model

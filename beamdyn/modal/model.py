@@ -61,13 +61,15 @@ class Model(FieldsOnly):
 
     @property
     def exceeds_coarser(self) -> bool:
-        """Whether every field has more functions than in the coarser model, which else says nothing of it."""
-        blocks, coarse = self.equations.blocks.values(), self.equations.coarse
+        """Whether each field has functions beyond those of the coarser model, which else says nothing of it.
+
+        Where the coarser model has other functions, it is enough that they are fewer in all.
+        """
+        coarse = self.equations.coarse
         if coarse is None:
-            fewer = [block.stop - block.start for block in self.coarser.equations.blocks.values()]
-        else:
-            fewer = [np.count_nonzero((coarse >= block.start) & (coarse < block.stop)) for block in blocks]
-        return all(few < block.stop - block.start for few, block in zip(fewer, blocks, strict=True))
+            return self.coarser.equations.size < self.equations.size
+        added = np.delete(np.arange(self.equations.size), coarse)
+        return all(((added >= b.start) & (added < b.stop)).any() for b in self.equations.blocks.values())
 
     def equations_at(self, speed: float) -> Equations:
         """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
