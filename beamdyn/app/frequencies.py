@@ -18,11 +18,11 @@ from beamdyn.common.app.screens import Screen
 from beamdyn.output.campbell import Curves, plot_campbell
 from beamdyn.output.notes import note_below
 from beamdyn.output.plots import mark_critical
-from beamdyn.result_rows import locus_csv
-from beamdyn.result_tables import crossings_table, locus_table
 from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.modes import Locus
 from beamdyn.steady.resonance import Crossings
+from beamdyn.tables.results import crossings_table, locus_table
+from beamdyn.tables.rows import locus_csv
 
 _SPEEDS = 121
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"

@@ -15,9 +15,9 @@ from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.output.notes import note_below
-from beamdyn.result_rows import steady_csv
-from beamdyn.result_tables import steady_table
 from beamdyn.steady.response import SteadyResponse
+from beamdyn.tables.results import steady_table
+from beamdyn.tables.rows import steady_csv
 
 _SPEEDS = 242
 

@@ -94,9 +94,9 @@ def campbell(
         Output files.
     """
     from beamdyn import campbell
-    from beamdyn.campbell_tables import campbell_csv, campbell_tables, crossings_of_lines_csv
     from beamdyn.common.edge.rendering import csv_text
     from beamdyn.common.files import write_text
+    from beamdyn.tables.campbell import campbell_csv, campbell_tables, crossings_of_lines_csv
 
     outputs.check(*scenes, crossings=crossings)
     speeds, unit = _parse_top(top_speed)

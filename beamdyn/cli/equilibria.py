@@ -36,7 +36,7 @@ def equilibrium(
     """
     from beamdyn import equilibrium, load_scene
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.equilibrium_tables import equilibrium_csv, equilibrium_table
+    from beamdyn.tables.equilibria import equilibrium_csv, equilibrium_table
 
     outputs.check(scene)
     loaded = load_scene(scene)
@@ -71,7 +71,7 @@ def branches(
     """
     from beamdyn import equilibrium_branches, load_scene
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.equilibrium_tables import branches_csv, branches_table
+    from beamdyn.tables.equilibria import branches_csv, branches_table
 
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")

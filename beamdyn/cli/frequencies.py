@@ -66,8 +66,8 @@ def modes(
     from beamdyn import natural_modes
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_rows import modes_csv
-    from beamdyn.result_tables import modes_table
+    from beamdyn.tables.results import modes_table
+    from beamdyn.tables.rows import modes_csv
 
     outputs.check(scene, shapes=shapes)
     loaded = load_with(scene, physics)
@@ -123,8 +123,8 @@ def locus(
     from beamdyn import frequency_locus
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_rows import locus_csv
-    from beamdyn.result_tables import locus_table
+    from beamdyn.tables.results import locus_table
+    from beamdyn.tables.rows import locus_csv
 
     outputs.check(scene)
     given = parse_speeds(speeds)
@@ -173,7 +173,7 @@ def critical(
     from beamdyn import critical_point
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import critical_answer
+    from beamdyn.tables.results import critical_answer
 
     outputs = Outputs(json=json, report=report, force=force)
     outputs.check(scene)
@@ -220,7 +220,7 @@ def limits(
 
     from beamdyn import setting_angle_limits
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_tables import limits_table
+    from beamdyn.tables.results import limits_table
 
     outputs = Outputs(json=json, report=report, force=force)
     outputs.check(scene)

@@ -54,8 +54,8 @@ def resonances(
     from beamdyn import resonance_speeds
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_rows import crossings_csv
-    from beamdyn.result_tables import crossings_table
+    from beamdyn.tables.results import crossings_table
+    from beamdyn.tables.rows import crossings_csv
 
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
@@ -100,8 +100,8 @@ def steady(
     from beamdyn import steady_response
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_rows import steady_csv
-    from beamdyn.result_tables import steady_table
+    from beamdyn.tables.results import steady_table
+    from beamdyn.tables.rows import steady_csv
 
     outputs.check(scene)
     given = parse_speeds(speeds)

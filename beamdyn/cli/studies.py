@@ -82,7 +82,7 @@ def study(
     from beamdyn.common.edge.input_sweep import check_cases, parse_axis
     from beamdyn.common.edge.tables import progress_bar
     from beamdyn.common.edge.wording import of_file
-    from beamdyn.study_tables import study_csv, study_table
+    from beamdyn.tables.studies import study_csv, study_table
 
     outputs.check(scene)
     known = _inputs()

@@ -82,8 +82,8 @@ def simulate(
     """
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_rows import transient_csv
-    from beamdyn.result_tables import transient_table
+    from beamdyn.tables.results import transient_table
+    from beamdyn.tables.rows import transient_csv
     from beamdyn.transient.simulate import simulate
 
     outputs.check(scene, series=series, animation=animation)
@@ -143,8 +143,8 @@ def sweep(
     """
     from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.result_rows import sweep_csv
-    from beamdyn.result_tables import sweep_table
+    from beamdyn.tables.results import sweep_table
+    from beamdyn.tables.rows import sweep_csv
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
@@ -189,7 +189,7 @@ def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, 
     import numpy as np
 
     from beamdyn import natural_modes
-    from beamdyn.result_tables import time_of_peak
+    from beamdyn.tables.results import time_of_peak
 
     middle, _ = time_of_peak(run, *window)
     speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0

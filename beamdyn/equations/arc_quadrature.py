@@ -54,25 +54,30 @@ class ArcQuadrature:
     def _half_lengths(self) -> np.ndarray:
         return np.diff(self.cells.ends)[:, None] / 2
 
+    @property
+    def _count(self) -> int:
+        """Number of cells."""
+        return len(self.cells.ends) - 1
+
     def integrate(self, values: np.ndarray) -> np.ndarray:
         """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
         p, of_functions = self.cells.points, values.shape[:-1]
-        of_cells = (values.reshape(-1, p) @ _to_points_and_end(p)).reshape(*of_functions, -1, p + 1)
+        of_cells = (values.reshape(-1, p) @ _to_points_and_end(p)).reshape(*of_functions, self._count, p + 1)
         of_cells *= self._half_lengths
         ends = np.cumsum(of_cells[..., p], axis=-1)
         of_cells[..., 1:, :p] += ends[..., :-1, None]
-        inside = of_cells[..., :p].reshape(*of_functions, -1)
+        inside = of_cells[..., :p].reshape(*of_functions, self._count * p)
         return np.concatenate([inside, ends[..., -1:]], axis=-1)
 
     def transposed(self, forces: np.ndarray) -> np.ndarray:
         """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
         p = self.cells.points
         _, w = gauss_rule(p)
-        inside = forces[..., :-1].reshape(*forces.shape[:-1], -1, p)
+        inside = forces[..., :-1].reshape(*forces.shape[:-1], self._count, p)
         of_cells = inside.sum(axis=-1)
         beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
         scaled = (inside @ _cumulative(p) + beyond[..., None] * w) * self._half_lengths
-        return scaled.reshape(*forces.shape[:-1], -1)
+        return scaled.reshape(*forces.shape[:-1], self._count * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
         """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""

@@ -160,7 +160,7 @@ class RitzSpace(SampledSpace):
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.coarser().functions
-        turns = self.size % functions
+        turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
         return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))
 

@@ -29,7 +29,8 @@ class EstimatedModes:
     eigen : Eigen
         Modes of `model`.
     error : ndarray, shape (S, k)
-        Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved.
+        Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved, and
+        where the model does not exceed the coarser one.
     """
 
     model: Model
@@ -81,6 +82,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
+    resolved &= model.exceeds_coarser
     return EstimatedModes(model, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
 
 

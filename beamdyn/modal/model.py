@@ -59,6 +59,18 @@ class Model(FieldsOnly):
             return self.coarser.solver
         return solver_over(self.equations, self.equations.coarse)
 
+    @property
+    def exceeds_coarser(self) -> bool:
+        """Whether each field has functions beyond those of the coarser model, which else says nothing of it.
+
+        Where the coarser model has other functions, it is enough that they are fewer in all.
+        """
+        coarse = self.equations.coarse
+        if coarse is None:
+            return self.coarser.equations.size < self.equations.size
+        added = np.delete(np.arange(self.equations.size), coarse)
+        return all(((added >= b.start) & (added < b.stop)).any() for b in self.equations.blocks.values())
+
     def equations_at(self, speed: float) -> Equations:
         """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
         if isinstance(self.solver, DeflectedSolver):

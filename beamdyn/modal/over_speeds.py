@@ -27,10 +27,24 @@ def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Ei
         return solver.solve(speeds, count)
     sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense has the same frequencies
     found = _solve_ascending(solver, sizes, count)
-    vector = found.vector[place]
-    if np.iscomplexobj(vector):
-        vector = np.where(speeds[:, None, None] < 0, vector.conj(), vector)
-    return Eigen(found.eigenvalue[place], vector, found.rounding[place])
+    found = Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
+    return _turn_round(solver, found, speeds, count) if np.iscomplexobj(found.vector) else found
+
+
+def _turn_round(solver: Eigensolver, found: Eigen, speeds: np.ndarray, count: int) -> Eigen:
+    """Gyroscopic modes at speeds of either sign, by those at their sizes: the other sense has the conjugate.
+
+    Of a mode that grows it has the one that decays, which was not found: such speeds are solved each.
+    """
+    backwards = speeds < 0
+    vector = np.where(backwards[:, None, None], found.vector.conj(), found.vector)
+    turned = Eigen(found.eigenvalue.copy(), vector, found.rounding.copy())
+    growing = backwards & (np.real(found.eigenvalue) != 0).any(axis=1)
+    if growing.any():
+        each = solver.solve(speeds[growing], count)
+        turned.eigenvalue[growing], turned.vector[growing] = each.eigenvalue, each.vector
+        turned.rounding[growing] = each.rounding
+    return turned
 
 
 def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
@@ -95,7 +109,7 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen
     squared, vector = np.real(-(eigen.eigenvalue**2)), _align(eigen.vector, solver.pencil.M)
     at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
     misfit = np.abs(_evaluate(t[::2], at_nodes[::2], t[1::2]) - at_nodes[1::2]).max(axis=0)
-    of_squares = misfit[:count] / np.abs(squared).min(axis=0)
+    of_squares = _divide(misfit[:count], np.abs(squared).min(axis=0))
     of_modes = misfit[count:].max() / np.abs(vector).max()
     if not (of_squares <= _MISFIT + eigen.rounding.min(axis=0)).all() or not of_modes <= _MISFIT_OF_MODES:
         return None
@@ -107,6 +121,11 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen
         vector=values[:, count:].reshape(len(speeds), -1, count),
         rounding=np.tile(eigen.rounding.max(axis=0) + of_squares, (len(speeds), 1)),
     )
+
+
+def _divide(misfit: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Relative misfits: 0 of what is 0 at all speeds; inf of what is 0 at one of them and misses others."""
+    return np.divide(misfit, size, out=np.where(misfit > 0, np.inf, 0.0), where=size > 0)
 
 
 def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:

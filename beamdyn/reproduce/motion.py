@@ -15,11 +15,11 @@ from beamdyn.common.comparison import Comparison
 from beamdyn.common.pictures import COLOURS
 from beamdyn.published import load
 from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, rolling_scene
-from beamdyn.result_tables import sweep_peaks
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.resonance import Crossings, resonance_speeds
 from beamdyn.steady.response import steady_response
+from beamdyn.tables.results import sweep_peaks
 from beamdyn.transient.simulate import Transient, simulate
 from beamdyn.transient.sweep import Sweep, sweep
 

@@ -305,7 +305,8 @@ def _compare(model: Model) -> _Found:
         return _Found(model, coarse, np.inf, np.inf, np.inf)
     rounding, by_springs = solver.critical_rounding, _rounding_on_springs(model)
     error = abs(distance) / (2 * softening) + rounding + model.discretization.rounding + by_springs
-    error = float(error) if error < UNRESOLVED else np.inf
+    resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
+    error = float(error) if resolved else np.inf
     return _Found(model, coarse, float(softening**-0.5), error, rounding + by_springs)
 
 

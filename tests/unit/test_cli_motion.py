@@ -20,7 +20,7 @@ from beamdyn import load_scene
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 from beamdyn.cli.transients import _how_to_resume
 from beamdyn.cli.values import parse_window
-from beamdyn.result_tables import peaks
+from beamdyn.tables.results import peaks
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "rolling_harvester.toml")

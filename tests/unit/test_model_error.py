@@ -18,8 +18,8 @@ from beamdyn.common.digits import count_sure
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.model_error.left_out_effects import LeftOutEffects, say_change
-from beamdyn.result_rows import locus_csv
-from beamdyn.result_tables import locus_table, modes_table
+from beamdyn.tables.results import locus_table, modes_table
+from beamdyn.tables.rows import locus_csv
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
 OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)

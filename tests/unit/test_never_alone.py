@@ -16,8 +16,8 @@ from beamdyn.cautions import critical_label, labels_of, notes_of, warnings_of
 from beamdyn.common.announced import OutsideLinearTheory
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
-from beamdyn.result_rows import modes_csv
 from beamdyn.scene.validity import warn_of_static_deflection
+from beamdyn.tables.rows import modes_csv
 from beamdyn.tradeoffs import Diagram, tradeoff
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "harvester_45deg.toml")

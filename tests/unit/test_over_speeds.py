@@ -89,3 +89,53 @@ def test_damped_equations_are_solved_speed_by_speed() -> None:
     scene = replace(OUTWARD, damping_ratio=0.01)
     found, each = solve_both(scene, np.linspace(0, 2, over_speeds._FEW + 1))
     np.testing.assert_array_equal(found.eigenvalue, each.eigenvalue)
+
+
+@pytest.mark.parametrize(
+    ("scene", "speeds"),
+    [
+        (
+            bd.Scene(
+                bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=1e3),
+                bd.Mount(3.0, 0.0, 0.0),
+                physics=bd.Physics(stretch=True),
+            ),
+            np.linspace(-10.0, 10.0, 401),
+        ),
+        (
+            bd.Scene(
+                bd.Beam.from_stiffness(
+                    1.0, 1.0, 1.0, second_bending_stiffness=1.3, tip=bd.TipMass(1.0, 0.2, 0.01)
+                ),
+                bd.Mount(0.0, math.pi, 0.3, precone=1.3),
+                physics=bd.Physics(planes=2),
+            ),
+            np.linspace(-30.0, 5.0, 401),
+        ),
+    ],
+    ids=["divergence", "flutter"],
+)
+def test_growing_gyroscopic_modes_in_either_sense(scene: bd.Scene, speeds: np.ndarray) -> None:
+    """What grows in one sense of rotation has the shape of what decays in the other, not its conjugate."""
+    solver = Model(scene, bd.Ritz(12)).solver
+    pencil, found = solver.pencil, solve_over_speeds(solver, speeds, 4)
+    assert (np.real(found.eigenvalue)[speeds < 0] > 0).any() and pencil.G.any()
+    for speed, s, V in zip(speeds, found.eigenvalue, found.vector, strict=True):
+        inertia, stiffness = pencil.M @ V * s**2, (pencil.K0 + speed**2 * pencil.K2) @ V
+        residual = np.linalg.norm(inertia + speed * pencil.G @ V * s + stiffness, axis=0)
+        terms = np.linalg.norm(inertia, axis=0) + np.linalg.norm(stiffness, axis=0)
+        assert (residual < 1e-9 * terms).all()  # rounding, with nearly equal modes; wrong shapes have 1
+
+
+@pytest.mark.parametrize("bending_angle", [0.0, math.pi / 2], ids=["lag", "flap"])
+def test_modes_with_frequency_zero(bending_angle: float) -> None:
+    """About a hinge on the axis, lag has no stiffness at any speed, and flap none at rest: no warnings."""
+    mount = bd.Mount(0.0, math.pi, bending_angle, root_stiffness=0.0)
+    solver = Model(bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), mount), bd.Ritz(12)).solver
+    speeds = np.linspace(0.0, 5.0, 401)
+    found, each = solve_over_speeds(solver, speeds, 3), solver.solve(speeds, 3)
+    assert each.eigenvalue[0, 0] == 0
+    np.testing.assert_array_equal(found.eigenvalue == 0, each.eigenvalue == 0)
+    moving = each.eigenvalue != 0
+    error = np.abs(found.eigenvalue - each.eigenvalue)[moving] / np.abs(each.eigenvalue[moving])
+    assert (error <= found.rounding[moving] + each.rounding[moving]).all()

@@ -16,8 +16,8 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.common.checks import InvalidValue
-from beamdyn.result_rows import locus_csv, modes_csv
-from beamdyn.result_tables import locus_table, modes_table
+from beamdyn.tables.results import locus_table, modes_table
+from beamdyn.tables.rows import locus_csv, modes_csv
 from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(

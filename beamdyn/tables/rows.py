@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.result_tables import largest_by_direction, model_error_at
+from beamdyn.tables.results import largest_by_direction, model_error_at
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene

@@ -1,0 +1,1 @@
+"""Results as tables, for reading, and as rows of CSV files."""

@@ -1,0 +1,93 @@
+"""The coarser model, by which errors are stated: some of the functions of the model, and fewer."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.modal.model import Model
+
+BEAM = bd.Beam.from_stiffness(
+    1.0,
+    bd.Table([0.0, 0.4, 1.0], [1.0, 0.6, 0.5]),
+    bd.Table([0.0, 0.4, 1.0], [1.0, 0.5, 0.4]),
+    second_bending_stiffness=5.0,
+    axial_stiffness=3e3,
+    shear_stiffness=1e3,
+    rotary_inertia=2e-3,
+)
+UNIFORM = bd.Beam.from_stiffness(1.0, 1.0, 1.0)
+CLAMPED = bd.Mount(0.1, math.pi, math.pi / 2)
+TURNING = bd.Mount(0.1, math.pi, 0.4, root_stiffness=2.0, second_root_stiffness=0.0)
+PHYSICS = {
+    "one plane": bd.Physics(),
+    "two planes": bd.Physics(planes=2),
+    "stretch": bd.Physics(stretch=True),
+    "shear": bd.Physics(shear=True, rotary_inertia=True),
+}
+SPEEDS = np.array([0.5, 1.3])
+
+
+@pytest.mark.parametrize("mount", [CLAMPED, TURNING], ids=["clamped", "turning"])
+@pytest.mark.parametrize("physics", PHYSICS.values(), ids=PHYSICS.keys())
+@pytest.mark.parametrize("basis", ["legendre", "eigenfunctions"])
+def test_part_of_the_equations_is_the_coarser_model(mount: bd.Mount, physics: bd.Physics, basis: str) -> None:
+    for functions in (2, 3, 4, 6, 9):
+        model = Model(bd.Scene(BEAM, mount, physics=physics), bd.Ritz(functions, basis))  # pyright: ignore
+        modes = bd.Ritz(functions, basis).coarser().functions  # pyright: ignore
+        found = model.coarse_solver.solve(SPEEDS, modes)
+        each = model.coarser.solver.solve(SPEEDS, modes)
+        assert model.coarse_solver.size == model.coarser.solver.size < model.solver.size
+        error = np.abs(found.eigenvalue**2 - each.eigenvalue**2)
+        assert (error <= 2 * (found.rounding + each.rounding) * np.abs(each.eigenvalue) ** 2).all()
+
+
+@pytest.mark.parametrize(
+    "discretization",
+    [bd.Ritz(1), bd.Ritz(1, "eigenfunctions"), bd.Ritz(1, "moments"), bd.Fem(2), bd.Fem(2, on_each=1)],
+    ids=str,
+)
+def test_no_error_is_stated_by_a_model_with_itself(discretization: bd.Discretization) -> None:
+    for root_stiffness in (math.inf, 3.0):
+        mount = bd.Mount(0.1, math.pi, math.pi / 2, root_stiffness=root_stiffness)
+        assert np.isinf(bd.natural_modes(bd.Scene(UNIFORM, mount), 1.0, 1, discretization).error).all()
+    inward = bd.Scene(UNIFORM, bd.Mount(2.0, 0.0, math.pi / 2))
+    assert np.isinf(bd.critical_point(inward, discretization).error)
+
+
+def test_moments_between_masses_that_are_those_of_the_coarser_model() -> None:
+    """Between many masses a moment is linear: more of them may be asked for, but no further function."""
+    masses = [bd.PointMass(k / 11, 0.03) for k in range(1, 11)]
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, point_masses=masses)
+    scene = bd.Scene(beam, CLAMPED)
+    model = Model(scene, bd.Ritz(20, "moments"))
+    assert model.coarse_solver.size == model.solver.size
+    assert np.isinf(bd.natural_modes(scene, 1.0, 3, model.discretization).error).all()
+    assert (
+        bd.natural_modes(scene, 1.0, 3, tolerance=1e-2).error.max() <= 1e-2
+    )  # by one with further functions
+
+
+@pytest.mark.parametrize("functions", [1, 2, 3])
+def test_few_moments(functions: int) -> None:
+    """Too few for inertia and tension to cause others."""
+    found = bd.natural_modes(bd.Scene(BEAM, CLAMPED), 1.0, 1, bd.Ritz(functions, "moments"))
+    best = bd.natural_modes(bd.Scene(BEAM, CLAMPED), 1.0, 1, bd.Ritz(12))
+    assert best.frequency[0] <= found.frequency[0] * (1 + 1e-12)  # a Rayleigh quotient, but for rounding
+
+
+def test_each_field_has_more_functions_than_in_the_coarser_model() -> None:
+    """The stretch has more here, but bending has not: its error would be stated as rounding."""
+    masses = (bd.PointMass(0.3, 0.2), bd.PointMass(0.7, 0.1))
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=3e3, point_masses=masses)
+    scene = bd.Scene(beam, CLAMPED, physics=bd.Physics(stretch=True))
+    for functions in range(2, 25):
+        model = Model(scene, bd.Ritz(functions, "moments"))
+        bending, coarse = model.equations.blocks["bending"], model.equations.coarse
+        if coarse is not None and np.isin(np.arange(bending.start, bending.stop), coarse).all():
+            assert np.isinf(bd.natural_modes(scene, 1.0, 1, model.discretization).error).all()
+            return
+    raise AssertionError("no basis has as many functions of bending as the coarser one")
