@@ -77,7 +77,7 @@ def campbell(
     labels
         Names of the scenes, separated by commas; default: those of the files.
     length
-        Length with its unit of the blades whose files do not say it (TipRad - HubRad).
+        Length with its unit of the blades whose files do not say it (TipRad - HubRad), one for all.
     hub_radius
         Distance of the root from the axis of rotation with its unit, likewise.
     bounds

@@ -10,6 +10,7 @@ import numpy as np
 from beamdyn.common.assignment import assign
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
+from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.modal.eigen import Eigen
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.model import Model
@@ -49,7 +50,12 @@ class Simple:
             discretization = discretization.coarser()
             model = Model(model.scene, discretization)
         spaces = discretization.spaces(model.scene.beam)
-        if model.scene.beam.breakpoints == model.scene.modelled_beam.breakpoints:
+        beam, modelled = model.scene.beam, model.scene.modelled_beam
+        if isinstance(spaces, MomentSpaces):  # cells and forces follow every stiffness, of stretch, too
+            same = beam == modelled
+        else:
+            same = beam.breakpoints == modelled.breakpoints
+        if same:
             return cls(model.scene, spaces, model.equations)
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
