@@ -339,3 +339,21 @@ def test_commands_say_it_below_the_table_and_in_json(
 def test_no_warning_below_a_stated_tolerance(scene_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["modes", str(scene_file), "--tolerance", "0.1"]) == 0
     assert "exceeds" not in capsys.readouterr().err
+
+
+def test_an_effect_left_out_of_a_blade_whose_axial_stiffness_jumps() -> None:
+    """A stiffness that is not modelled, and needs more cells than all others, changes no function."""
+    x = np.linspace(0, 1, 11)
+    axial = np.where(np.arange(11) % 2, 1e10, 1e7)
+    beam = bd.Beam.from_stiffness(
+        10.0,
+        *(bd.Table(x.tolist(), v.tolist()) for v in (100 * (1.2 - x), 1e6 * (1.2 - x) ** 2)),
+        axial_stiffness=bd.Table(x.tolist(), axial.tolist()),
+        rotary_inertia=bd.Table(x.tolist(), (5 * (1.2 - x)).tolist()),
+    )
+    scene = bd.Scene(beam, bd.Mount(1.0, math.pi, math.pi / 2))
+    without = bd.natural_modes(scene, 5.0, 4)
+    with_it = bd.natural_modes(replace(scene, physics=bd.Physics(rotary_inertia=True)), 5.0, 4)
+    changes = with_it.frequency / without.frequency - 1
+    stated = without.left_out["rotary inertia of sections"]
+    np.testing.assert_allclose(stated, changes, rtol=0.1)  # to the first order of changes of 3 % and less
