@@ -11,6 +11,7 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
+_ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
 _REGULAR, _IRREGULAR = (1.0, 0.01), (2.0, 0.3)  # parts of a mode's distance, and of the largest, elsewhere
@@ -77,7 +78,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         truncation = relative / 3 if order is not None else _ritz_error_of(model, distance, squared)
-    error = truncation + fine.rounding[:, :modes] + integration_error(model, squared)
+    error = truncation + _ROUNDING * fine.rounding[:, :modes] + integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
@@ -109,7 +110,7 @@ def error_of_assumed_modes(
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
-        error = _ritz_error(distance, squared, lowest_at_rest, _MARGIN, _REGULAR) + rounding
+        error = _ritz_error(distance, squared, lowest_at_rest, _MARGIN, _REGULAR) + _ROUNDING * rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
     resolved &= ~_may_be_passed(squared, distance, resolved)
     return np.where(resolved, error, np.inf)

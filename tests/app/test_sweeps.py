@@ -100,7 +100,7 @@ def test_largest_steady_amplitude_is_that_of_a_dense_search():
         "model.damping_ratio=0.005:0.01:2",
         "amplitude,largest_amplitude,speed_of_largest",
     )
-    amplitude, largest, speed = found.found
+    amplitude, largest, speed = found.found[:3]  # then the model error that stands beside them
     for i, ratio in enumerate((0.005, 0.01)):
         work = OpenDocument(SCENE)
         work.put("model.damping_ratio", str(ratio))

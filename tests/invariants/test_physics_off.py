@@ -44,11 +44,11 @@ ANALYSES: dict[str, Callable[[bd.Scene], list[np.ndarray | float]]] = {
 }
 FACTORIZATIONS: dict[ModuleType, tuple[str, ...]] = {  # by the module in which the name is looked up
     np.linalg: ("cholesky", "eigh", "eigvalsh", "solve", "eig"),
-    scipy.linalg: ("eigh", "eig", "cho_factor", "solve_triangular"),
+    scipy.linalg: ("eigh", "eig", "cho_factor"),
     critical: ("eigh",),
     buckling: ("eigh",),
-    large: ("cho_factor", "solve_triangular"),
-    eigen: ("solve_triangular",),
+    large: ("cho_factor", "solve_lower", "solve_lower_transposed"),
+    eigen: ("solve_lower", "solve_lower_transposed"),
 }
 
 
