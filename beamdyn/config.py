@@ -51,7 +51,14 @@ def load_scene(path: str | PathLike[str]) -> Scene:
         If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
         the CSV file is named by its line.
     """
-    data = parse(read(path), str(path))
+    text = read(path)
+    try:
+        data = parse(text, str(path))
+    except ConfigError as error:
+        if Path(path).suffix.lower() == ".toml":
+            raise
+        hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
+        raise ConfigError(str(path), [*error.mistakes, hint]) from None
     return scene_from_dict(_with_station_file(data, Path(path).parent), str(path))
 
 

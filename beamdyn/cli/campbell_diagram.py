@@ -77,7 +77,7 @@ def campbell(
     labels
         Names of the scenes, separated by commas; default: those of the files.
     length
-        Length with its unit of the blades whose files do not say it (TipRad - HubRad), one for all.
+        Length with its unit of the one blade whose file does not say it (TipRad - HubRad).
     hub_radius
         Distance of the root from the axis of rotation with its unit, likewise.
     bounds
@@ -139,10 +139,13 @@ class _BladeFile(NamedTuple):
 def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_BladeFile]:
     """Read the files; the options are for the blades of other programs alone."""
     given = {"length": length, "hub_radius": hub_radius}
-    unused = [name for name, text in given.items() if text is not None]
-    if unused and all(path.suffix.lower() == ".toml" for path in paths):
-        option = f"--{unused[0].replace('_', '-')}"
-        raise ValueError(f'{option} = "{given[unused[0]]}": scenes (.toml) have their own; leave it out')
+    decks = [path for path in paths if path.suffix.lower() != ".toml"]
+    for name, text in given.items():
+        if text is not None and len(decks) != 1:
+            why = "scenes (.toml) have their own; leave it out"
+            if decks:
+                why = "it is that of one blade; beamdyn import writes each as a scene with its own"
+            raise ValueError(f'--{name.replace("_", "-")} = "{text}": {why}')
     return [_read(path, **given) for path in paths]
 
 

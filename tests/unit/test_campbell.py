@@ -395,6 +395,10 @@ MISTAKES = {
     "one label twice": ((BLADE, BLADE, "--top-speed", "5 rpm"), ("blade", "--labels")),
     "labels alike": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a, a"), ('"a"', "its own")),
     "length of a scene": ((BLADE, "--top-speed", "5 rpm", "--length", "5 m"), ("--length", "leave it out")),
+    "length of two": (
+        (BLADE.with_suffix(".dat"), "b.dat", "--top-speed", "5 rpm", "--length", "5 m"),
+        ("--length", "one blade", "import"),
+    ),
     "one label of two": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a"), ("--labels", "2 scenes")),
 }  # fmt: skip
 
