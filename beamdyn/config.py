@@ -58,7 +58,7 @@ def load_scene(path: str | PathLike[str]) -> Scene:
         if Path(path).suffix.lower() == ".toml":
             raise
         hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
-        raise ConfigError(str(path), [*error.mistakes, hint]) from None
+        raise ConfigError(str(path), ["; ".join([*error.mistakes, hint])]) from None
     return scene_from_dict(_with_station_file(data, Path(path).parent), str(path))
 
 
