@@ -211,7 +211,7 @@ def test_frequencies_of_beamdyn(number):
 
 @pytest.mark.parametrize("number", some(4))
 def test_frequencies_of_beamdyn_by_elements(number):
-    assert_frequencies(number, bd.Fem(40), FEM)
+    assert_frequencies(number, bd.Fem(80), FEM)
 
 
 @by_case
