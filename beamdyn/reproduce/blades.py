@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.comparison import Comparison
 from beamdyn.published import load
-from beamdyn.reproduce.entries import Entry
+from beamdyn.reproduce.entries import PrintedValue
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
@@ -47,7 +47,7 @@ def blade_scene(name: str, physics: Physics = _TWO_PLANES, twisted: bool = True)
     return Scene(beam, Mount(data["hub_radius"], math.pi, math.pi / 2), physics=physics)
 
 
-def entries_of_blades(discretization: str) -> Iterator[tuple[str, Entry]]:
+def entries_of_blades(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the frequencies [Hz] of all blades, each under the title of its blade."""
     for row in load("blades")["blade"]:
         title, where = stations(row["name"])["title"], f"{row['speed_rpm']:g} rpm"
@@ -56,7 +56,7 @@ def entries_of_blades(discretization: str) -> Iterator[tuple[str, Entry]]:
                 modes = _modes(row, len(printed), discretization, twisted)
                 for i, text in enumerate(printed):
                     error = float(modes.error[i] * modes.frequency[i])
-                    yield title, Entry(where, i + 1, text, float(modes.frequency[i]), error)
+                    yield title, PrintedValue(where, i + 1, text, float(modes.frequency[i]), error)
 
 
 def printed_by_bmodes() -> Iterator[Comparison]:

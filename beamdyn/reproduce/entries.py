@@ -10,7 +10,7 @@ from beamdyn.common.digits import supported
 
 
 @dataclass(frozen=True)
-class Entry:
+class PrintedValue:
     """A printed value beside ours; where the print errs, with a third computation.
 
     Parameters
@@ -162,7 +162,7 @@ def _count(number: int, one: str, many: str) -> str:
     return f"{number} {one if number == 1 else many}" if number else ""
 
 
-def summarize_entries(source: str, discretization: str, entries: Sequence[Entry]) -> Summary:
+def summarize_entries(source: str, discretization: str, entries: Sequence[PrintedValue]) -> Summary:
     """Summarize the comparison of all values of a source."""
     right = [entry for entry in entries if not entry.is_erratum]
     last_digits = sum(entry.is_erratum and abs(entry.off_by) < 1 for entry in entries)

@@ -18,7 +18,7 @@ from beamdyn.equations.fem import Fem
 from beamdyn.equations.ritz import Ritz
 from beamdyn.published import load
 from beamdyn.reproduce.blades import entries_of_blades, stations
-from beamdyn.reproduce.entries import Entry, Summary, summarize_entries
+from beamdyn.reproduce.entries import PrintedValue, Summary, summarize_entries
 from beamdyn.reproduce.others import nondimensional_scene
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount
@@ -36,13 +36,13 @@ _STRETCHED: dict[str, tuple[Discretization, Discretization]] = {
 }
 _ROUNDING = 1e-13  # relative error of a converged stretch
 
-Errata = Sequence[tuple[str, Entry]]
+Errata = Sequence[tuple[str, PrintedValue]]
 
 
 def compare_papers() -> tuple[list[Summary], Errata]:
     """Compare all values: summaries by source and discretization, and the errata with their sources."""
     summaries: list[Summary] = []
-    errata: dict[tuple[str, str, int], tuple[str, Entry]] = {}
+    errata: dict[tuple[str, str, int], tuple[str, PrintedValue]] = {}
     for source in _all_entries("ritz"):
         for name, discretization in _DISCRETIZATIONS.items():
             entries = _all_entries(discretization)[source]
@@ -54,9 +54,9 @@ def compare_papers() -> tuple[list[Summary], Errata]:
 
 
 @cache
-def _all_entries(discretization: str) -> Mapping[str, Sequence[Entry]]:
+def _all_entries(discretization: str) -> Mapping[str, Sequence[PrintedValue]]:
     """All values by their source."""
-    groups: dict[str, list[Entry]] = {}
+    groups: dict[str, list[PrintedValue]] = {}
     for paper in PAPERS:
         for case in cases(paper):
             groups.setdefault(case["name"], []).extend(entries_of_case(case, discretization))
@@ -92,7 +92,7 @@ def _section(row: Mapping[str, Any]) -> dict[str, Any]:
     return {"mass": (width * thickness).coef, "stiffness": (width * thickness**3).coef}
 
 
-def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[Entry]:
+def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[PrintedValue]:
     """Compare the values of a case."""
     scene, printed, factor = nondimensional_scene(dict(case)), case["frequency"], case["factor"]
     modes = natural_modes(scene, case["gamma"], len(printed), discretization)
@@ -100,7 +100,7 @@ def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[En
         ours = float(factor * abs(modes.eigenvalue[i]))
         exact = case["exact"].get(str(i + 1), "")
         bounds = _guaranteed(scene, case["gamma"], i, factor) if exact else None
-        yield Entry(case["where"], i + 1, text, ours, float(modes.error[i]) * ours, exact, bounds)
+        yield PrintedValue(case["where"], i + 1, text, ours, float(modes.error[i]) * ours, exact, bounds)
 
 
 def _guaranteed(scene: Scene, speed: float, index: int, factor: float) -> tuple[float, float] | None:
@@ -112,7 +112,7 @@ def _guaranteed(scene: Scene, speed: float, index: int, factor: float) -> tuple[
     return unit * float(bounds.lower[index]), unit * float(bounds.upper[index])
 
 
-def _cable(discretization: str) -> Iterator[tuple[str, Entry]]:
+def _cable(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the frequencies over speed of a hinged beam of hardly any stiffness with those of a cable."""
     cable = load("bir_2009")["cable"]
     speed, printed = cable["gamma"], cable["ratio"]
@@ -122,10 +122,10 @@ def _cable(discretization: str) -> Iterator[tuple[str, Entry]]:
     )
     for i, text in enumerate(printed):
         ours = float(abs(modes.eigenvalue[i])) / speed
-        yield cable["name"], Entry(f"gamma {speed:g}", i + 1, text, ours, float(modes.error[i]) * ours)
+        yield cable["name"], PrintedValue(f"gamma {speed:g}", i + 1, text, ours, float(modes.error[i]) * ours)
 
 
-def _stretch(discretization: str) -> Iterator[tuple[str, Entry]]:
+def _stretch(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the centrifugal stretch [m] with its closed form."""
     given = load("code_aster")["stretch"]
     area = 1e-4  # m2: any, as the stretch does not depend on it
@@ -133,7 +133,7 @@ def _stretch(discretization: str) -> Iterator[tuple[str, Entry]]:
     beam = Beam.from_stiffness(given["length"]["value"], density * area, 1.0, axial_stiffness=modulus * area)
     coarse, fine = (tip_stretch(beam, given["speed"]["value"], d) for d in _STRETCHED[discretization])
     error = abs(fine - coarse) + _ROUNDING * abs(fine)
-    yield given["name"], Entry("tip", 1, given["stretch"], fine, error)
+    yield given["name"], PrintedValue("tip", 1, given["stretch"], fine, error)
 
 
 def tip_stretch(beam: Beam, speed: float, discretization: Discretization) -> float:

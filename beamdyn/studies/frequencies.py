@@ -13,7 +13,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.choice import DEFAULT_TARGET, DiscretizationChoice, list_models
 from beamdyn.modal.many_designs import ManyModes, solve_many
-from beamdyn.studies.similar import Family, SimilarDesigns
+from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
 CHUNK = 1024  # designs of a task
 _ENTRIES = 300_000  # of matrices of one size at once, which fit into the processor's cache
@@ -71,7 +71,7 @@ class SimilarFrequencies(FieldsOnly):
         return DEFAULT_TARGET if self.tolerance is None else self.tolerance
 
     @cached_property
-    def _families(self) -> dict[Discretization, Family]:
+    def _families(self) -> dict[Discretization, PencilFamily]:
         return {}
 
     def bases(self) -> Iterator[Discretization]:

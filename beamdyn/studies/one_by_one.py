@@ -31,7 +31,7 @@ class DesignAnswer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Question:
+class StudyQuestion:
     """What is asked of every design.
 
     Parameters
@@ -61,21 +61,21 @@ class Question:
         return self.modes if self.what == "frequencies" else 1
 
 
-def _frequencies(question: Question, design: Mapping[str, float]) -> DesignAnswer:
+def _frequencies(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
     speed = design.get(SPEED, question.speed)
     scene = scene_of(question.scene, design)
     found = natural_modes(scene, speed, question.modes, question.discretization, question.tolerance)
     return DesignAnswer(found.frequency, found.error, found.status, found.warnings)
 
 
-def _critical_speed(question: Question, design: Mapping[str, float]) -> DesignAnswer:
+def _critical_speed(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
     scene = scene_of(question.scene, design)
     found = critical_point(scene, question.discretization, question.tolerance)
     answer = (np.array([each]) for each in (found.speed, found.error, _state_of(found)))
     return DesignAnswer(*answer, warnings=found.warnings)
 
 
-def _amplitude(question: Question, design: Mapping[str, float]) -> DesignAnswer:
+def _amplitude(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
     scene, tolerance = scene_of(question.scene, design), question.tolerance or _OF_RESPONSES
     speeds = [design.get(SPEED, question.speed)]
     found = steady_response(scene, speeds, tolerance=tolerance, discretization=question.discretization)
@@ -91,20 +91,20 @@ def _state_of(found: CriticalPoint) -> str:
 
 
 # Analyses by what is asked for, with the unit of the answer.
-ANALYSES: dict[str, tuple[str, Callable[[Question, Mapping[str, float]], DesignAnswer]]] = {
+ANALYSES: dict[str, tuple[str, Callable[[StudyQuestion, Mapping[str, float]], DesignAnswer]]] = {
     "frequencies": ("Hz", _frequencies),
     "critical_speed": ("rad/s", _critical_speed),
     "amplitude": ("m", _amplitude),
 }
 
 
-def answer_designs(question: Question, designs: Sequence[Mapping[str, float]]) -> list[DesignAnswer]:
+def answer_designs(question: StudyQuestion, designs: Sequence[Mapping[str, float]]) -> list[DesignAnswer]:
     """Answer a question of designs one by one; one that is refused has the reason as its warning."""
     with unannounced():
         return [_answer(question, design) for design in designs]
 
 
-def _answer(question: Question, design: Mapping[str, float]) -> DesignAnswer:
+def _answer(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
     analysis: Any = ANALYSES[question.what][1]
     try:
         return analysis(question, design)

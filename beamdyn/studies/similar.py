@@ -182,13 +182,13 @@ class SimilarDesigns(FieldsOnly):
         mount = Mount(abs(axial), 0.0 if axial >= 0 else math.pi, math.acos(math.sqrt(in_plane)))
         return Scene(replace(self.reference.beam, tip=tip), mount)
 
-    def family(self, discretization: Discretization) -> Family:
+    def family(self, discretization: Discretization) -> PencilFamily:
         """The matrices of all designs in one basis."""
         models = [Model(scene, discretization) for scene in self._node_scenes]
         pencils = [model.equations.steady() for model in models]
         coarse = models[0].equations.coarse
         assert coarse is not None
-        return Family(
+        return PencilFamily(
             K0=pencils[0].K0,
             M=np.array([pencil.M for pencil in pencils]),
             K2=np.array([pencil.K2 for pencil in pencils]),
@@ -220,7 +220,7 @@ class SimilarDesigns(FieldsOnly):
 
 
 @dataclass(frozen=True)
-class Family:
+class PencilFamily:
     """Matrices of T scenes, between which those of designs are interpolated.
 
     Parameters

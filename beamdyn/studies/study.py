@@ -42,7 +42,7 @@ from beamdyn.studies.inputs import (
     scene_of,
     shape_of,
 )
-from beamdyn.studies.one_by_one import ANALYSES, CHUNK, REFUSED, DesignAnswer, Question, answer_designs
+from beamdyn.studies.one_by_one import ANALYSES, CHUNK, REFUSED, DesignAnswer, StudyQuestion, answer_designs
 from beamdyn.studies.result import Study
 from beamdyn.studies.similar import SimilarDesigns, differ_in_numbers_only
 
@@ -118,10 +118,10 @@ def study(
     speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
     workers = _check_means(workers, executor, progress)
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-    question = Question(scene, what, speed, modes, discretization, tolerance)
+    question = StudyQuestion(scene, what, speed, modes, discretization, tolerance)
     request = _Request(question, inputs, combine)
     request.check()
-    run = _Run(workers, executor, progress or (lambda done, total: None))
+    run = _TaskRunner(workers, executor, progress or (lambda done, total: None))
     answer = request.batched(run) or request.one_by_one(run)
     shape = (*shape_of(inputs, combine), *((modes,) if what == "frequencies" else ()))
     return Study(
@@ -150,7 +150,7 @@ def _check_means(workers: int, executor: Executor | None, progress: Progress | N
 
 
 @dataclass(frozen=True)
-class _Run:
+class _TaskRunner:
     """Where tasks are run: in this process, in workers, or by an executor."""
 
     workers: int
@@ -178,7 +178,7 @@ def _solve(pair: tuple[Callable[[Any], Any], Any]) -> Any:
 
 
 @dataclass(frozen=True)
-class _Answer:
+class _AnswersOfAll:
     """Answers (N, k) of all designs in the order of the product."""
 
     value: np.ndarray
@@ -193,7 +193,7 @@ class _Answer:
 class _Request:
     """A question of designs, whose arguments have been checked one by one."""
 
-    question: Question
+    question: StudyQuestion
     inputs: tuple[VariedInput, ...]
     combine: str
 
@@ -217,7 +217,7 @@ class _Request:
 
     # All at once ------------------------------------------------------------------------------------
 
-    def batched(self, run: _Run) -> _Answer | None:
+    def batched(self, run: _TaskRunner) -> _AnswersOfAll | None:
         """The answer by batched eigenproblems; None where designs differ in more than numbers."""
         question = self.question
         names = self.names - {SPEED}
@@ -235,7 +235,7 @@ class _Request:
             frequency = np.where(squared >= 0, np.sqrt(np.abs(squared)) / (2 * np.pi), np.nan)
         warnings = [*_warn_of_batch(task, found, question)]
         basis = f"Ritz, at most {found.functions} functions, batched"
-        return _Answer(frequency, error, status, warnings, basis, "the coarser basis of each")
+        return _AnswersOfAll(frequency, error, status, warnings, basis, "the coarser basis of each")
 
     @property
     def _others(self) -> list[VariedInput]:
@@ -264,7 +264,7 @@ class _Request:
 
     # One by one -------------------------------------------------------------------------------------
 
-    def one_by_one(self, run: _Run) -> _Answer:
+    def one_by_one(self, run: _TaskRunner) -> _AnswersOfAll:
         """The answer by single calls."""
         columns = columns_of(self.inputs, self.combine)
         designs = [
@@ -279,14 +279,14 @@ class _Request:
             raise ValueError(f"none of {len(found)} designs has an answer; {found[0].warnings[0]}")
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
         warnings = [*_warn_of_singles(designs, found, self.inputs)]
-        return _Answer(value, error, status, warnings, "single calls", "that of each call")
+        return _AnswersOfAll(value, error, status, warnings, "single calls", "that of each call")
 
 
 @dataclass(frozen=True)
 class _Single:
     """A task of designs that are solved one by one."""
 
-    question: Question
+    question: StudyQuestion
 
     def __call__(self, designs: Sequence[Mapping[str, float]]) -> list[DesignAnswer]:
         return answer_designs(self.question, designs)
@@ -310,7 +310,7 @@ def _check_scenes(scene: Scene, columns: Mapping[str, np.ndarray], combine: str)
 # Warnings -----------------------------------------------------------------------------------------
 
 
-def _warn_of_batch(task: SimilarFrequencies, found: SolvedDesigns, question: Question) -> Iterator[str]:
+def _warn_of_batch(task: SimilarFrequencies, found: SolvedDesigns, question: StudyQuestion) -> Iterator[str]:
     """Yield what `natural_modes` warns of, for the design where it is worst, with the number of such."""
     yield from warn_of_left_out(question.scene)
     speeds = task.speeds

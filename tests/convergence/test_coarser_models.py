@@ -41,7 +41,7 @@ def test_part_of_the_equations_is_the_coarser_model(mount: bd.Mount, physics: bd
         found = model.coarse_solver.solve(SPEEDS, modes)
         each = model.coarser.solver.solve(SPEEDS, modes)
         assert model.coarse_solver.size == model.coarser.solver.size < model.solver.size
-        error = np.abs(found.eigenvalue**2 - each.eigenvalue**2)  # of squares: twice that of eigenvalues
+        error = np.abs(found.eigenvalue**2 - each.eigenvalue**2)  # squares: twice; stated: 1.5 times
         assert (error <= 3 * (found.rounding + each.rounding) * np.abs(each.eigenvalue) ** 2).all()
 
 

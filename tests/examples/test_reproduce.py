@@ -13,7 +13,7 @@ from beamdyn.common.comparison import Comparison
 from beamdyn.common.edge.tables import comparison_table, console
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, large_deflection, motion, others, printed_tables
-from beamdyn.reproduce.entries import Entry, summarize_entries
+from beamdyn.reproduce.entries import PrintedValue, summarize_entries
 
 
 @pytest.fixture(scope="module")
@@ -225,7 +225,7 @@ def test_tables_of_papers_by_elements():
     assert all(s.as_expected for s in summaries)
 
 
-AGREES = Entry("x", 1, "23.02", 23.0229, 1e-9)
+AGREES = PrintedValue("x", 1, "23.02", 23.0229, 1e-9)
 ERRATUM = replace(AGREES, printed="23.03", exact="23.0229", bounds=(23.02289, 23.02291))
 
 

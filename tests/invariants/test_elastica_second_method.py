@@ -211,7 +211,9 @@ def test_frequencies_of_beamdyn(number):
 
 @pytest.mark.parametrize("number", some(4))
 def test_frequencies_of_beamdyn_by_elements(number):
-    assert_frequencies(number, bd.Fem(80), FEM)
+    # A wedge's third mode has 3.6e-6 with 40 elements; the promise is of at most 100.
+    elements = 80 if CASES[number].name == "wedge at 45 deg" else 40
+    assert_frequencies(number, bd.Fem(elements), FEM)
 
 
 @by_case

@@ -26,7 +26,7 @@ class Answered:
 
 
 @dataclass(frozen=True)
-class Attempt:
+class OpenEntries:
     """Entries to be solved; it shares nothing that changes, so that a thread of its own may solve it.
 
     Parameters
@@ -109,9 +109,9 @@ class OpenDocument:
         """Whether there is an answer, but to earlier entries."""
         return screen.name in self.answered and self.stale(screen)
 
-    def attempt(self, screen: Screen) -> Attempt:
+    def attempt(self, screen: Screen) -> OpenEntries:
         """The present entries, to be solved."""
-        return Attempt(screen, self.needed(screen), self.inputs)
+        return OpenEntries(screen, self.needed(screen), self.inputs)
 
     def keep(self, screen: Screen, outcome: Answered | Mapping[str, list[str]]) -> bool:
         """Keep an answer; or keep the last one and say in `mistakes` why there is no other."""

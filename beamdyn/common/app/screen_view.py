@@ -15,7 +15,7 @@ from beamdyn.common.app.folded_drawing import FoldedDrawing
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, changed_texts, describe_place, draw_sheet
-from beamdyn.common.app.open_document import Attempt, OpenDocument
+from beamdyn.common.app.open_document import OpenDocument, OpenEntries
 from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.app.sweep_panel import SweepPanel
 from beamdyn.common.app.threads import in_thread
@@ -40,7 +40,7 @@ class ScreenView:
     def __init__(self, work: OpenDocument, screen: Screen, edited: Callable[[], object]) -> None:
         self.work, self.screen, self._edited = work, screen, edited
         self._drawn = ""
-        self._newest: Attempt | None = None  # until it has been solved
+        self._newest: OpenEntries | None = None  # until it has been solved
         self._awaits: asyncio.Task[None] | None = None  # an answer that did not come soon
         with ui.element("div").classes("screen"):
             self._left: Any = ui.column().classes("left gap-1")
@@ -128,7 +128,7 @@ class ScreenView:
                 self.form.mark({})  # it is no quick mistake
         self.state()
 
-    async def _await(self, attempt: Attempt, future: Future[Any]) -> None:
+    async def _await(self, attempt: OpenEntries, future: Future[Any]) -> None:
         """Show the answer to the newest entries when it comes."""
         try:
             outcome = await asyncio.wrap_future(future)
