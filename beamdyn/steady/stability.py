@@ -25,7 +25,8 @@ import numpy as np
 import scipy.sparse
 from scipy.sparse.linalg import ArpackError, eigs
 
-from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, convolution_matrix, generate_harmonics
+from beamdyn.steady.harmonic_balance import convolution_matrix
+from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
 
 _TONGUE_ORDER = 2  # largest number of interactions with the periodic coefficients by which two modes resonate
 _ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding error
