@@ -70,7 +70,9 @@ def _real_basis(harmonics: Sequence[Pair]) -> np.ndarray:
     return T
 
 
-def _assemble(system: PeriodicSystem, harmonics: Sequence[Pair], T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _assemble(
+    system: PeriodicSystem, harmonics: Sequence[Pair], T: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Assemble real equations A y = b: K - Omega_h^2 M, i Omega_h C, and the periodic coefficients."""
     h = np.array(harmonics)
     S, H, n = len(system.rates), len(h), system.size
@@ -87,7 +89,8 @@ def _assemble(system: PeriodicSystem, harmonics: Sequence[Pair], T: np.ndarray) 
         R = np.real(T.conj().T @ convolution_matrix(spectrum, harmonics) @ T)
         A += np.einsum("sab,sij->saibj", R @ rate if order else R, matrix)
     load = sum(
-        (select_harmonics(f, h)[..., None] * vector[:, None] for f, vector in system.loads), np.zeros((S, H, n))
+        (select_harmonics(f, h)[..., None] * vector[:, None] for f, vector in system.loads),
+        np.zeros((S, H, n)),
     )
     return A.reshape(S, H * n, H * n), np.real(T.conj().T @ load).reshape(S, H * n)
 

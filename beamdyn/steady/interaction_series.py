@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamdyn.steady.mean_modes import MeanModes
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, list_harmonics, select_harmonics
 
 _MOST_TERMS = 12  # each then shrinks the error to a twentieth; where it does not, the series is given up
@@ -43,8 +44,8 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
     try:
-        mean = _MeanModes.of_system(system)
-    except np.linalg.LinAlgError:  # the mass is singular
+        mean = MeanModes.of_system(system)
+    except np.linalg.LinAlgError:
         return response, settled
     half = [h for h in harmonics if h >= (0, 0)]  # those of the others are conjugate
     with np.errstate(all="ignore"):  # where it diverges, and where a harmonic is in resonance
@@ -63,7 +64,8 @@ def _sum(series: _Series) -> tuple[np.ndarray, np.ndarray]:
     done = np.zeros(len(left), dtype=bool)
     for _ in range(_MOST_TERMS):
         last, y = y, series.respond(y)
-        settled = _size(y - last) <= _SETTLED * _size(y)
+        size = _size(y)
+        settled = (_size(y - last) <= _SETTLED * size) & np.isfinite(size)
         done[left[settled]] = True
         found[..., left[settled]] = y[..., settled]
         if settled.all():
@@ -75,35 +77,7 @@ def _sum(series: _Series) -> tuple[np.ndarray, np.ndarray]:
 
 def _size(y: np.ndarray) -> np.ndarray:
     """Size (S,) of responses (H, n, S)."""
-    return (np.abs(y.real) + np.abs(y.imag)).sum(axis=(0, 1))
-
-
-@dataclass(frozen=True)
-class _MeanModes:
-    """Modes of the mean equations without damping, of unit mass.
-
-    Parameters
-    ----------
-    squared : ndarray, shape (S, n)
-        Squared frequencies [rad2/s2].
-    shapes : ndarray, shape (S, n, n)
-        Modes, in columns.
-    """
-
-    squared: np.ndarray
-    shapes: np.ndarray
-
-    @classmethod
-    def of_system(cls, system: PeriodicSystem) -> _MeanModes:
-        """Raises a LinAlgError if the mass is singular."""
-        K, _, M = system.mean
-        inverse = np.linalg.inv(np.linalg.cholesky(M))
-        squared, vectors = np.linalg.eigh(inverse @ K @ np.swapaxes(inverse, 1, 2))
-        return cls(squared, np.swapaxes(inverse, 1, 2) @ vectors)
-
-    def transform(self, matrix: np.ndarray) -> np.ndarray:
-        """Matrices (S, n, n) in these modes, with the rates last: shape (n, n, S)."""
-        return np.ascontiguousarray(np.moveaxis(np.swapaxes(self.shapes, 1, 2) @ matrix @ self.shapes, 0, 2))
+    return (np.abs(np.real(y)) + np.abs(np.imag(y))).sum(axis=(0, 1))
 
 
 @dataclass(frozen=True)
@@ -165,7 +139,7 @@ class _Series:
     products: tuple[_Products, ...]
 
     @classmethod
-    def of_system(cls, system: PeriodicSystem, mean: _MeanModes, harmonics: list[Pair]) -> _Series:
+    def of_system(cls, system: PeriodicSystem, mean: MeanModes, harmonics: list[Pair]) -> _Series:
         """Series for harmonics of which none is the opposite of another."""
         h, C = np.array(harmonics), system.mean[1]
         rate = 1j * (h @ system.rates.T)[:, None]
@@ -185,8 +159,8 @@ class _Series:
     def __getitem__(self, chosen: np.ndarray) -> _Series:
         damping = None if self.damping is None else self.damping[..., chosen]
         products = tuple(each[chosen] for each in self.products)
-        arrays = (each[..., chosen] for each in (self.load, self.compliance, self.rate))
-        return _Series(*arrays, damping, products)
+        load, compliance, rate = (each[..., chosen] for each in (self.load, self.compliance, self.rate))
+        return _Series(load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
         """Response (H, n, S) to the load, and to what the last response y couples."""
@@ -200,7 +174,7 @@ class _Series:
 
 
 def _products(
-    varying: tuple[int, np.ndarray, np.ndarray], mean: _MeanModes, harmonics: list[Pair]
+    varying: tuple[int, np.ndarray, np.ndarray], mean: MeanModes, harmonics: list[Pair]
 ) -> _Products:
     """Products with the periodic coefficients (order, spectrum, matrices) among some harmonics."""
     order, spectrum, matrix = varying

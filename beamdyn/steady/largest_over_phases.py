@@ -1,7 +1,7 @@
 """Largest value, over two phases, of a sum of lines.
 
-The sum is sampled at so many phases as its strong lines need; the largest maxima of the samples are refined by
-Newton's method with all lines.
+The sum is sampled at so many phases as its strong lines need; the largest maxima of the samples are refined
+by Newton's method with all lines.
 """
 
 from __future__ import annotations
@@ -93,13 +93,11 @@ def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) ->
     """Samples of |u| over both phases (S, N, N), of the lines with |h| up to a degree (2,)."""
     S, d, _ = amplitude.shape
     kept, grid = np.flatnonzero((np.abs(harmonics) <= degree).all(axis=1)), _grid(degree)
-    theta, chi = (
-        2 * np.pi / N * (np.arange(N) + offset) for N, offset in zip(grid, _OFFSET, strict=True)
-    )
+    theta, chi = (2 * np.pi / N * (np.arange(N) + offset) for N, offset in zip(grid, _OFFSET, strict=True))
     j, k = harmonics[kept].T[..., None, None]
     angle = (j * theta[:, None] + k * chi).reshape(len(kept), grid.prod())
     a = amplitude[..., kept].reshape(S * d, -1)
-    u = (a.real @ np.cos(angle) - a.imag @ np.sin(angle)).reshape(S, d, *grid)
+    u = (np.real(a) @ np.cos(angle) - np.imag(a) @ np.sin(angle)).reshape(S, d, *grid)
     return np.abs(u[:, 0]) if d == 1 else np.hypot.reduce(u, axis=1)
 
 
@@ -119,7 +117,7 @@ def _largest_of_three(x: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:
-    """Newton's step (R, 2) towards larger |u|: with magnitudes of the curvatures, so that it avoids saddles."""
+    """Newton's step (R, 2) towards larger |u|: with magnitudes of curvatures, so that it avoids saddles."""
     k, axes = np.linalg.eigh(curvature)
     size = np.abs(k)
     inverse = np.where(size > 1e-8 * size.max(axis=-1, keepdims=True), 1 / np.where(size > 0, size, 1), 0)
@@ -147,9 +145,11 @@ def _evaluate_size(
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Evaluate u (R, d) of a (R, d, H), its gradient and its second derivatives at phases (R, 2)."""
     first = h.astype(float)
-    second = np.concatenate([np.ones((len(h), 1)), -(first[:, :, None] * first[:, None]).reshape(-1, 4)], axis=1)
+    second = np.concatenate(
+        [np.ones((len(h), 1)), -(first[:, :, None] * first[:, None]).reshape(-1, 4)], axis=1
+    )
     angle = (phases @ first.T)[:, None]
     cos, sin = np.cos(angle), np.sin(angle)
-    value = (a.real * cos - a.imag * sin) @ second
-    slope = -(a.real * sin + a.imag * cos) @ first
+    value = (np.real(a) * cos - np.imag(a) * sin) @ second
+    slope = -(np.real(a) * sin + np.imag(a) * cos) @ first
     return value[..., 0], slope, value[..., 1:].reshape(*a.shape[:2], 2, 2)

@@ -373,15 +373,15 @@ def _solve_harmonics(
     complete, levels = len(levels) <= most + 1, levels[: most + 1]
     harmonics, sizes = [h for level in levels for h in level], np.cumsum([0, *map(len, levels)])
     c, error = np.zeros((S, d, sizes[-1]), dtype=complex), np.full(S, np.inf)
-    first = min(3 if steps is None else most + 1, len(levels))
+    first, kept = min(3 if steps is None else most + 1, len(levels)), slice(0)
     for used in range(first - 1, len(levels) + 1):
-        exact, kept = complete and used == len(levels), slice(sizes[used])
+        kept, exact = slice(sizes[used]), complete and used == len(levels)
         unconverged = np.flatnonzero(~(error <= tolerance))
         for part in _split(unconverged, system.size * sizes[used]):
             finer = _solve_tip(system[part], tips[part], harmonics[kept])
-            error[part] = _ROUNDING if exact else _distance(finer, c[part, :, kept])
+            if used >= first:  # the one before is only what this is compared with
+                error[part] = _ROUNDING if exact else _distance(finer, c[part, :, kept])
             c[part, :, kept] = finer
-        error[:] = np.inf if used < first else error
         if (error <= tolerance).all():
             break
     return harmonics[kept], c[..., kept], error
