@@ -171,7 +171,8 @@ def _needed(
     if missing := [name for name in needed if needed[name] and given[name] is None]:
         words = {"length": "the length of the blade", "hub_radius": "the radius of the hub"}
         names, unsaid = " and ".join(missing), " nor ".join(words[name] for name in missing)
-        said = f"{names}: missing; the file does not say {unsaid}: give {names}; {remedy}"
+        options = " and ".join(f"--{name.replace('_', '-')}" for name in missing)
+        said = f"{names}: missing; the file does not say {unsaid}: give {names} ({options}); {remedy}"
         raise ConfigError(str(text.path), [said])
     values = (given[name] if needed[name] else math.nan for name in needed)
     found_length, found_radius = values
