@@ -24,6 +24,7 @@ from beamdyn.common.edge.data_text import (
     plain_name,
     read_data,
 )
+from beamdyn.decks import mode_shapes
 from beamdyn.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
 from beamdyn.decks.stations import Column, Stations, read_stations
 
@@ -61,8 +62,7 @@ _REASONS = {
 _FACTORS = {"AdjBlMs": "BMassDen", "AdjFlSt": "FlpStff", "AdjEdSt": "EdgStff"}
 _DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
 _TUNERS = ("FlStTunr(1)", "FlStTunr(2)")
-_MODES = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
-_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in _MODES.items()}
+_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in mode_shapes.NAMES.items()}
 _BLADE_NAMES = {
     plain_name(name): name
     for name in (

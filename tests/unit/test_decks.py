@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.decks.mode_shapes import fit_mode_polynomials
 from tests.unit import decks_written as written
 
 FILES = {
@@ -275,6 +276,43 @@ def test_a_polynomial_that_is_the_mode_agrees_and_another_does_not(folder):
     assert edge.coefficient_sum == pytest.approx(1.4, rel=1e-12)
     warnings = bd.read_deck(folder / "b.dat", length=40.0, hub_radius=0.0).audit.warnings
     assert any("edge 1 add up to 1.4" in each for each in warnings)
+
+
+def test_fitted_polynomials_are_those_of_the_closed_form():
+    """Of a uniform beam: the best fit of cosh - cos - s (sinh - sin), to the six digits that are written."""
+    scene = bd.Scene(
+        bd.Beam.from_stiffness(40.0, 100.0, 1e8, second_bending_stiffness=4e8), bd.Mount(1.0, math.pi)
+    )
+    x, powers = np.linspace(0, 1, 401), np.arange(2, 7)
+    flap, second, edge = fit_mode_polynomials(scene, 0.0)
+    for fitted, k in ((flap, 1.8751040687), (second, 4.6940911330), (edge, 1.8751040687)):
+        s = (math.cosh(k) + math.cos(k)) / (math.sinh(k) + math.sin(k))
+        shape = np.cosh(k * x) - np.cos(k * x) - s * (np.sinh(k * x) - np.sin(k * x))
+        shape /= shape[-1]
+        assert sum(fitted.coefficients) == pytest.approx(1.0, abs=1e-12)
+        apart = x[:, None] ** powers @ fitted.coefficients - shape
+        assert np.abs(apart).max() == pytest.approx(fitted.difference, abs=1e-9)
+        for other in powers[:-1]:  # of least squares: no neighbour that is 1 at the tip is closer
+            slope = apart @ (x**other - x**6) / 401
+            assert abs(slope) < 1e-6  # coefficients are rounded to 1e-6
+    assert edge.frequency == pytest.approx(2 * flap.frequency, rel=1e-9)
+
+
+def test_written_polynomials_are_read_back_and_audited(folder, run):
+    path = folder / "shapes.dat"
+    code, out, _ = run("import", folder / "main.dat", "--polynomials", path, "--speed", "18 rpm")
+    assert code == 0 and "largest difference" in out
+    blade = (folder / "sub" / "blade.dat").read_text()
+    kept = blade[: blade.index("--------- BLADE MODE SHAPES")]
+    (folder / "sub" / "blade.dat").write_text(kept + "--- SHAPES ---\n" + path.read_text())
+    deck = bd.read_deck(folder / "main.dat")
+    fitted = deck.fit_mode_polynomials()
+    assert [each.mode for each in deck.audit.shapes] == [each.mode for each in fitted]
+    for stated, made in zip(deck.audit.shapes, fitted, strict=True):
+        assert stated.coefficient_sum == pytest.approx(1.0, abs=1e-12)
+        assert stated.difference == pytest.approx(made.difference, abs=1e-9)
+    code, _, err = run("import", folder / "main.dat", "--speed", "18 rpm")
+    assert code == 2 and "--polynomials" in err
 
 
 # What is refused ----------------------------------------------------------------------------------
