@@ -13,7 +13,6 @@ import numpy as np
 import beamdyn as bd
 from benchmarks.cases.scenes import STEADY_ROLLING, STEADY_ROLLING_IN_GRAVITY
 from benchmarks.rows import Row, best_time, show
-from benchmarks.transient import STOCK, solve_stock
 
 
 def compare_crossings() -> Iterator[Row]:
@@ -52,9 +51,8 @@ def check_instability() -> Iterator[Row]:
 
 
 def time_responses() -> Iterator[Row]:
-    """Times of the steady response at 1000 speeds, and of one transient by the stock integrator."""
+    """Times of the steady response at 1000 speeds."""
     speeds = np.linspace(1, 150, 1000)
-    times: dict[str, float] = {}
     for name, scene, bound in (
         ("undamped", STEADY_ROLLING, "0.5"),
         ("1 % damping", replace(STEADY_ROLLING, damping_ratio=0.01), "0.5"),
@@ -62,10 +60,6 @@ def time_responses() -> Iterator[Row]:
     ):
         time = best_time(lambda scene=scene: bd.steady_response(scene, speeds, 3), 5)
         yield f"1000 speeds x 3 modes, {name} [s]", f"{time:.3f}", bound
-        times[name] = time
-    radau = solve_stock(*STOCK[0])[1]
-    yield "one transient by solve_ivp Radau (Table 3, 5 modes) [s]", f"{radau:.1f}", ""
-    yield "1000 speeds x 3 modes, undamped, over that", f"{times['undamped'] / radau:.4f}", "0.006"
 
 
 PARTS = compare_crossings, compare_amplitudes, check_instability, time_responses
