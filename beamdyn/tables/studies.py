@@ -10,6 +10,7 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.common.digits import supported
+from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
 from beamdyn.studies.result import Study
 
@@ -42,8 +43,10 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
     number = len(value)
     title = f"{number} design{'s' * (number > 1)}, by {result.provenance.method}"
     made = table(title, (*heads, *own, "error"), rows, ())
-    note = f"{len(shown)} of {number} designs are shown; --csv has all." if len(shown) < number else ""
-    return Group(made, Text(note)) if note else made
+    notes = [f"{len(shown)} of {number} designs are shown; --csv has all."] if len(shown) < number else []
+    where = f"at the worst of {len(result.left_out_places)} designs"
+    left_out = as_in_files(result.left_out_effects.sentence("number" if len(own) > 1 else "", where))
+    return Group(made, *map(Text, (*notes, left_out)))
 
 
 def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterator[str]:
