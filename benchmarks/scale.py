@@ -19,13 +19,13 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib.util import find_spec
-from time import perf_counter, sleep
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 import beamdyn as bd
-from benchmarks.cases import table_3
+from benchmarks.cases.scenes import ROLLING
 from benchmarks.rows import Row, show
 
 SAMPLE, SPEED_SAMPLE = 20_000, 40  # designs, and speeds, that are also solved in one process
@@ -52,34 +52,41 @@ def designs(count: int) -> dict[str, np.ndarray]:
 
 @dataclass
 class Accident:
-    """A progress callback that kills a worker once half is done.
+    """A progress callback that kills a worker once half is done, and looks at the memory of all.
 
     Parameters
     ----------
     client : Client
         The cluster's client.
+    victim : int
+        The process that is killed.
     """
 
     client: Any
-    killed: int = 0
+    victim: int
     calls: list[int] = field(default_factory=list)
+    killed: bool = False
+    memory: float = 0.0  # largest of a worker [MB], as the scheduler hears of it
 
     def __call__(self, done: int, total: int) -> None:
         self.calls.append(done)
+        workers = self.client.scheduler_info()["workers"].values()
+        held = (worker["metrics"].get("memory", 0) for worker in workers if "metrics" in worker)
+        self.memory = max([self.memory, *(size / 2**20 for size in held)])
         if not self.killed and total / 2 <= done < total:
-            self.killed = min(self.client.run(os.getpid).values())
-            os.kill(self.killed, signal.SIGKILL)
+            self.killed = True
+            os.kill(self.victim, signal.SIGKILL)
 
 
 @contextmanager
-def cluster(workers: int) -> Iterator[Any]:
-    """A client of a cluster of processes of this machine, which has begun."""
+def cluster(workers: int) -> Iterator[Accident]:
+    """A cluster of processes of this machine, which has begun, and the accident that will befall it."""
     from distributed import Client, LocalCluster
 
     options: dict[str, Any] = {"threads_per_worker": 1, "processes": True, "dashboard_address": None}
     with LocalCluster(n_workers=workers, **options) as made, Client(made) as client:
         client.run(_import)
-        yield client
+        yield Accident(client, min(client.run(os.getpid).values()))
 
 
 def _import() -> None:
@@ -99,22 +106,31 @@ def many_designs(count: int, workers: int) -> Iterator[Row]:
     sample = min(count, SAMPLE)
     alone, own = timed(lambda: bd.study(SCENE, designs(sample), combine="zip"))
     before = peak_memory()
-    with cluster(workers) as client:
-        accident = Accident(client)
-        options: dict[str, Any] = {"combine": "zip", "executor": client.get_executor(), "progress": accident}
+    with cluster(workers) as accident:
+        executor = accident.client.get_executor()
+        options: dict[str, Any] = {"combine": "zip", "executor": executor, "progress": accident}
         time, found = timed(lambda: bd.study(SCENE, designs(count), **options))
-        while len(memory := client.run(peak_memory)) < workers:  # the killed one is replaced
-            sleep(0.1)
     yield f"{count} random designs, {workers} workers, one of them killed: wall time [s]", f"{time:.1f}", "-"
     yield "... of a design [us]; in one process", f"{1e6 * time / count:.0f}; {1e6 * alone / sample:.0f}", "-"
     efficiency = alone / sample * count / (time * workers)
     yield "... efficiency against one process, with the killed worker", f"{efficiency:.2f}", "-"
     yield "... calls of progress; last", f"{len(accident.calls)}; {accident.calls[-1]} of {count}", "-"
-    yield "... largest memory of a worker [MB]", f"{max(memory.values()):.0f}", "-"
-    yield "... largest memory of this process, before and after [MB]", f"{before:.0f}, {peak_memory():.0f}", "-"
-    yield f"... {COMPARED} of them: largest deviation from single calls, over the stated errors", f"{worst(found):.2f}", "1"
+    yield "... largest memory of a worker [MB]", f"{accident.memory:.0f}", "-"
+    yield (
+        "... largest memory of this process, before and after [MB]",
+        f"{before:.0f}, {peak_memory():.0f}",
+        "-",
+    )
+    yield (
+        f"... {COMPARED} of them: largest deviation from single calls, over the stated errors",
+        f"{worst(found):.2f}",
+        "1",
+    )
     if count == sample:
-        same = all(np.array_equal(getattr(own, n), getattr(found, n), equal_nan=n == "value") for n in ("value", "error"))
+        same = all(
+            np.array_equal(getattr(own, n), getattr(found, n), equal_nan=n == "value")
+            for n in ("value", "error")
+        )
         yield "... the same to the bit as in one process", "yes" if same else "no", "yes"
 
 
@@ -135,22 +151,22 @@ def many_speeds(count: int, workers: int) -> Iterator[Row]:
     def run(number: int, executor: Executor | None = None, **more: Any) -> bd.Sweep:
         speeds = np.linspace(1.0, 140.0, number)
         options: dict[str, Any] = {"modes": 5, "tolerance": 1e-3, "executor": executor, **more}
-        return bd.sweep(table_3.SCENE, speeds, (20.0, 30.0), **options)
+        return bd.sweep(ROLLING, speeds, (20.0, 30.0), **options)
 
     alone, _ = timed(lambda: run(sample))
-    with cluster(workers) as client:
-        accident = Accident(client)
-        time, found = timed(lambda: run(count, client.get_executor(), progress=accident))
-        memory = client.run(peak_memory)
+    with cluster(workers) as accident:
+        time, found = timed(lambda: run(count, accident.client.get_executor(), progress=accident))
     done = sum(status == "done" for status in found.status)
     yield f"sweep of {count} speeds, {workers} workers, one killed: wall time [s]", f"{time:.1f}", "-"
     yield "... done", f"{done} of {count}", f"{count}"
     yield "... efficiency against one process", f"{alone / sample * count / (time * workers):.2f}", "-"
-    yield "... largest memory of a worker [MB]", f"{max(memory.values()):.0f}", "-"
+    yield "... largest memory of a worker [MB]", f"{accident.memory:.0f}", "-"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--designs", type=int, default=1_000_000)
     parser.add_argument("--speeds", type=int, default=10_000)
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)

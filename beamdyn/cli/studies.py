@@ -12,6 +12,7 @@ from beamdyn.cli.values import (
     SceneFile,
     Text,
     load_with,
+    parse_window,
     speed_or_final,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
@@ -34,13 +35,13 @@ def study(
     what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     speed: Text | None = None,
     modes: ModeCount = 3,
-    window: Text | None = None,
+    window: Text = "20:30 s",
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
     physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs of the scene.
+    """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs.
 
     For example: beamdyn study scene.toml --vary "beam.thickness=0.1:0.4:31 mm" --vary "speed=0:100:11 rad/s"
 
@@ -61,7 +62,7 @@ def study(
     modes
         Number of modes, from the lowest.
     window
-        Beginning and end of the window of peaks, such as "20:30 s".
+        Beginning and end of the window of time of peaks.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
@@ -90,7 +91,7 @@ def study(
     options = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     asked = varying.options | {"what": what, "speed": speed, "window": window} | options
     question = Question.on_file("beamdyn study", scene, **asked, physics=physics)
-    more = {} if window is None else {"window": parse_window(window)}
+    span = parse_window(window)
     with progress_bar("designs") as progress, of_file({}):
         result = study(
             loaded,
@@ -98,7 +99,7 @@ def study(
             what,
             speed=speed_or_final(loaded, speed),
             **options,
-            **more,
+            window=span,
             combine=varying.combine,
             workers=varying.workers,
             store=varying.store,
@@ -118,7 +119,9 @@ def _inputs() -> list[Input]:
 
     by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in NAMES}
     factors = (name for name in NAMES if name.startswith(SCALE))
-    of_scale = [Input(name, SceneInput, float, Quantity("", "", _FACTOR), (), False, None) for name in factors]
+    of_scale = [
+        Input(name, SceneInput, float, Quantity("", "", _FACTOR), (), False, None) for name in factors
+    ]
     of_speed = Quantity("rad/s", "omega", "speed")
     return [*by_path.values(), *of_scale, Input(SPEED, SceneInput, float, of_speed, (), False, None)]
 

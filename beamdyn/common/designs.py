@@ -102,7 +102,10 @@ class Designs:
 
 def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
     """Designs of columns (R,), each with its values by name."""
-    return [dict(zip(columns, row, strict=True)) for row in zip(*(c.tolist() for c in columns.values()), strict=True)]
+    return [
+        dict(zip(columns, row, strict=True))
+        for row in zip(*(c.tolist() for c in columns.values()), strict=True)
+    ]
 
 
 def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:

@@ -1,15 +1,15 @@
 """Modes of many designs of one beam, in one basis, by batched eigenproblems.
 
-The designs differ in their matrices and in speed.  Nothing is gyroscopic in them, and if they are damped, then
-by one ratio of all modes at rest.  Modes of undamped designs are real; the errors are those that
+The designs differ in their matrices and in speed.  Nothing is gyroscopic in them, and if they are damped,
+then by one ratio of all modes at rest.  Modes of undamped designs are real; the errors are those that
 `beamdyn.modal.error_estimate` states of a single one.
 
 Critical speeds and resonances need no search over speed: with B = m^2 M - K2,
 
     K0 v = speed^2 B v
 
-holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  K0 is positive definite, so
-that by Sylvester's law of inertia exactly j frequencies lie below the line m speed past the j-th lowest root:
+holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  K0 is positive definite,
+so that by Sylvester's law of inertia exactly j frequencies lie below the line m speed past the j-th lowest root:
 this is where mode j, counted at its speed, meets the line, and it meets it once at most.
 """
 
@@ -98,7 +98,9 @@ class StackedSolver:
         with explained():
             inverse = _inverse_factor(stack.K0)
         with explained():
-            self.growth, turned = np.linalg.eigh(_symmetric(inverse @ stack.K2 @ np.swapaxes(inverse, -1, -2)))
+            self.growth, turned = np.linalg.eigh(
+                _symmetric(inverse @ stack.K2 @ np.swapaxes(inverse, -1, -2))
+            )
         self.basis = np.swapaxes(inverse, -1, -2) @ turned
         self.mass = _symmetric(np.swapaxes(self.basis, 1, 2) @ stack.M @ self.basis)
 
@@ -156,7 +158,7 @@ class StackedSolver:
         return (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
 
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of the speed, and rounding.
+        """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of them, and rounding.
 
         Of the multiple 0: at which the stiffness is singular.  Modes ascend; a value that is not positive
         says that the mode meets the line at no speed.  The rounding error is that of the value.
@@ -298,12 +300,14 @@ def speeds_of_meeting(
     coarser, _ = StackedSolver(coarse).meeting(multiples, count)
     exists = inverse > np.maximum(rounding, top[:, None, None] ** -2.0)
     squared = 1 / np.where(exists, inverse, 1.0)
-    of_coarser = 1 / np.where(coarser > 0, coarser, np.where(exists, inverse / 2, 1.0))  # unresolved where that meets none
+    of_coarser = 1 / np.where(
+        coarser > 0, coarser, np.where(exists, inverse / 2, 1.0)
+    )  # unresolved where that meets none
     distance = np.where(exists, of_coarser - squared, 0.0)
     relative = estimate.rounding * rounding * squared / 2
-    rows = (values.reshape(-1, count) for values in (-squared, distance, relative))
+    of_rows, off, sure = (values.reshape(-1, count) for values in (-squared, distance, relative))
     kind = estimate.is_slender, estimate.is_regular
-    error = error_of_assumed_modes(*rows, squared[..., 0].ravel(), *kind).reshape(squared.shape)
+    error = error_of_assumed_modes(of_rows, off, sure, squared[..., 0].ravel(), *kind).reshape(squared.shape)
     return np.where(exists, np.sqrt(squared), np.inf), np.where(exists, error, np.inf), relative
 
 

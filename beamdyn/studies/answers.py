@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -89,7 +90,9 @@ class AnswerArrays:
         words, codes = np.unique(part.status, return_inverse=True)
         numbers = np.array([self._words.setdefault(word, len(self._words)) for word in words.tolist()])
         self._codes[place] = numbers[codes.reshape(part.status.shape)]
-        self._methods[part.method] = self._methods.get(part.method, 0) + part.value.shape[0] * part.value.shape[1]
+        self._methods[part.method] = (
+            self._methods.get(part.method, 0) + part.value.shape[0] * part.value.shape[1]
+        )
         for caution in part.cautions:
             self._note(place, caution)
 
@@ -122,7 +125,7 @@ class AnswerArrays:
             yield f"at {self._counts[kind]} of {total} designs{self._cautions[kind][0][2].said}"
 
 
-def caution_where(which: np.ndarray, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
+def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
     """A caution of the designs of a selection (R, S), if there are any; its weight is the largest size."""
     if which.any():
         yield Caution(kind, int(which.sum()), float(np.max(np.broadcast_to(size, which.shape)[which])), said)

@@ -1,4 +1,4 @@
-"""Critical speeds of designs that differ in numbers only, by one batched eigenproblem each, without a search."""
+"""Critical speeds of designs that differ in numbers only: by batched eigenproblems, without a search."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.equations.mass import moments_about_root
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.studies.answers import Caution, DesignAnswers, caution_where
-from beamdyn.studies.frequencies import cautions_of_error, coarser_stack
+from beamdyn.studies.frequencies import cautions_of_error
 from beamdyn.studies.refinement import Found, Refinement
 from beamdyn.studies.similar import SimilarDesigns
 
@@ -80,9 +80,9 @@ class SimilarCriticalSpeeds(FieldsOnly):
         for _ in range(_TO_HALF):
             half = half.coarser()
         weights = designs.weights(rows)
-        stacks = [designs.family(each).stack(weights) for each in (basis, half)]
+        stack, coarse = (designs.family(each).stack(weights) for each in (basis, half))
         top = np.full(len(rows), np.inf)
-        found = speeds_of_meeting(*stacks, np.zeros(1), 1, top, designs.estimate(basis))
+        found = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, designs.estimate(basis))
         speed, error, rounding = (values[:, 0, 0] for values in found)
         met = np.isfinite(speed) & (error <= np.maximum(target, 3 * rounding))
         # Where a basis softens at no speed, a single call decides whether there is one.
@@ -90,7 +90,7 @@ class SimilarCriticalSpeeds(FieldsOnly):
 
     @property
     def _stiffened(self) -> np.ndarray:
-        """Whether rotation stiffens a design against every deflection by an argument without a search, (N,)."""
+        """Whether an argument says that rotation stiffens a design against every deflection, (N,)."""
         designs, two = self.designs, self.designs.reference.physics.planes == 2
         with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
         if designs.reference.beam.point_masses:
@@ -99,7 +99,9 @@ class SimilarCriticalSpeeds(FieldsOnly):
         if not two:
             return _is_stiffened(designs, designs.in_plane, tilting)
         apart = ~np.any(with_inertia, axis=0)  # else the twist turns the body
-        return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
+        return apart & np.all(
+            [_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0
+        )
 
     def _cautions(self, value: np.ndarray, error: np.ndarray, found: np.ndarray) -> Iterator[Caution]:
         """Yield what `critical_point` warns of."""

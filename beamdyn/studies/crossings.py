@@ -73,7 +73,7 @@ def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
 
 
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[Resonance, ...]:
-    """The resonances that may occur in any of the designs: those of the extremes, and of others spread evenly."""
+    """The resonances that may occur in the designs: those of the extremes, and of others spread evenly."""
     rows = np.unique(np.linspace(0, designs.count - 1, min(designs.count, _PROBED)).round().astype(int))
     probed = rows_of(designs.columns(rows)) if designs.inputs else [{}]
     if designs.combine == "product" and len(designs.inputs) <= _MOST_EXTREMES:
@@ -134,7 +134,9 @@ class SimilarCrossings(FieldsOnly):
         method = f"Ritz, at most {functions} functions, batched"
         return DesignAnswers(speed, error, status, (*self._cautions(error, excited),), method)
 
-    def _solve_batch(self, rows: np.ndarray, basis: Discretization, target: float, multiples: np.ndarray) -> Found:
+    def _solve_batch(
+        self, rows: np.ndarray, basis: Discretization, target: float, multiples: np.ndarray
+    ) -> Found:
         designs = self.designs
         family, weights, time = designs.family(basis), designs.weights(rows), designs.time[rows]
         stack = family.stack(weights)
@@ -143,15 +145,17 @@ class SimilarCrossings(FieldsOnly):
         speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, self.modes, top, estimate)
         critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, estimate)[0]
         speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
-        met = ~np.isfinite(speed) | (error <= np.maximum(target, 3 * rounding))
-        return Found((speed / time[:, None, None], error), met.all(axis=(1, 2)))
+        met = np.isinf(speed) | (error <= np.maximum(target, 3 * rounding))
+        return Found((speed / time[:, None, None], error), _of_each(met))
 
     def _excited(self) -> np.ndarray:
         """Which of the resonances (N, c) have a line in each design.
 
         The lines depend on whether the load has a component in the direction of bending, and on gravity.
         """
-        columns = {n: v for n, v in self.designs.columns.items() if n in ("mount.bending_angle", "model.gravity")}
+        columns = {
+            n: v for n, v in self.designs.columns.items() if n in ("mount.bending_angle", "model.gravity")
+        }
         if not columns:
             return np.broadcast_to(self._has_line({}), (self.designs.count, len(self.resonances)))
         kinds = np.stack([_kind_of(name, values) for name, values in columns.items()], axis=1)
@@ -160,12 +164,19 @@ class SimilarCrossings(FieldsOnly):
         return np.array([self._has_line(design) for design in designs])[kind.ravel()]
 
     def _has_line(self, design: Mapping[str, float]) -> np.ndarray:
-        there = {(kind, round(line.multiple, 9)) for kind, line in lines_of(scene_of(self.scene, design), self.top)}
+        there = {
+            (kind, round(line.multiple, 9)) for kind, line in lines_of(scene_of(self.scene, design), self.top)
+        }
         return np.array([resonance.key[:2] in there for resonance in self.resonances])
 
     def _cautions(self, error: np.ndarray, excited: np.ndarray) -> Iterator[Caution]:
         yield from cautions_of_error(error, self.tolerance)
-        yield from caution_where(~excited.any(axis=2), "g", 0.0, " nothing excites the beam")
+        yield from caution_where(np.logical_not(excited).all(axis=2), "g", 0.0, " nothing excites the beam")
+
+
+def _of_each(met: np.ndarray) -> np.ndarray:
+    """Whether all of a design (N, L, k) are met, (N,)."""
+    return np.asarray(np.all(met, axis=(1, 2)))
 
 
 def _kind_of(name: str, values: np.ndarray) -> np.ndarray:

@@ -84,7 +84,11 @@ class SimilarFrequencies(FieldsOnly):
         found, functions = self._refinement.solve(count, speeds, self._solve_batch)
         if not found:
             shape = (*self.speeds.shape, self.modes)
-            found = [np.full(shape, np.nan, dtype=complex), np.full(shape, np.inf), np.full(self.speeds.shape, np.nan)]
+            found = [
+                np.full(shape, np.nan, dtype=complex),
+                np.full(shape, np.inf),
+                np.full(self.speeds.shape, np.nan),
+            ]
         eigenvalue, error, deflection = found
         error = np.where(np.isnan(eigenvalue), np.inf, error)
         return SolvedDesigns(eigenvalue / self.designs.time[:, None, None], error, deflection, functions)
@@ -108,10 +112,10 @@ class SimilarFrequencies(FieldsOnly):
         """The answers of the designs, with what limits them."""
         found = self.solve()
         s = found.eigenvalue
-        growing, oscillating, none = s.real > 0, s.imag != 0, np.isnan(s)
+        growing, oscillating, none = np.real(s) > 0, np.imag(s) != 0, np.isnan(s)
         words = [REFUSED, "flutter", "divergence", "stable", "neutral"]
         status = np.select([none, growing & oscillating, growing, oscillating, s == 0], words, "overdamped")
-        frequency = np.where(np.isin(status, ("stable", "neutral")), s.imag / (2 * np.pi), np.nan)
+        frequency = np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
         method = f"Ritz, at most {found.functions} functions, batched"
         return DesignAnswers(frequency, found.error, status, (*self._cautions(found, status),), method)
 
@@ -122,14 +126,18 @@ class SimilarFrequencies(FieldsOnly):
         strain = self.designs.strains(self.speeds)
         large = strain > LARGE_STRAIN
         if large.any():
-            yield from caution_where(large, "b", strain, f": {next(warn_of_strain(float(np.nanmax(strain))))}")
+            yield from caution_where(
+                large, "b", strain, f": {next(warn_of_strain(float(np.nanmax(strain))))}"
+            )
         bent = found.deflection > LARGE_DEFLECTION
         if bent.any():
             at = np.unravel_index(np.nanargmax(found.deflection), bent.shape)
             said = next(warn_of_static_deflection(found.deflection[at][None], 1.0, self.speeds[at][None]))
             yield from caution_where(bent, "c", found.deflection, f": {said}")
         missing = (status == REFUSED).any(axis=2)
-        yield from caution_where(missing, "d", 0.0, " there is no answer: rounding of the matrices leaves none")
+        yield from caution_where(
+            missing, "d", 0.0, " there is no answer: rounding of the matrices leaves none"
+        )
         yield from cautions_of_error(found.error, self.tolerance)
 
 

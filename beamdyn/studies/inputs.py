@@ -8,8 +8,6 @@ from contextlib import contextmanager
 from dataclasses import fields, replace
 from typing import Any
 
-import numpy as np
-
 from beamdyn.common.checks import InvalidValue, positive, real_array
 from beamdyn.common.described import descriptions
 from beamdyn.common.designs import VariedInput
@@ -40,17 +38,17 @@ _OF_STIFFNESS = {
     "second_rotary_inertia": "kg m",
 }
 # Powers of the sides of a section in its properties, whatever its form.
-_BY_BOTH = dict.fromkeys(("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness"), 1)
+_LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
+_OF_FIRST = ("bending_stiffness", "rotary_inertia")
+_OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
 SECTION_POWERS = {
     "thickness": {
-        **_BY_BOTH, "outer_fibre": 1,
-        **{"bending_stiffness": 3, "rotary_inertia": 3, "second_bending_stiffness": 1, "second_rotary_inertia": 1},
+        "outer_fibre": 1,
+        **dict.fromkeys((*_LINEAR, *_OF_SECOND), 1),
+        **dict.fromkeys(_OF_FIRST, 3),
     },
-    "width": {
-        **_BY_BOTH,
-        **{"bending_stiffness": 1, "rotary_inertia": 1, "second_bending_stiffness": 3, "second_rotary_inertia": 3},
-    },
-}  # fmt: skip
+    "width": {**dict.fromkeys((*_LINEAR, *_OF_FIRST), 1), **dict.fromkeys(_OF_SECOND, 3)},
+}
 _OF_BEAM = {"length": "m", "twist": "rad"}
 _UNITS: dict[str, str] = {
     **{f"beam.{name}": unit for name, unit in (_OF_BEAM | _OF_RECTANGLE | _OF_STIFFNESS).items()},

@@ -93,7 +93,7 @@ _EFFECTS: dict[str, Callable[[StudyQuestion, Scene, float], LeftOutEffects]] = {
 
 
 def join_effects(each: Sequence[LeftOutEffects | None], numbers: int) -> LeftOutEffects:
-    """The effects of p designs with so many numbers m each as one, of shape (p, m); nan where one has none."""
+    """The effects of p designs with m numbers each as one, of shape (p, m); nan where one has none."""
     known = [effects for effects in each if effects is not None]
     names = dict.fromkeys(name for effects in known for name in effects.changes)
     nothing = np.full(numbers, np.nan)

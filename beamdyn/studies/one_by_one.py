@@ -63,11 +63,15 @@ class SingleDesigns(FieldsOnly):
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
         return DesignAnswers(value, error, status, (*self._cautions(designs, found),), SINGLE_CALLS)
 
-    def _cautions(self, designs: Sequence[Mapping[str, float]], found: Sequence[SpeedAnswer]) -> list[Caution]:
+    def _cautions(
+        self, designs: Sequence[Mapping[str, float]], found: Sequence[SpeedAnswer]
+    ) -> list[Caution]:
         """How many answers are refused, and how many have warnings, with those of the first."""
         made, speeds = [], self.speeds.shape[1]
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
-        warned = [0 if no or not answer.warnings else speeds for answer, no in zip(found, refused, strict=True)]
+        warned = [
+            0 if no or not answer.warnings else speeds for answer, no in zip(found, refused, strict=True)
+        ]
         for counts, words in ((refused, "there is no answer"), (warned, "there are warnings")):
             if any(counts):
                 first = next(i for i, count in enumerate(counts) if count)
@@ -93,7 +97,9 @@ def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.nda
 
 def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
     arrays = (np.concatenate([answer[i] for answer in each]) for i in range(3))
-    return SpeedAnswer(*arrays, warnings=tuple(dict.fromkeys(said for answer in each for said in answer.warnings)))
+    return SpeedAnswer(
+        *arrays, warnings=tuple(dict.fromkeys(said for answer in each for said in answer.warnings))
+    )
 
 
 def _frequencies(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
@@ -131,7 +137,9 @@ def _crossings(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> Spe
         status[0, i] = NO_RESONANCE if resonance.key[:2] in there else NO_LINE
         if crossing is not None:
             value[0, i], error[0, i], status[0, i] = crossing.speed, crossing.error, RESONATES
-    more = [f"there is also one at {c.speed:.6g} rad/s with {c.line.name} ({c.kind})" for c in lowest.values()]
+    more = [
+        f"there is also one at {c.speed:.6g} rad/s with {c.line.name} ({c.kind})" for c in lowest.values()
+    ]
     return SpeedAnswer(value, error, status, (*found.warnings, *more))
 
 

@@ -90,4 +90,3 @@ class StudyQuestion:
     def numbers(self) -> int:
         """How many numbers the answer of a design has."""
         return len(self.labels) if self.what in ("frequencies", "crossings") else 1
-

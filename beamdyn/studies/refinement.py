@@ -100,8 +100,10 @@ class Refinement:
         return answers, functions
 
 
-def _solve_or_halve(solve: Solve, batch: np.ndarray, basis: Discretization) -> Iterator[tuple[np.ndarray, Found]]:
-    """Yield solved designs; those that rounding of so many functions leaves without a solution are left out."""
+def _solve_or_halve(
+    solve: Solve, batch: np.ndarray, basis: Discretization
+) -> Iterator[tuple[np.ndarray, Found]]:
+    """Yield solved designs; those that rounding of so many functions leaves unsolved are left out."""
     try:
         yield batch, solve(batch, basis)
     except np.linalg.LinAlgError:
@@ -117,5 +119,3 @@ def _nothing(count: int, like: np.ndarray) -> np.ndarray:
 def _size(basis: Discretization) -> int:
     assert isinstance(basis, Ritz)
     return basis.functions
-
-

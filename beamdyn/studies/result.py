@@ -14,13 +14,14 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelErro
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.left_out_of_designs import join_effects, left_out_of_design
-from beamdyn.studies.questions import KINDS, StudyQuestion
+from beamdyn.studies.questions import StudyQuestion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _JUDGED = 8  # designs at which the model error is computed, beside the extremes
 _MOST_AXES = 3  # inputs of which all extremes are combined
+
 
 @dataclass(frozen=True)
 class Study(StatesModelError):

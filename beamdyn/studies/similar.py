@@ -9,8 +9,8 @@ offset and radius over s_L, springs at the root times s_L/s_k, and the speed tim
 its frequencies over T are theirs.  The matrices of the reference are polynomials of few quantities.  In one
 plane of bending they are linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in r cos(phi), in
 the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two planes they are
-linear in the moments of inertia, the springs and the stiffness in the second direction over that in the first,
-and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the extremes of
+linear in the moments of inertia, the springs and the stiffness in the second direction over that in the
+first, and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the extremes of
 all designs.
 """
 
@@ -178,7 +178,12 @@ class SimilarDesigns(FieldsOnly):
     def quantities(self) -> dict[str, np.ndarray]:
         """Values (N,) of the quantities of the reference beam, by name."""
         tip, springs = self.tip, self._springs
-        common = {"mass": tip["mass"], "offset": tip["offset"], "inertia": tip["inertia"], "axial": self.axial}
+        common = {
+            "mass": tip["mass"],
+            "offset": tip["offset"],
+            "inertia": tip["inertia"],
+            "axial": self.axial,
+        }
         if np.isfinite(spring := springs["root_stiffness"]).all():
             common["spring"] = spring
         if self._planes == 1:
@@ -223,7 +228,9 @@ class SimilarDesigns(FieldsOnly):
     @property
     def can_be_solved(self) -> bool:
         """Whether roots are clamped in all designs, or on springs in all."""
-        return all((v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values())
+        return all(
+            (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()
+        )
 
     def family(self, discretization: Discretization) -> PencilFamily:
         """The matrices of all designs in one basis; kept for the next call, in each process."""
@@ -245,7 +252,9 @@ class SimilarDesigns(FieldsOnly):
 
     def strains(self, speeds: np.ndarray) -> np.ndarray:
         """Largest axial strain of each design at its speeds (N, S) [rad/s]; nan if it is not known."""
-        per_square = np.abs(self.weights(np.arange(self.count)) @ _forces(self.reference, self._nodes)).max(axis=1)
+        per_square = np.abs(self.weights(np.arange(self.count)) @ _forces(self.reference, self._nodes)).max(
+            axis=1
+        )
         return (per_square * self.strain * self.time**2)[:, None] * speeds**2
 
 
@@ -314,7 +323,9 @@ def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
         second = beam.second_bending_stiffness.scaled(at["second_stiffness"])
         beam = replace(beam, second_bending_stiffness=second)
     springs = at.get("spring", math.inf), at.get("second_spring", math.inf)
-    mount = Mount(abs(axial), 0.0 if axial >= 0 else math.pi, angle, **dict(zip(_SPRINGS, springs, strict=True)))
+    mount = Mount(
+        abs(axial), 0.0 if axial >= 0 else math.pi, angle, **dict(zip(_SPRINGS, springs, strict=True))
+    )
     tip = TipMass(at["mass"], at["offset"], inertia, *others)
     return Scene(replace(beam, tip=tip), mount, physics=reference.physics)
 

@@ -34,7 +34,11 @@ from beamdyn.studies.refinement import Refinement
 from beamdyn.studies.result import Study
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
 
-_VERSIONS = (__version__, np.__version__, scipy.__version__)  # of the programs on which the stored bits depend
+_VERSIONS = (
+    __version__,
+    np.__version__,
+    scipy.__version__,
+)  # of the programs on which the stored bits depend
 _KIND = "beamdyn study"
 _BATCHED, _SINGLE = 1024, 16  # answers of a task
 _AT_ONCE = 100_000  # designs whose quantities are compared at once

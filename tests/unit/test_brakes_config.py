@@ -347,7 +347,9 @@ def test_an_ambiguous_key_names_its_candidates() -> None:
 def test_a_sweep_is_its_cases_one_by_one() -> None:
     design = drum_from_dict(DRUM)
     axes = [parse_axis(design, text) for text in ("lining_end=60:110:3 deg", "friction=0.2:0.5:2")]
-    columns = dict(zip((axis.input.path for axis in axes), np.meshgrid(*(a.values for a in axes)), strict=True))
+    columns = dict(
+        zip((axis.input.path for axis in axes), np.meshgrid(*(a.values for a in axes)), strict=True)
+    )
     found = TORQUE.shown(with_arrays(design, {path: grid.ravel() for path, grid in columns.items()}).solve())
     assert found.shape == (6,)
     for j, mu in enumerate((0.2, 0.5)):

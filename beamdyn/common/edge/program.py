@@ -82,7 +82,7 @@ def _call(app: App, arguments: Sequence[str]) -> None:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """The message, with the option that is meant: by another name, or as it takes the word after the unknown."""
+    """The message, with the option that is meant: under another name, or as it takes the word given."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -47,7 +47,7 @@ class Varying:
     store: Path | None = None
 
     @property
-    def combine(self) -> str:
+    def combine(self) -> Literal["product", "zip"]:
         """How the inputs are combined."""
         return "zip" if self.together else "product"
 

@@ -1,4 +1,4 @@
-"""Tasks of a long computation: run here, in workers or by an executor, with few at a time, and kept in a store."""
+"""Tasks of a long computation: run here, in workers or by an executor, few at a time, and kept in a store."""
 
 from __future__ import annotations
 
