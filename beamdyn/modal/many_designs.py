@@ -8,9 +8,9 @@ Critical speeds and resonances need no search over speed: with B = m^2 M - K2,
 
     K0 v = speed^2 B v
 
-holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  K0 is positive definite,
-so that by Sylvester's law of inertia exactly j frequencies lie below the line m speed past the j-th lowest root:
-this is where mode j, counted at its speed, meets the line, and it meets it once at most.
+holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  As K0 is positive
+definite, exactly j frequencies lie below the line m speed past the j-th lowest root (Sylvester's law of
+inertia): this is where mode j, counted at its speed, meets the line, and it meets it once at most.
 """
 
 from __future__ import annotations

@@ -9,9 +9,9 @@ offset and radius over s_L, springs at the root times s_L/s_k, and the speed tim
 its frequencies over T are theirs.  The matrices of the reference are polynomials of few quantities.  In one
 plane of bending they are linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in r cos(phi), in
 the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two planes they are
-linear in the moments of inertia, the springs and the stiffness in the second direction over that in the
-first, and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the extremes of
-all designs.
+linear in the moments of inertia, in the springs, and in the stiffness in the second direction over that in
+the first, and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the
+extremes of all designs.
 """
 
 from __future__ import annotations
@@ -69,7 +69,8 @@ _DEGREES = {
     **{"transverse_inertia": 1, "axial_inertia": 1, "second_spring": 1, "second_stiffness": 1, "angle": 2},
 }
 _ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # between which trigonometric functions are interpolated
-_MOST_NODES = 256  # scenes that are assembled: some seconds
+_MOST_NODES = 512  # scenes that are assembled: some seconds
+_NODES_EACH = 8  # the same for each answer: beyond it single calls are as fast
 _ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0  # over that of one clamped plane, as of single scenes
 _RIGHT_ANGLE = 2e-16  # cosine of a rounded right angle, as in `beamdyn.scene.mount.exact_cos_sin`
 _PLACES = np.linspace(0, 1, 101)  # x/L at which the axial strain is computed
@@ -220,10 +221,10 @@ class SimilarDesigns(FieldsOnly):
     def _nodes(self) -> Nodes:
         return nodes_of([self]) if self.nodes is None else self.nodes
 
-    @property
-    def has_few_nodes(self) -> bool:
-        """Whether few scenes are assembled."""
-        return math.prod(len(values) for _, values in self._nodes) <= _MOST_NODES
+    def has_few_nodes(self, answers: int) -> bool:
+        """Whether few scenes are assembled for so many answers."""
+        most = min(_MOST_NODES, _NODES_EACH * answers)
+        return math.prod(len(values) for _, values in self._nodes) <= most
 
     @property
     def can_be_solved(self) -> bool:

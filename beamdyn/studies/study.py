@@ -351,7 +351,7 @@ class _Request:
 
     @property
     def _few_nodes(self) -> bool:
-        return replace(self._similar(slice(0, 1)), nodes=self._nodes).has_few_nodes
+        return replace(self._similar(slice(0, 1)), nodes=self._nodes).has_few_nodes(self.designs.count)
 
     @cached_property
     def _first(self) -> dict[str, float]:
