@@ -28,6 +28,7 @@ TIP = {
     "beam.tip.inertia": (1e-8, 2e-8),
     "beam.tip.axial_inertia": (0.0, 2e-8),
 }
+POINT = {"beam.tip.mass": (0.0, 2e-3), "beam.tip.offset": (-0.005, 0.005)}
 MOUNT = {
     "mount.radius": (0.0, 0.4),
     "mount.setting_angle": (0.0, np.pi),
@@ -109,7 +110,7 @@ CRITICAL = {
         bd.Scene(BEAM, bd.Mount(0.1, root_stiffness=1.0)),
         draw(MOUNT) | {"mount.root_stiffness": springs()},
     ),
-    "two planes": (bd.Scene(BEAM, bd.Mount(0.1), physics=bd.Physics(planes=2)), draw(MOUNT | TIP)),
+    "two planes": (bd.Scene(BEAM, bd.Mount(0.1), physics=bd.Physics(planes=2)), draw(MOUNT | POINT)),
     "a table of many stations scaled": (bd.Scene(BLADE, bd.Mount(0.3)), draw(SCALES)),
     "damped": (bd.Scene(BEAM, bd.Mount(0.1)), draw(MOUNT | {"model.damping_ratio": (0.0, 0.3)})),
 }
