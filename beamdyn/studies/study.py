@@ -346,7 +346,7 @@ class _Request:
         if question.what == "crossings" and scene.physics.planes == 2:
             return False  # each plane has lines of its own
         refinement = Refinement(self._reference, question.modes, question.discretization, question.tolerance)
-        parts = [self._similar(rows) for rows in self.others.chunks(_AT_ONCE)]
+        parts = (self._similar(rows) for rows in self.others.chunks(_AT_ONCE))
         return refinement.can_be_batched and all(p.can_be_solved for p in parts) and self._few_nodes
 
     @property
