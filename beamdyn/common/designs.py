@@ -67,7 +67,7 @@ class Designs:
 
     def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
         """The value of each input in some of the designs: (R,) by name."""
-        places = np.arange(self.count)[rows] if isinstance(rows, slice) else rows
+        places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
         if self.combine == "zip":
             return {each.name: each.values[places] for each in self.inputs}
         indices = np.unravel_index(places, self.shape) if self.inputs else ()
