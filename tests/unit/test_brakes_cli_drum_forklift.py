@@ -156,6 +156,25 @@ def test_two_sweeps_have_a_row_a_case(run, tmp_path: Path) -> None:
     assert rows[3][2] == pytest.approx(2 * rows[2][2], rel=1e-13)  # torque grows with the force
 
 
+def test_workers_and_a_store_change_no_bit(run, tmp_path: Path) -> None:
+    asked = ("caliper", "dual-pivot", "--vary", "finger=10:40:20 N", "--what", "right_pad_force")
+    alone, shared, resumed = (tmp_path / f"{name}.csv" for name in ("alone", "shared", "resumed"))
+    store = ("--store", tmp_path / "store")
+    assert run(*asked, "--csv", alone)[0] == DONE
+    assert run(*asked, "--csv", shared, "--workers", "2", *store)[0] == DONE
+    assert run(*asked, "--csv", resumed, *store)[0] == DONE
+    assert len([*(tmp_path / "store").iterdir()]) == 3  # two parts, and what tells that it is a store
+    assert alone.read_text() == shared.read_text() == resumed.read_text()
+
+
+def test_values_taken_together(run, tmp_path: Path) -> None:
+    path = tmp_path / "s.csv"
+    inputs = ("--vary", "friction=0.2:0.4:3", "--vary", "load.force=1:3:3 kN", "--together")
+    assert run("drum", DRUM, *inputs, "--csv", path)[0] == DONE
+    rows = [[float(x) for x in row[:2]] for row in table(path)[1:]]
+    assert rows == [[0.2, 1.0], [pytest.approx(0.3), 2.0], [0.4, 3.0]]
+
+
 # Forklift -----------------------------------------------------------------------------------------------
 
 
