@@ -2,6 +2,7 @@
 
 import os
 import signal
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ TAPERED = bd.Beam.from_stiffness(
     bd.Table([0, 1], [5e5, 2e5]),
     second_bending_stiffness=bd.Table([0, 1], [0.4, 0.1]),
 )
-STATIONS = np.linspace(0, 1, 13)
+STATIONS = np.linspace(0, 1, 8)  # with more than six segments functions are of another kind
 BLADE = bd.Beam.from_stiffness(
     0.05, bd.Table(STATIONS, 0.02 - 0.01 * STATIONS**2), bd.Table(STATIONS, 3e-3 * (1.1 - STATIONS) ** 2), 4e5
 )
@@ -37,7 +38,8 @@ MOUNT = {
 SPEED = {"speed": (0.0, 150.0)}
 SIZES = {"beam.thickness": (1e-4, 4e-4), "beam.length": (0.03, 0.08)}
 SCALES = {"beam.scale.thickness": (0.5, 2.0), "beam.scale.mass_per_length": (0.7, 1.4)}
-DESIGNS = 24  # each of which is also solved alone
+DESIGNS = 12  # each of which is also solved alone
+FEW = 5  # the same of scenes that take longer
 
 
 def draw(ranges, count=DESIGNS, **more):
@@ -71,9 +73,9 @@ FREQUENCIES = {
     ),
     "two planes, a table scaled": (
         bd.Scene(TAPERED, bd.Mount(0.1), physics=bd.Physics(planes=2)),
-        draw(SCALES | SPEED | {"beam.scale.second_bending_stiffness": (0.5, 2.0)}),
+        draw(SCALES | SPEED | {"beam.scale.second_bending_stiffness": (0.5, 2.0)}, FEW),
     ),
-    "a table of many stations scaled": (bd.Scene(BLADE, bd.Mount(0.1)), draw(SCALES | SPEED)),
+    "a table of many stations scaled": (bd.Scene(BLADE, bd.Mount(0.1)), draw(SCALES | SPEED, FEW)),
     "gravity": (bd.Scene(BEAM, bd.Mount(0.1)), draw(SPEED | {"model.gravity": (0.0, 20.0)})),
     "point masses": (
         bd.Scene(
@@ -102,7 +104,7 @@ def test_frequencies(name):
         size = np.abs(single.eigenvalue)[vibrates] / (2 * np.pi)
         assert (deviation <= (study.error[i] + single.error)[vibrates] * size).all()
         compared += vibrates.sum()
-    assert compared > (0 if name == "strongly damped" else DESIGNS)
+    assert compared > (0 if name == "strongly damped" else study.shape[0])
 
 
 CRITICAL = {
@@ -112,7 +114,7 @@ CRITICAL = {
         draw(MOUNT) | {"mount.root_stiffness": springs()},
     ),
     "two planes": (bd.Scene(BEAM, bd.Mount(0.1), physics=bd.Physics(planes=2)), draw(MOUNT | POINT)),
-    "a table of many stations scaled": (bd.Scene(BLADE, bd.Mount(0.3)), draw(SCALES)),
+    "a table of many stations scaled": (bd.Scene(BLADE, bd.Mount(0.3)), draw(SCALES, FEW)),
     "damped": (bd.Scene(BEAM, bd.Mount(0.1)), draw(MOUNT | {"model.damping_ratio": (0.0, 0.3)})),
 }
 
@@ -163,8 +165,9 @@ def test_crossings():
         assert not found
 
 
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds the workers by /proc")
 def test_workers_and_a_killed_one_change_no_bit():
-    vary = draw({"mount.radius": (0.0, 0.3), "beam.thickness": (1e-4, 4e-4)} | SPEED, 4000)
+    vary = draw({"mount.radius": (0.0, 0.3), "beam.thickness": (1e-4, 4e-4)} | SPEED, 2500)
     scene = bd.Scene(BEAM, bd.Mount(0.1))
     alone = bd.study(scene, vary, combine="zip")
     killed = []
@@ -172,13 +175,12 @@ def test_workers_and_a_killed_one_change_no_bit():
     def kill_one(done, total):
         """Kill a child of this process, once the first part is done."""
         if done and not killed:
-            with open(f"/proc/{os.getpid()}/task/{os.getpid()}/children") as file:
-                killed.extend(map(int, file.read().split()))
-            if killed:
-                os.kill(killed[-1], signal.SIGKILL)
+            lists = Path(f"/proc/{os.getpid()}/task").glob("*/children")
+            killed.append(max(int(pid) for file in lists for pid in file.read_text().split()))
+            os.kill(killed[0], signal.SIGKILL)
 
     together = bd.study(scene, vary, combine="zip", workers=2, progress=kill_one)
-    assert np.array_equal(alone.value, together.value, equal_nan=True)
+    assert killed and np.array_equal(alone.value, together.value, equal_nan=True)
     assert np.array_equal(alone.error, together.error) and alone.warnings == together.warnings
 
 
