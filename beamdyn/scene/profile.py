@@ -77,13 +77,16 @@ class Profile(FieldsOnly):
     def __call__(self, xi: np.ndarray) -> np.ndarray:
         """Evaluate at fractions `xi` of the length, of any shape; at a jump, the value on its right."""
         xi = np.asarray(xi, dtype=float)
-        segment = np.searchsorted(self.breakpoints, xi, side="right") - 1
-        segment = np.clip(segment, 0, len(self.coefficients) - 1)
-        ends = np.array(self.breakpoints)
-        a, b = ends[segment], ends[segment + 1]
+        segment = np.searchsorted(self._ends[1:-1], xi, side="right")
+        if not self.degree:
+            return self.series[0, segment]
+        a, b = self._ends[segment], self._ends[segment + 1]
         t = ((xi - a) - (b - xi)) / (b - a)
-        of_points = self.series[:, segment] if len(self.coefficients) > 1 else self.series[:, 0]
-        return legendre.legval(t, of_points, tensor=False)
+        return legendre.legval(t, self.series[:, segment], tensor=False)
+
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        return np.array(self.breakpoints)
 
     @cached_property
     def series(self) -> np.ndarray:
@@ -105,7 +108,9 @@ class Profile(FieldsOnly):
 
     def split(self, breakpoints: Sequence[float]) -> Profile:
         """Represent the same property on segments that also end at the given breakpoints."""
-        ends = merge_breakpoints(np.union1d(self.breakpoints, breakpoints))
+        if breakpoints == self.breakpoints:
+            return self
+        ends = merge_breakpoints(np.concatenate([self.breakpoints, breakpoints]))
         if ends == self.breakpoints:
             return self
         values = self(gauss_points_on(np.array(ends), self.degree + 1))
@@ -275,8 +280,8 @@ def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
 
 def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
     """Sort breakpoints and merge those that differ by rounding."""
-    ends = np.unique(breakpoints)
-    inner = ends[1:-1][np.diff(ends)[:-1] > _SHORTEST_SEGMENT]
+    ends = np.sort(breakpoints)
+    inner = ends[1:][np.diff(ends) > _SHORTEST_SEGMENT]
     inner = inner[ends[-1] - inner > _SHORTEST_SEGMENT]
     return (float(ends[0]), *inner.tolist(), float(ends[-1]))
 

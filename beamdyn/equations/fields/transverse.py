@@ -43,6 +43,9 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
 
 
+_NO_BODY = TipMass(0.0)
+
+
 @dataclass(frozen=True)
 class Trial:
     """Trial functions of a transverse field of a scene, and what is evaluated of them at the tip.
@@ -91,7 +94,7 @@ class Trial:
     @cached_property
     def tip(self) -> TipMass:
         """Rigid body at the tip."""
-        return self.beam.tip or TipMass(0.0)
+        return self.beam.tip or _NO_BODY
 
     @cached_property
     def rotation(self) -> np.ndarray:
