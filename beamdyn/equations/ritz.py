@@ -21,7 +21,7 @@ from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
-_POINTS_OF_TURNS = 12  # Gauss points on each segment beyond those that integrate small deflections exactly
+_POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
 _FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}  # the slower, the larger
@@ -82,7 +82,7 @@ class Ritz:
     def _points(self, beam: Beam) -> int:
         """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return degree + 2 + weight_degree(beam) // 2 + 1
+        return degree + 2 + weight_degree(beam) // 2
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""

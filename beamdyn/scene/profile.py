@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import TypeAlias
 
 import numpy as np
@@ -28,6 +28,7 @@ from beamdyn.common.pickling import FieldsOnly
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
 _FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
+_NOISE = 4 * float(np.finfo(float).eps)  # of the coefficients of a fit, relative to the largest
 _SPACING = 2.5e-5  # in x/L, of the samples of a user's function: no wider feature is missed
 _FEW = 513  # samples denser towards the ends of a segment, where a fit is compared first
 _AT_ONCE = 4096  # samples compared at once, which fit into the processor's cache
@@ -88,18 +89,24 @@ class Profile(FieldsOnly):
     def _ends(self) -> np.ndarray:
         return np.array(self.breakpoints)
 
+    def within(self, left: np.ndarray, right: np.ndarray, points: int) -> np.ndarray:
+        """Values at Gauss points of intervals (c,), each within one segment: shape (c, points)."""
+        segment = np.searchsorted(self._ends[1:-1], (left + right) / 2, side="right")
+        if not self.degree:
+            return np.repeat(self.series[0, segment, None], points, axis=1)
+        a, b = self._ends[segment, None], self._ends[segment + 1, None]
+        xi = left[:, None] + (right - left)[:, None] * (1 + gauss_rule(points)[0]) / 2
+        return legendre.legval(((xi - a) - (b - xi)) / (b - a), self.series[:, segment, None], tensor=False)
+
     @cached_property
     def series(self) -> np.ndarray:
         """Legendre coefficients of each segment in columns, those of high degree 0 where there are none."""
-        series = np.zeros((self.degree + 1, len(self.coefficients)))
-        for k, row in enumerate(self.coefficients):
-            series[: len(row), k] = row
-        return series
+        return np.array(list(zip_longest(*self.coefficients, fillvalue=0.0)))
 
     @cached_property
     def degree(self) -> int:
         """Largest polynomial degree of a segment."""
-        return max(len(c) for c in self.coefficients) - 1
+        return max(map(len, self.coefficients)) - 1
 
     def end_values(self) -> tuple[np.ndarray, np.ndarray]:
         """Values at the left and at the right end of each segment: two arrays, which differ at jumps."""
@@ -179,7 +186,7 @@ def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) 
         series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values.T)
         largest = np.abs(series).max(axis=0)
         resolved = (np.abs(series[-3:]) <= _FIT_TOLERANCE * largest).all(axis=0)
-        kept = np.abs(series) > 1e-17 * largest
+        kept = np.abs(series) > _NOISE * largest
         length = np.maximum(nodes - kept[::-1].argmax(axis=0), 1)
         for k, row, n in zip(left[resolved], series.T[resolved].tolist(), length[resolved], strict=True):
             rows[k] = row[:n]
@@ -387,10 +394,10 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
 def check_positive(name: str, profile: Profile) -> None:
     """Raise a ValueError with the name and the place if a property is not positive and finite everywhere."""
     ends = np.array(profile.breakpoints)
-    inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1].ravel()
-    left, right = profile.end_values()
-    where = np.concatenate([inner, ends[:-1], ends[1:]])
-    values = np.concatenate([profile(inner), left, right])
+    where, values = np.concatenate([ends[:-1], ends[1:]]), np.concatenate(profile.end_values())
+    if profile.degree > 1:  # else the least value is at an end
+        inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1].ravel()
+        where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
     k = int(values.argmin()) if np.isfinite(values).all() else int(np.argmin(np.isfinite(values)))
     if not (np.isfinite(values[k]) and values[k] > 0):
         place = f" at x/L = {where[k]:.3f}"

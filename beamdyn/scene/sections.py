@@ -18,6 +18,9 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 
+# Orders of the derivatives of a deflection whose products a property of the sections multiplies.
+_ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "rotary_inertia": 1}
+
 Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; those that vanish are missing
 
 
@@ -92,7 +95,12 @@ def _turned(first: float, second: float, angle: float) -> np.ndarray:
 
 
 def weight_degree(beam: Beam) -> int:
-    """Largest polynomial degree of what multiplies trial functions in integrals over a segment."""
-    names = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
-    degrees = [p.degree for name in names for p in section_tensor(beam, name).values()]
-    return max(beam.mass_per_length.degree + 2, *degrees)
+    """Largest polynomial degree, in integrals over a segment, beyond that of products of deflections.
+
+    That is the degree of a property less the order of the derivatives that it multiplies; tension is of the
+    degree of the mass and two more.
+    """
+    degrees = [beam.mass_per_length.degree + 1]
+    for name, order in _ORDERS.items():
+        degrees += [p.degree - 2 * order for p in section_tensor(beam, name).values()]
+    return max(degrees)

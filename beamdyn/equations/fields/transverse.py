@@ -43,7 +43,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
 
 
-_NO_BODY = TipMass(0.0)
+_NO_BODY, _NOTHING = TipMass(0.0), ONE.scaled(0.0)
 
 
 @dataclass(frozen=True)
@@ -324,8 +324,9 @@ def _spin(pair: Pair) -> Iterator[Term]:
         product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
         for (p, q), inertia in section_tensor(beam, "rotary_inertia").items():
             product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
-        matrix = _twist_by_bending(pair, product)
-        yield term_of("twisting by inertia", pair, matrix, "speed_squared", cone[0] ** 2 / 2)
+        if product != _NOTHING:
+            matrix = _twist_by_bending(pair, product)
+            yield term_of("twisting by inertia", pair, matrix, "speed_squared", cone[0] ** 2 / 2)
 
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
