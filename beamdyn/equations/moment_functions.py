@@ -397,7 +397,7 @@ def _unit(columns: np.ndarray) -> np.ndarray:
 
 def _span(columns: np.ndarray) -> np.ndarray:
     """Orthonormal basis (k, m) of the span of columns (k, n) of norm 1 or less, but for rounding."""
-    k, n = columns.shape
+    n = columns.shape[1]
     reflectors, _, tau, _, _ = dgeqp3(columns, lwork=_BLOCK * (n + 1) + 2 * n)
     rank = int((np.abs(np.diag(reflectors)) > _DEPENDENT).sum())
     return dorgqr(reflectors[:, :rank], tau[:rank], lwork=_BLOCK * max(rank, 1))[0]

@@ -15,7 +15,6 @@ from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics
 from beamdyn.scene.physics_choice import PhysicsChoice
 from beamdyn.scene.profile import mean
 
-
 _SLENDER = Physics(), Physics(stretch=True)  # in one plane
 
 

@@ -42,7 +42,6 @@ from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
 
-
 _NO_BODY, _NOTHING = TipMass(0.0), ONE.scaled(0.0)
 
 
