@@ -26,6 +26,7 @@ from benchmarks.rows import Row, best_time, show, time_text
 RATED = {"iea_15": 7.56, "nrel_5": 12.1, "bmodes_test01": 60.0}  # rpm
 TOLERANCES = (1e-6, 1e-9, None)
 _MODES = 6  # three a plane
+_NUMBERS = count(1)  # of scenes
 _SPEEDS = 1000  # of a locus
 _TWO_PLANES = bd.Physics(planes=2)
 _FASTER, _SLOWER = 5.0, 1.0  # times pyBModes is aimed to take, at 1e-6 and by default
@@ -95,7 +96,7 @@ def distinct_scenes(
 ) -> Iterator[bd.Scene]:
     """Scenes of a blade, none of them equal to another."""
     scene = blade_scene(name, physics, twisted)
-    for k in count(1):
+    for k in _NUMBERS:
         yield replace(scene, beam=replace(scene.beam, length=scene.beam.length * (1 + 1e-13 * k)))
 
 

@@ -147,7 +147,8 @@ class Profile(FieldsOnly):
 
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
-        return Profile(self.breakpoints, tuple(tuple(factor * c for c in row) for row in self.coefficients))
+        rows = [tuple([factor * c for c in row]) for row in self.coefficients]
+        return Profile(self.breakpoints, tuple(rows))
 
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
