@@ -224,7 +224,9 @@ def _build_forces(
     contained = partial(parts.contained, continuous=derivatives == 2)
     P = polynomials(others)
     causing = P[contained(others, first)]
-    displaced = {name: _displace(spaces, causing, name, direction) for name in {name for name, _, _ in causes}}
+    displaced = {
+        name: _displace(spaces, causing, name, direction) for name in {name for name, _, _ in causes}
+    }
     caused = [
         _integrate_from_tip(spaces.nodes, weight * displaced[name][order], derivatives - order)
         for name, order, weight in causes
