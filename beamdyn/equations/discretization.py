@@ -33,7 +33,7 @@ class RootConditions(NamedTuple):
 
     def against(self, stiffness: str, direction: int = 0) -> RootConditions:
         """The same conditions, of a displacement that a stiffness resists."""
-        return self._replace(stiffness=stiffness, direction=direction)
+        return RootConditions(self.held, self.derivatives, stiffness, direction)
 
     @property
     def at_root(self) -> RootConditions:

@@ -65,7 +65,7 @@ class SteadyPencil:
         """The same without damping and gyroscopic coupling."""
         return replace(self, C=np.zeros_like(self.C), G=np.zeros_like(self.G))
 
-    @property
+    @cached_property
     def conservative(self) -> bool:
         """Whether there is neither damping nor gyroscopic coupling."""
         return not (self.C.any() or self.G.any())
@@ -125,7 +125,7 @@ class Equations:
     shift: float = 0.0
     coarse: np.ndarray | None = None
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number n of coordinates."""
         return max(place.stop for place in self.blocks.values())
@@ -135,7 +135,7 @@ class Equations:
         """Largest number of coordinates of a block."""
         return max(place.stop - place.start for place in self.blocks.values())
 
-    @property
+    @cached_property
     def planes(self) -> int:
         """Number of directions in which the beam is deflected: 1 or 2."""
         return 1 + max(deflection.direction for deflection in self.deflections.values())

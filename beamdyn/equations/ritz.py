@@ -76,7 +76,7 @@ class Ritz:
     def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.coarser().functions)
+            return MomentSpaces(beam, self.functions, self.fewer)
         return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
@@ -87,13 +87,17 @@ class Ritz:
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
         if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.coarser().functions).quadrature.cells
+            return MomentSpaces(beam, self.functions, self.fewer).quadrature.cells
         return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""
-        ratio = _COARSER[self.basis]
-        return replace(self, functions=max(1, min(int(ratio * self.functions), self.functions - 2)))
+        return replace(self, functions=self.fewer)
+
+    @property
+    def fewer(self) -> int:
+        """Number of functions of the coarser basis."""
+        return max(1, min(int(_COARSER[self.basis] * self.functions), self.functions - 2))
 
     def finer(self) -> Ritz | None:
         """The next larger basis; None at the largest."""
@@ -103,7 +107,7 @@ class Ritz:
 
     def fits(self, modes: int) -> bool:
         """Whether the coarser basis has functions enough for a number of modes."""
-        return self.coarser().functions >= modes
+        return self.fewer >= modes
 
 
 @dataclass(frozen=True)
@@ -156,10 +160,10 @@ class RitzSpace(SampledSpace):
         basis = _BASES[self.spaces.ritz.basis][self.conditions]
         return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
 
-    @property
+    @cached_property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
-        functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.coarser().functions
+        functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
         return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))

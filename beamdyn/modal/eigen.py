@@ -291,10 +291,11 @@ def solve_diagonal(
     rounding : ndarray, shape (S, k)
         Relative error of w by the eigensolver.
     """
+    stiff, lowest = stiffness.min(axis=1) >= LEAST_STIFFNESS, lowest_at_rest * np.ones(len(stiffness))
+    if stiff.all():
+        return _solve_scaled(mass, stiffness, count, lowest)
     S, n = stiffness.shape
     squared, z, rounding = np.empty((S, count)), np.empty((S, n, count)), np.empty((S, count))
-    stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
-    lowest = np.broadcast_to(lowest_at_rest, (S,))
     for mask, solve in ((stiff, _solve_scaled), (~stiff, _solve_shifted)):
         if mask.any():
             M = mass[mask] if mass.ndim == 3 else mass

@@ -17,7 +17,7 @@ from beamdyn.modal.eigensolver import Eigen, Eigensolver
 
 _FEW = 160  # speeds that are solved each
 _INTERVALS = 8, 16, 32  # between the points, in turn: each time twice as many
-_HIGHEST = 3  # the last third of the coefficients: at the accuracy asked for, the others fall by more than all beyond
+_HIGHEST = 3  # the last third of the coefficients: where it is small, the series falls faster than that
 _MISFIT = 1e-12  # of interpolated squared frequencies, beside their rounding: it is in the stated error
 _MISFIT_OF_MODES = 1e-7  # of interpolated modes, relative to their largest coordinate: they are only compared
 _LEBESGUE = 3.0  # growth of rounding errors at the points by interpolation: constant of 17 to 33 points
@@ -86,10 +86,7 @@ def _solve_at_nodes(slowest: float, fastest: float, power: int, solve: Solve) ->
     low, high = slowest**power, fastest**power
     for intervals in _INTERVALS:
         speeds = np.clip(low + (high - low) * (1 + _nodes(intervals)) / 2, low, high) ** (1 / power)
-        if known is None:
-            known = solve(speeds)
-        else:
-            known = _interleave(known, solve(speeds[1::2]))
+        known = solve(speeds) if known is None else _interleave(known, solve(speeds[1::2]))
         yield known
 
 

@@ -20,6 +20,7 @@ from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
 from beamdyn.common.legendre import (
     gauss_points_on,
     gauss_rule,
+    integrate_series,
     legendre_series,
     multiply_series,
 )
@@ -152,9 +153,8 @@ class Profile(FieldsOnly):
 
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
-        half = np.diff(self.breakpoints) / 2
-        inner = np.asarray(legendre.legint(-half * self.series, lbnd=1.0))
-        of_segments = np.asarray(legendre.legval(-1.0, inner))
+        inner = integrate_series(-np.diff(self._ends) / 2 * self.series)
+        of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)  # values at the left ends
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 

@@ -90,8 +90,10 @@ def centrifugal_inertia(tip: TipMass, twist: float) -> np.ndarray:
 
 
 def _turned(first: float, second: float, angle: float) -> np.ndarray:
+    if not angle:
+        return np.array([[first, 0.0], [0.0, second]])
     R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return R @ np.diag([first, second]) @ R.T if angle else np.diag([first, second])
+    return R @ np.diag([first, second]) @ R.T
 
 
 def weight_degree(beam: Beam) -> int:

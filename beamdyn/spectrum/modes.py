@@ -207,15 +207,18 @@ def natural_modes(
     scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
-    vectors, status = _with_positive_tip(equations.tips, solution.eigen.vector[0]), _status(s)
+    vectors = _with_positive_tip(equations.tips, solution.eigen.vector[0])
     deflection, strain = static_load(solution.model, speeds)
-    warnings = _warnings(solution.model, speeds, deflection, strain, solution.error, status[None], tolerance)
+    growth_rate = np.real(s) + 0.0
+    warnings = _warnings(
+        solution.model, speeds, deflection, strain, solution.error, growth_rate[None], tolerance
+    )
     return Modes(
         speed=float(speeds[0]),
-        frequency=_frequency(s, status),
+        frequency=_frequency(s),
         error=solution.error[0],
-        growth_rate=np.real(s) + 0.0,
-        status=status,
+        growth_rate=growth_rate,
+        status=_status(s),
         eigenvalue=s,
         tip=np.real(equations.tip @ vectors),
         tip_across=np.real(equations.tip_across @ vectors),
@@ -241,19 +244,20 @@ def _check_tolerance(tolerance: float | None) -> float | None:
 def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Give the vectors the phase at which the larger of their tip deflections is real and positive."""
     each = tips @ vectors
-    deflection = np.take_along_axis(each, np.abs(each).argmax(axis=0)[None], axis=0)[0]
-    phase = np.where(deflection == 0, 1.0, deflection / np.abs(np.where(deflection == 0, 1.0, deflection)))
-    return vectors / phase
+    deflection = each[np.abs(each).argmax(axis=0), np.arange(each.shape[1])]
+    deflection[deflection == 0] = 1.0
+    return vectors / (deflection / np.abs(deflection))
 
 
 def _status(s: np.ndarray) -> np.ndarray:
     growing, oscillating = np.real(s) > 0, np.imag(s) != 0
-    names = ["flutter", "divergence", "stable", "neutral"]
-    return np.select([growing & oscillating, growing, oscillating, s == 0], names, "overdamped")
+    without_growth = np.where(oscillating, "stable", np.where(s == 0, "neutral", "overdamped"))
+    return np.where(growing, np.where(oscillating, "flutter", "divergence"), without_growth)
 
 
-def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
-    return np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
+def _frequency(s: np.ndarray) -> np.ndarray:
+    vibrates = (np.real(s) <= 0) & ((np.imag(s) != 0) | (s == 0))
+    return np.where(vibrates, np.imag(s) / (2 * np.pi), np.nan)
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -291,12 +295,12 @@ def _warnings(
     deflection: np.ndarray,
     strain: np.ndarray,
     error: np.ndarray,
-    status: np.ndarray,
+    growth_rate: np.ndarray,
     tolerance: float | None,
 ) -> Iterator[str]:
     scene = model.scene
     yield from warn_of_left_out(scene)
-    unstable = np.isin(status, ("divergence", "flutter"))
+    unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
         yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
@@ -463,20 +467,20 @@ def frequency_locus(
     order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
     s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]
     error = _track_error(solution, order[:, :modes])
-    status = _status(s)
+    growth_rate = np.real(s) + 0.0
     deflection, strain = static_load(solution.model, speeds)
     return Locus(
         speeds=speeds,
-        frequency=_frequency(s, status),
-        growth_rate=np.real(s) + 0.0,
+        frequency=_frequency(s),
+        growth_rate=growth_rate,
         confidence=confidence[:, :modes],
         error=error,
-        status=status,
+        status=_status(s),
         eigenvalue=s,
         plane_share=_track_shares(solution, order[:, :modes]),
         static_deflection=deflection,
         axial_strain=strain,
-        warnings=tuple(_warnings(solution.model, speeds, deflection, strain, error, status, tolerance)),
+        warnings=tuple(_warnings(solution.model, speeds, deflection, strain, error, growth_rate, tolerance)),
         provenance=_provenance(solution, start),
         scene=scene,
         model=solution.model,

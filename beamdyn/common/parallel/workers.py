@@ -168,7 +168,7 @@ def _receive(stream: BinaryIO | Any) -> bytes:
 
 @cache
 def _find_libraries() -> ThreadpoolController:
-    """The libraries of numpy and scipy that start threads, which stay loaded: the search takes milliseconds."""
+    """Libraries of numpy and scipy that start threads.  They stay loaded; to find them takes milliseconds."""
     return ThreadpoolController()
 
 

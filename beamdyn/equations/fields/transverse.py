@@ -137,6 +137,11 @@ class Trial:
         return self.first_moment + self.tilting_load(self.direction)
 
     @cached_property
+    def Q_across(self) -> np.ndarray:
+        """The same in the other direction, towards which oblique sections are tilted."""
+        return self.tilting_load(1 - self.direction)
+
+    @cached_property
     def P(self) -> np.ndarray:
         """Load under a unit root acceleration in the direction of the field [kg], shape (n,)."""
         return load_by_mass(self.beam, self.space) + self.tip.mass * self.centre
@@ -252,7 +257,7 @@ class TransverseField(Field):
                 pair = Pair(Trial(partner, scene, spaces), own)
                 above, skew = [*self._terms_with(pair)], [*_coriolis(pair)]
                 terms += [*above, *map(_transposed, above), *skew, *map(_transposed_skew, skew)]
-        deflection = Deflection(own.space, own.P, own.Q, own.tilting_load(1 - self.direction), self.direction)
+        deflection = Deflection(own.space, own.P, own.Q, own.Q_across, self.direction)
         turning = own.conditions.held == 1 and self.rotates
         return FieldEquations(own.space, (*terms,), (*_loads(own),), deflection, turning)
 
@@ -420,9 +425,8 @@ def _loads(trial: Trial) -> Iterator[Load]:
     cosine, sine = exact_cos_sin(trial.scene.mount.precone)
     i = trial.direction
     yield Load("angular acceleration", name, trial.Q, "acceleration", cosine * d[i])
-    across = trial.tilting_load(1 - i)
-    if across.any():
-        yield Load("angular acceleration", name, across, "acceleration", cosine * d[1 - i])
+    if trial.Q_across.any():
+        yield Load("angular acceleration", name, trial.Q_across, "acceleration", cosine * d[1 - i])
     if sine:
         pressed = n[i] * trial.first_moment + trial.toppling_load(n)
         if pressed.any():
