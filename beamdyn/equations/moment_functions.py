@@ -91,6 +91,10 @@ class MomentSpaces(FieldsOnly):
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
+    def shares_functions(self, other: MomentSpaces) -> bool:
+        """Whether beam and numbers are the same: cells and forces follow every stiffness."""
+        return self == other
+
     @cached_property
     def polynomials(self) -> PiecewisePolynomials:
         """Polynomials on the parts of the beam between point masses."""

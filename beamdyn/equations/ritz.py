@@ -138,6 +138,10 @@ class RitzSpaces:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
+    def shares_functions(self, other: RitzSpaces) -> bool:
+        """Whether the basis and the segments are the same."""
+        return (self.ritz, self.breakpoints) == (other.ritz, other.breakpoints)
+
 
 @dataclass(frozen=True)
 class RitzSpace(SampledSpace):
@@ -160,9 +164,13 @@ class RitzSpace(SampledSpace):
         basis = _BASES[self.spaces.ritz.basis][self.conditions]
         return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
 
-    @cached_property
+    @property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
+        return self._coarse
+
+    @cached_property
+    def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
