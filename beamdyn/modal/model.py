@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.elastica import Elastica, assemble_elastica
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
-from beamdyn.modal.deflected import DeflectedSolver
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modal.uncoupled import solver_of, solver_over
 from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from beamdyn.equations.elastica import Elastica
+    from beamdyn.modal.deflected import DeflectedSolver
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,8 @@ class Model(FieldsOnly):
     @cached_property
     def _deflected(self) -> DeflectedSolver:
         """That of equations for deflections of any size."""
+        from beamdyn.modal.deflected import DeflectedSolver  # here, for the time that it takes to import
+
         assert self.elastica is not None
         return DeflectedSolver(self.elastica, self.scene.physics.branch)
 
@@ -54,6 +59,8 @@ class Model(FieldsOnly):
         """Equations of motion for deflections of any size; None where they are linear."""
         if not self.scene.physics.large_deflection:
             return None
+        from beamdyn.equations.elastica import assemble_elastica  # here, for the time that it takes to import
+
         return assemble_elastica(self.scene, self.discretization, self.equations)
 
     @cached_property
