@@ -8,13 +8,22 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 import beamdyn as bd
 from benchmarks.cases.scenes import HARVESTER, generated_cases, of_case, published_cases
 from benchmarks.cases.uniform_blade import computed_eigenvalues, exact_eigenvalues
-from benchmarks.rows import Row, best_time, show
+from benchmarks.peers import pybmodes
+from benchmarks.peers.ours import BLADE_SCENE
+from benchmarks.rows import Row, best_time, show, time_text
+
+_CALLS = 50  # of milliseconds, of which the shortest counts
+_FIRST_CALL = """
+import beamdyn as bd
+bd.natural_modes(bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0)), 1.0)
+"""
 
 
 def compare_with_tables() -> Iterator[Row]:
@@ -86,7 +95,28 @@ def time_locus() -> Iterator[Row]:
     yield "beamdyn --help [s]", f"{help_time:.2f}", "0.5"
 
 
-PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus
+def time_one_call() -> Iterator[Row]:
+    """Times of one call for a uniform blade, beside a peer with 5 elements, and of the first call."""
+    scenes = (
+        replace(BLADE_SCENE, beam=replace(BLADE_SCENE.beam, length=1 + 1e-13 * k)) for k in range(_CALLS)
+    )
+    built, speed = iter([*scenes]), 6.0
+    ours = best_time(lambda: bd.natural_modes(next(built), speed, 1, tolerance=1e-3), _CALLS)
+    said, what = "not installed", f"one call, tolerance 1e-3, over {pybmodes.NAME} with 5 elements"
+    if pybmodes.version() is not None:
+        with pybmodes.model(pybmodes.deck(5, speed), pybmodes.SECTIONS) as blade:
+            said = f"{ours / best_time(lambda: blade.run(n_modes=1, check_model=False), _CALLS):.2f}"
+    yield f"uniform blade: {what}", f"{said} ({time_text(ours)})", "0.5"
+    ratio = time_process(_FIRST_CALL) / time_process("import scipy.linalg")
+    yield "import and first call over `import scipy.linalg`", f"{ratio:.2f}", "1.5"
+
+
+def time_process(script: str) -> float:
+    """Shortest time [s] of fresh processes that run a script."""
+    return best_time(lambda: subprocess.run([sys.executable, "-c", script], check=True), 5)
+
+
+PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus, time_one_call
 
 
 def main() -> None:

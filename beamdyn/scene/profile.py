@@ -29,7 +29,7 @@ from beamdyn.common.pickling import FieldsOnly
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
 _FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
-_NOISE = 4 * float(np.finfo(float).eps)  # of the coefficients of a fit, relative to the largest
+_NOISE = 8 * float(np.finfo(float).eps)  # of the coefficients of a fit, relative to the largest
 _SPACING = 2.5e-5  # in x/L, of the samples of a user's function: no wider feature is missed
 _FEW = 513  # samples denser towards the ends of a segment, where a fit is compared first
 _AT_ONCE = 4096  # samples compared at once, which fit into the processor's cache
@@ -141,11 +141,6 @@ class Profile(FieldsOnly):
         """Values at Gauss points of each segment, shape (segments, points)."""
         return (legendre.legvander(gauss_rule(points)[0], self.degree) @ self.series).T
 
-    def map(self, function: Callable[[np.ndarray], np.ndarray]) -> Profile:
-        """Apply an analytic function, such as the cosine, to the property; exact to rounding."""
-        rows = _map_series(function, self)
-        return Profile(self.breakpoints, tuple(map(tuple, rows)))
-
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
         rows = [tuple([factor * c for c in row]) for row in self.coefficients]
@@ -175,25 +170,35 @@ def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
     return profile
 
 
-def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) -> list[list[float]]:
-    """Legendre coefficients of a function of a property: as many on each segment as do not vanish."""
-    rows: list[list[float]] = [[]] * len(profile.coefficients)
-    varying = np.array([len(row) > 1 for row in profile.coefficients])
-    for k in np.flatnonzero(~varying):
-        rows[k] = [float(function(np.array(profile.coefficients[k]))[0])]
-    left = np.flatnonzero(varying)
+def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Profile]:
+    """Apply an analytic function of some properties that gives others; exact to rounding.
+
+    Parameters
+    ----------
+    function : callable
+        Takes the values (c, n) of each property and returns those of the k others: shape (k, c, n).
+    *profiles : Profile
+        The properties.
+
+    Raises
+    ------
+    ValueError
+        If the others vary too quickly between breakpoints.
+    """
+    ends = merge_breakpoints(np.concatenate([profile.breakpoints for profile in profiles]))
+    parts, unresolved = [profile.split(ends) for profile in profiles], np.array([0])
     for nodes in _FIT_NODES:
-        values = function(profile.at_points(nodes)[left])
-        series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values.T)
-        largest = np.abs(series).max(axis=0)
-        resolved = (np.abs(series[-3:]) <= _FIT_TOLERANCE * largest).all(axis=0)
-        kept = np.abs(series) > _NOISE * largest
-        length = np.maximum(nodes - kept[::-1].argmax(axis=0), 1)
-        for k, row, n in zip(left[resolved], series.T[resolved].tolist(), length[resolved], strict=True):
-            rows[k] = row[:n]
-        if not (left := left[~resolved]).size:
-            return rows
-    a, b = profile.breakpoints[left[0] : left[0] + 2]
+        values = np.swapaxes(function(*(part.at_points(nodes) for part in parts)), 1, 2)
+        series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values)
+        largest = np.abs(series).max(axis=1, keepdims=True)
+        unresolved = np.flatnonzero((np.abs(series[:, -3:]) > _FIT_TOLERANCE * largest).any(axis=(0, 1)))
+        if not unresolved.size:
+            kept = (np.abs(series) > _NOISE * largest).any(axis=2)
+            return [
+                _of_series(ends, s[: max(np.flatnonzero(k), default=0) + 1])
+                for s, k in zip(series, kept, strict=True)
+            ]
+    a, b = ends[unresolved[0] : unresolved[0] + 2]
     raise ValueError(
         f"the property varies too quickly between x/L = {a:.4g} and {b:.4g}: give breakpoints between them"
     )
