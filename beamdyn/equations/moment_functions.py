@@ -116,7 +116,8 @@ class MomentSpaces(FieldsOnly):
         """Whether each cell, of these ends, is to be halved."""
         coarse = self.polynomials.phases(left, right, self.forces) > _PHASE
         for name, tensor in self._stiffnesses.items():
-            values = {entry: profile.within(left, right, NODES) for entry, profile in tensor.items()}
+            at_nodes = {profile: profile.within(left, right, NODES) for profile in set(tensor.values())}
+            values = {entry: at_nodes[profile] for entry, profile in tensor.items()}
             for (i, _), entry in invert(values).items():
                 rounding = _ROUNDING * self._largest[name, i] / np.abs(values[i, i]).min(axis=1)
                 coarse |= ~_are_resolved(entry, rounding)

@@ -26,10 +26,7 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
-from beamdyn.model_error.choice import choose_physics
-from beamdyn.model_error.large_deflection import bends
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -109,6 +106,10 @@ class Modes(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects that the model leaves out would change in each frequency (m,)."""
+        from beamdyn.model_error.of_modes import (
+            left_out_of_modes,
+        )  # here, for the time that it takes to import
+
         return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -196,7 +197,10 @@ def natural_modes(
     speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
     check_speeds(speeds, "speed")
     tolerance = check_tolerance(tolerance)
-    scene = choose_physics(scene, speeds, modes, tolerance)
+    if scene.chooses_physics:
+        from beamdyn.model_error.choice import choose_physics  # here, for the time that it takes to import
+
+        scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
     vectors = _with_positive_tip(equations.tips, solution.eigen.vector[0])
@@ -313,7 +317,11 @@ def warn_of_modes(
 def _warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[str]:
     """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
     lost = np.isnan(deflection)
-    if lost.any() and bends(model):
+    if not lost.any():
+        return
+    from beamdyn.model_error.large_deflection import bends  # here, for the time that it takes to import
+
+    if bends(model):
         yield (
             f"at {list_range(speeds[lost])} the straight beam is unstable; the rotation bends it before: "
             f"the answer is {OUTSIDE}"
