@@ -24,6 +24,7 @@ from beamdyn.modal.springs import (
     find_free_turns,
     insert_free_turns,
     leave_out_slowest,
+    part_free_turns,
     remove_shift,
     softening_of_graded,
     softening_on_springs,
@@ -132,11 +133,13 @@ class Solver(Eigensolver):
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         squared, z, rounding = solve_diagonal(self.mass, stiffness, count, self.lowest_at_rest)
         rounding += self._estimate_rounding(speeds, squared, z)
+        vector = self.basis @ z
         if self.pencil.shift:
-            squared, rounding = remove_shift(self.pencil, speeds, squared, self.basis @ z, rounding)
+            squared, rounding = remove_shift(self.pencil, speeds, squared, vector, rounding)
+            vector = part_free_turns(self.pencil, squared, vector)
         root = np.sqrt(np.abs(squared))
         eigenvalue = np.where(squared > 0, 1j * root, root)
-        return Eigen(eigenvalue, self.basis @ z, np.where(squared == 0, np.inf, rounding))
+        return Eigen(eigenvalue, vector, np.where(squared == 0, np.inf, rounding))
 
     def _estimate_rounding(self, speeds: np.ndarray, squared: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Estimate the relative error (S, k) of squared frequencies due to rounding of the matrices."""

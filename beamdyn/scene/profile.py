@@ -187,11 +187,13 @@ def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Pro
     """
     ends = merge_breakpoints(np.concatenate([profile.breakpoints for profile in profiles]))
     parts, unresolved = [profile.split(ends) for profile in profiles], np.array([0])
-    for nodes in _FIT_NODES:
+    for nodes in _FIT_NODES if any(part.degree for part in parts) else (1,):
         values = np.swapaxes(function(*(part.at_points(nodes) for part in parts)), 1, 2)
         series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values)
         largest = np.abs(series).max(axis=1, keepdims=True)
-        unresolved = np.flatnonzero((np.abs(series[:, -3:]) > _FIT_TOLERANCE * largest).any(axis=(0, 1)))
+        unresolved = np.flatnonzero(
+            (np.abs(series[:, 1:][:, -3:]) > _FIT_TOLERANCE * largest).any(axis=(0, 1))
+        )
         if not unresolved.size:
             kept = (np.abs(series) > _NOISE * largest).any(axis=2)
             return [

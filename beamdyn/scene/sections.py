@@ -68,7 +68,7 @@ def _turned_values(
 ) -> np.ndarray:
     """Entries 11, 12 and 22 of the tensor."""
     c, s = np.cos(twist), np.sin(twist)
-    return np.stack([first * c**2 + second * s**2, excess * c * s, first * s**2 + second * c**2])
+    return np.stack([first * c**2 + second * s**2, excess * (c * s), first * s**2 + second * c**2])
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:
