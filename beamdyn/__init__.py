@@ -48,13 +48,7 @@ _NAMES = {
     "scene.scene": ("Scene",),
     "spectrum.backbone": ("Backbone", "backbone"),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
-    "spectrum.critical": (
-        "CriticalPoint",
-        "SettingAngleLimits",
-        "critical_point",
-        "critical_speed",
-        "setting_angle_limits",
-    ),
+    "spectrum.critical": ("CriticalPoint", "critical_point", "critical_speed"),
     "spectrum.equilibria": (
         "Equilibrium",
         "EquilibriumBranch",
@@ -62,7 +56,9 @@ _NAMES = {
         "equilibrium",
         "equilibrium_branches",
     ),
-    "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
+    "spectrum.locus": ("Locus", "frequency_locus"),
+    "spectrum.modes": ("Modes", "natural_modes"),
+    "spectrum.setting_angles": ("SettingAngleLimits", "setting_angle_limits"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
     "common.designs": ("VariedInput",),
@@ -120,13 +116,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
-    from beamdyn.spectrum.critical import (
-        CriticalPoint,
-        SettingAngleLimits,
-        critical_point,
-        critical_speed,
-        setting_angle_limits,
-    )
+    from beamdyn.spectrum.critical import CriticalPoint, critical_point, critical_speed
     from beamdyn.spectrum.equilibria import (
         Equilibrium,
         EquilibriumBranch,
@@ -134,7 +124,9 @@ if TYPE_CHECKING:
         equilibrium,
         equilibrium_branches,
     )
-    from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
+    from beamdyn.spectrum.locus import Locus, frequency_locus
+    from beamdyn.spectrum.modes import Modes, natural_modes
+    from beamdyn.spectrum.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.studies.result import Study

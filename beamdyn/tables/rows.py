@@ -11,7 +11,8 @@ from beamdyn.tables.results import largest_by_direction, model_error_at
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
-    from beamdyn.spectrum.modes import Locus, Modes
+    from beamdyn.spectrum.locus import Locus
+    from beamdyn.spectrum.modes import Modes
     from beamdyn.steady.resonance import Crossings
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.simulate import Transient
