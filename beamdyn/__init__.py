@@ -68,8 +68,9 @@ _NAMES = {
     "tradeoffs": ("Tradeoff", "tradeoff"),
     "transient.chunk_collector": ("SweepInterrupted",),
     "transient.gauss": ("GaussCollocation",),
-    "transient.simulate": ("Transient", "simulate"),
+    "transient.simulate": ("simulate",),
     "transient.sweep": ("Sweep", "sweep"),
+    "transient.transient": ("Transient",),
 }
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
 __all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
@@ -134,8 +135,9 @@ if TYPE_CHECKING:
     from beamdyn.tradeoffs import Tradeoff, tradeoff
     from beamdyn.transient.chunk_collector import SweepInterrupted
     from beamdyn.transient.gauss import GaussCollocation
-    from beamdyn.transient.simulate import Transient, simulate
+    from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, sweep
+    from beamdyn.transient.transient import Transient
 
 
 def __getattr__(name: str) -> Any:

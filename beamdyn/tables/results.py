@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.setting_angles import SettingAngleLimits
     from beamdyn.steady.resonance import Crossing, Crossings
     from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
+    from beamdyn.transient.transient import Transient
 
 _MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
 Cell: TypeAlias = "str | Text"  # of a table

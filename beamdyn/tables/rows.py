@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.modes import Modes
     from beamdyn.steady.resonance import Crossings
     from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
+    from beamdyn.transient.transient import Transient
 
 _WHERE_COMPUTED = "model_error_where_computed"
 
