@@ -1,0 +1,139 @@
+"""The numbers of a scene that an answer may depend on, with their values and the steps to take of them."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.described import descriptions
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import Profile, mean
+from beamdyn.scene.rectangle import rectangle_of
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.inputs import SCALE
+
+_STEP = 0.01  # of a value, or of the size of its kind
+_SECTION = {"width": "m", "thickness": "m", "youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
+_PROPERTIES = {
+    "mass_per_length": "kg/m",
+    "bending_stiffness": "N m2",
+    "second_bending_stiffness": "N m2",
+    "axial_stiffness": "N",
+    "shear_stiffness": "N",
+    "second_shear_stiffness": "N",
+    "rotary_inertia": "kg m",
+    "second_rotary_inertia": "kg m",
+}
+
+
+@dataclass(frozen=True)
+class SceneInput:
+    """A number of a scene.
+
+    Parameters
+    ----------
+    name : str
+        Its name in scene files, such as "beam.thickness"; "beam.scale.mass_per_length" is a factor of a
+        property that varies along the beam.
+    unit : str
+        Its SI unit.
+    value : float
+        Its value [unit].
+    step : float
+        Largest change within which the equations are evaluated for a derivative [unit].
+    least : float
+        Smallest value that it may have [unit].
+    """
+
+    name: str
+    unit: str
+    value: float
+    step: float
+    least: float = -math.inf
+
+
+def inputs_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneInput, ...]:
+    """The numbers of a scene, all or those that are named.
+
+    Raises
+    ------
+    InvalidValue
+        If a name is none of theirs.
+    """
+    found = {each.name: each for each in _all(scene)}
+    if names is None:
+        return tuple(found.values())
+    for name in names:
+        if name not in found:
+            near = difflib.get_close_matches(str(name), found, n=1)
+            remedy = f"give {near[0] if near else ', '.join(found)}"
+            raise InvalidValue("inputs", name, "it is no number of this scene", remedy)
+    return tuple(found[name] for name in dict.fromkeys(names))
+
+
+def _all(scene: Scene) -> Iterator[SceneInput]:
+    yield _relative("beam.length", "m", scene.beam.length)
+    yield from _of_section(scene.beam)
+    yield from _of_twist(scene.beam)
+    yield from _of_tip(scene.beam)
+    yield from _of_mount(scene)
+    if scene.damping_ratio:
+        yield _relative("model.damping_ratio", "", scene.damping_ratio)
+
+
+def _relative(name: str, unit: str, value: float) -> SceneInput:
+    return SceneInput(name, unit, value, _STEP * abs(value), 0.0)
+
+
+def _of_section(beam: Beam) -> Iterator[SceneInput]:
+    """Sides and material of a rectangular section; else properties, or factors of those that vary."""
+    section = rectangle_of(beam)
+    if section is not None and all(isinstance(side, float) for side in (section.width, section.thickness)):
+        for name, unit in _SECTION.items():
+            if (value := getattr(section, name)) is not None:
+                yield _relative(f"beam.{name}", unit, float(value))
+        return
+    for name, unit in _PROPERTIES.items():
+        if (profile := getattr(beam, name)) is not None:
+            if _is_constant(profile):
+                yield _relative(f"beam.{name}", unit, float(profile.end_values()[0][0]))
+            else:
+                yield _relative(f"{SCALE}{name}", "", 1.0)
+
+
+def _of_twist(beam: Beam) -> Iterator[SceneInput]:
+    if beam.twist is not None and _is_constant(beam.twist):
+        yield SceneInput("beam.twist", "rad", float(beam.twist.end_values()[0][0]), _STEP)
+
+
+def _is_constant(profile: Profile) -> bool:
+    return profile.degree == 0 and len({*map(tuple, profile.coefficients)}) == 1
+
+
+def _of_tip(beam: Beam) -> Iterator[SceneInput]:
+    """Numbers of the tip body; its steps are of the beam's size where they are small."""
+    if beam.tip is None:
+        return
+    L, mass = beam.length, mean(beam.mass_per_length) * beam.length
+    sizes = {"kg": mass, "m": L, "kg m2": mass * L**2}
+    for name, found in descriptions(TipMass).items():
+        if (value := getattr(beam.tip, name)) is not None:
+            least = 0.0 if found.unit != "m" else -math.inf
+            step = _STEP * max(abs(value), sizes[found.unit])
+            yield SceneInput(f"beam.tip.{name}", found.unit, value, step, least)
+
+
+def _of_mount(scene: Scene) -> Iterator[SceneInput]:
+    for name, found in descriptions(Mount).items():
+        value = getattr(scene.mount, name)
+        if found.unit == "rad":
+            if name != "precone" or value:
+                yield SceneInput(f"mount.{name}", "rad", value, _STEP)
+        elif name == "radius":
+            yield SceneInput("mount.radius", "m", value, _STEP * max(value, scene.beam.length), 0.0)
+        elif math.isfinite(value) and (name == "root_stiffness" or scene.physics.planes == 2):
+            yield _relative(f"mount.{name}", found.unit, value)
