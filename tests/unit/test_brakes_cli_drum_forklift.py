@@ -119,7 +119,7 @@ def test_a_picture_of_a_locked_brake(run, edited, tmp_path: Path) -> None:
 
 def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
     path, plot = tmp_path / "s.csv", tmp_path / "s.png"
-    options = ("--sweep", "friction=0.35:1.2:2", "--result", "torque,pin_1", "--csv", path, "--plot", plot)
+    options = ("--vary", "friction=0.35:1.2:2", "--what", "torque,pin_1", "--csv", path, "--plot", plot)
     code, out, err = run("drum", DRUM, *options)
     assert code == DONE and "locked in 1 of 2 cases" in err
     rows = table(path)
@@ -131,10 +131,10 @@ def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "options, part",
     [
-        (("--result", "torque"), "--result goes with --sweep"),
-        (("--sweep", "friction=0.1:0.5:3", "--result", "trque"), "did you mean torque"),
-        (("--sweep", "friction=0.1:0.5:3", "--sweep", "brake.friction=0.1:0.5:3"), "two inputs"),
-        (("--sweep", "lining_end=20:80:4 deg"), "lining_end = 20 deg"),
+        (("--what", "torque"), "--what goes with --vary"),
+        (("--vary", "friction=0.1:0.5:3", "--what", "trque"), "did you mean torque"),
+        (("--vary", "friction=0.1:0.5:3", "--vary", "brake.friction=0.1:0.5:3"), "two inputs"),
+        (("--vary", "lining_end=20:80:4 deg"), "lining_end = 20 deg"),
         (("--swep", "x"), "--help"),
     ],
 )
@@ -145,7 +145,7 @@ def test_bad_options(run, options: tuple[str, ...], part: str) -> None:
 
 def test_two_sweeps_have_a_row_a_case(run, tmp_path: Path) -> None:
     path = tmp_path / "s.csv"
-    sweeps = ("--sweep", "friction=0.2:0.4:3", "--sweep", "load.force=1:2:2 kN")
+    sweeps = ("--vary", "friction=0.2:0.4:3", "--vary", "load.force=1:2:2 kN")
     assert run("drum", DRUM, *sweeps, "--csv", path)[0] == DONE
     rows = [[float(x) for x in row[:3]] for row in table(path)[1:]]
     assert [row[:2] for row in rows] == [[mu, P] for P in (1.0, 2.0) for mu in (0.2, pytest.approx(0.3), 0.4)]
@@ -229,7 +229,7 @@ def test_files_of_a_forklift(run, tmp_path: Path) -> None:
 
 def test_sweep_of_a_forklift(run, tmp_path: Path) -> None:
     path = tmp_path / "s.csv"
-    options = ("--sweep", "load_mass=0:3500:3 kg", "--result", "distance", "--csv", path)
+    options = ("--vary", "load_mass=0:3500:3 kg", "--what", "distance", "--csv", path)
     code, out, err = run("forklift", FORKLIFT, "--stage", "vehicle", *options)
     assert code == DONE and "1 of 3 cases do not stop" in err and "never" in out
     distances = [float(row[1]) for row in table(path)[1:]]

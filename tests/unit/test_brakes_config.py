@@ -329,7 +329,7 @@ def test_short_keys_mean_the_input_that_must_be_given(key: str, path: str) -> No
 def test_mistakes_in_a_sweep(text: str, parts: list[str]) -> None:
     with pytest.raises(ValueError) as refusal:
         parse_axis(drum_from_dict(DRUM), text)
-    assert [part for part in ["--sweep", *parts] if part not in str(refusal.value)] == []
+    assert [part for part in ["--vary", *parts] if part not in str(refusal.value)] == []
 
 
 def test_an_ambiguous_key_names_its_candidates() -> None:
