@@ -133,9 +133,13 @@ def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
     [
         (("--what", "torque"), "--what goes with --vary"),
         (("--vary", "friction=0.1:0.5:3", "--what", "trque"), "did you mean torque"),
-        (("--vary", "friction=0.1:0.5:3", "--vary", "brake.friction=0.1:0.5:3"), "two inputs"),
+        (("--vary", "friction=0.1:0.5:3", "--vary", "brake.friction=0.1:0.5:3"), "given twice"),
         (("--vary", "lining_end=20:80:4 deg"), "lining_end = 20 deg"),
         (("--swep", "x"), "--help"),
+        (("--sweep", "friction=0.1:0.5:3"), "Did you mean --vary?"),
+        (("--vary", "friction=0.1:0.5:3", "--result", "torque"), "Did you mean --what?"),
+        (("--together",), "--together goes with --vary"),
+        (("--vary", "friction=0.1:0.5:3", "--vary", "load.force=1:2:2 kN", "--together"), "3 and 2 values"),
     ],
 )
 def test_bad_options(run, options: tuple[str, ...], part: str) -> None:
@@ -148,8 +152,8 @@ def test_two_sweeps_have_a_row_a_case(run, tmp_path: Path) -> None:
     sweeps = ("--vary", "friction=0.2:0.4:3", "--vary", "load.force=1:2:2 kN")
     assert run("drum", DRUM, *sweeps, "--csv", path)[0] == DONE
     rows = [[float(x) for x in row[:3]] for row in table(path)[1:]]
-    assert [row[:2] for row in rows] == [[mu, P] for P in (1.0, 2.0) for mu in (0.2, pytest.approx(0.3), 0.4)]
-    assert rows[4][2] == pytest.approx(2 * rows[1][2], rel=1e-13)  # torque grows with the force
+    assert [row[:2] for row in rows] == [[mu, P] for mu in (0.2, pytest.approx(0.3), 0.4) for P in (1.0, 2.0)]
+    assert rows[3][2] == pytest.approx(2 * rows[2][2], rel=1e-13)  # torque grows with the force
 
 
 # Forklift -----------------------------------------------------------------------------------------------

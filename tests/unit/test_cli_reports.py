@@ -213,7 +213,7 @@ def test_markup_of_a_file_stays_text(tmp_path, capsys):
 
 
 def test_options_cannot_leave_their_comment():
-    asked = Question.of("brakes drum", "a.toml", "x = 1\n", sweep=("a\nx = 2", "b\r\nx = 3"), none=None)
+    asked = Question.of("brakes drum", "a.toml", "x = 1\n", vary=("a\nx = 2", "b\r\nx = 3"), none=None)
     assert tomllib.loads(asked.inputs) == {"x": 1}
     assert asked.inputs.splitlines()[0].count("--vary") == 2 and "none" not in asked.inputs
 
