@@ -63,6 +63,13 @@ _NAMES = {
         "equilibrium_branches",
     ),
     "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
+    "sensitivities.result": ("Sensitivities",),
+    "sensitivities.scene_numbers": ("SceneNumber",),
+    "sensitivities.sensitivities": (
+        "critical_speed_sensitivities",
+        "crossing_sensitivities",
+        "frequency_sensitivities",
+    ),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
     "common.designs": ("VariedInput",),
@@ -116,6 +123,13 @@ if TYPE_CHECKING:
     from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
+    from beamdyn.sensitivities.result import Sensitivities
+    from beamdyn.sensitivities.scene_numbers import SceneNumber
+    from beamdyn.sensitivities.sensitivities import (
+        critical_speed_sensitivities,
+        crossing_sensitivities,
+        frequency_sensitivities,
+    )
     from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.spectrum.critical import (

@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.sensitivities.scene_inputs import SceneInput
+from beamdyn.sensitivities.scene_numbers import SceneNumber
 
 PLACES = 8
 
@@ -21,7 +21,7 @@ Evaluated = TypeVar("Evaluated")
 
 
 def evaluate_nearby(
-    number: SceneInput, evaluate: Callable[[float], Evaluated]
+    number: SceneNumber, evaluate: Callable[[float], Evaluated]
 ) -> tuple[list[Evaluated], np.ndarray]:
     """Evaluate something around a number, and give the weights of its derivative there.
 
@@ -29,7 +29,7 @@ def evaluate_nearby(
 
     Parameters
     ----------
-    number : SceneInput
+    number : SceneNumber
         The number.
     evaluate : callable
         Function of the number's value.
@@ -57,14 +57,15 @@ def evaluate_nearby(
     raise refused
 
 
-def _intervals(number: SceneInput) -> Iterator[tuple[float, float]]:
-    """Around the number, above it, and below it."""
-    value, step = number.value, number.step
-    if value - step >= number.least:
-        yield value - step, value + step
-    yield value, value + step
-    if value - step >= number.least:
-        yield value - step, value
+def _intervals(number: SceneNumber) -> Iterator[tuple[float, float]]:
+    """Around the number, above it, and below it; then nearer, where other numbers of the scene limit it."""
+    for step in (number.step, 1e-2 * number.step, 1e-4 * number.step):
+        low, high = number.value - step, number.value + step
+        if low >= number.least:
+            yield low, high
+        yield number.value, high
+        if low >= number.least:
+            yield low, number.value
 
 
 def _weights(nodes: np.ndarray, at: float) -> np.ndarray:

@@ -15,8 +15,6 @@ import scipy.linalg
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 
-_MATRICES = ("M", "C", "G", "K0", "K2")
-
 
 @dataclass(frozen=True)
 class PencilChange:
@@ -89,7 +87,20 @@ class PerturbedModes:
         """Derivatives of the eigenvalues with respect to the speed, shape (k,)."""
         p = self.pencil
         changes = (s * p.G + 2 * self.speed * p.K2 for s in self.eigenvalue)
-        return np.array([self._quotient(k, dP) if self.eigenvalue[k] else _NONE for k, dP in enumerate(changes)])
+        return np.array(
+            [self._quotient(k, dP) if self.eigenvalue[k] else _NONE for k, dP in enumerate(changes)]
+        )
+
+    def scales(self) -> np.ndarray:
+        """What the parts of P(s) change the eigenvalues by, each taken by its size, shape (k,)."""
+        p = self.pencil
+        parts = (
+            sum(abs(self._quotient(k, part)) for part in (s**2 * p.M, p.K0, self.speed**2 * p.K2))
+            if s
+            else np.nan
+            for k, s in enumerate(self.eigenvalue)
+        )
+        return np.array([*parts])
 
     def _quotient(self, k: int, dP: np.ndarray) -> complex:
         p, s, v, w = self.pencil, self.eigenvalue[k], self.right[:, k], self.left[:, k]

@@ -11,13 +11,12 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.described import descriptions
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount
-from beamdyn.scene.profile import Profile, mean
-from beamdyn.scene.rectangle import rectangle_of
+from beamdyn.scene.profile import Profile, as_profile, mean
+from beamdyn.scene.rectangle import Rectangle, rectangle_of
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.inputs import SCALE
 
 _STEP = 0.01  # of a value, or of the size of its kind
-_SECTION = {"width": "m", "thickness": "m", "youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
 _PROPERTIES = {
     "mass_per_length": "kg/m",
     "bending_stiffness": "N m2",
@@ -31,7 +30,7 @@ _PROPERTIES = {
 
 
 @dataclass(frozen=True)
-class SceneInput:
+class SceneNumber:
     """A number of a scene.
 
     Parameters
@@ -56,7 +55,7 @@ class SceneInput:
     least: float = -math.inf
 
 
-def inputs_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneInput, ...]:
+def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneNumber, ...]:
     """The numbers of a scene, all or those that are named.
 
     Raises
@@ -75,46 +74,64 @@ def inputs_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneIn
     return tuple(found[name] for name in dict.fromkeys(names))
 
 
-def _all(scene: Scene) -> Iterator[SceneInput]:
+def _all(scene: Scene) -> Iterator[SceneNumber]:
     yield _relative("beam.length", "m", scene.beam.length)
-    yield from _of_section(scene.beam)
-    yield from _of_twist(scene.beam)
+    yield from _of_section(scene)
+    yield from _of_twist(scene.modelled_beam)
     yield from _of_tip(scene.beam)
     yield from _of_mount(scene)
     if scene.damping_ratio:
         yield _relative("model.damping_ratio", "", scene.damping_ratio)
 
 
-def _relative(name: str, unit: str, value: float) -> SceneInput:
-    return SceneInput(name, unit, value, _STEP * abs(value), 0.0)
+def _relative(name: str, unit: str, value: float) -> SceneNumber:
+    return SceneNumber(name, unit, value, _STEP * abs(value), 0.0)
 
 
-def _of_section(beam: Beam) -> Iterator[SceneInput]:
+def _of_section(scene: Scene) -> Iterator[SceneNumber]:
     """Sides and material of a rectangular section; else properties, or factors of those that vary."""
-    section = rectangle_of(beam)
-    if section is not None and all(isinstance(side, float) for side in (section.width, section.thickness)):
-        for name, unit in _SECTION.items():
-            if (value := getattr(section, name)) is not None:
-                yield _relative(f"beam.{name}", unit, float(value))
-        return
+    section = rectangle_of(scene.beam)
+    if section is not None and isinstance(section.width, float):
+        sides = {name: as_profile(name, getattr(section, name)) for name in ("width", "thickness")}
+        if all(map(_is_constant, sides.values())):
+            yield from (_relative(f"beam.{name}", "m", _at_root(side)) for name, side in sides.items())
+            yield from _of_material(scene, section)
+            return
+    yield from _of_properties(scene)
+
+
+def _of_material(scene: Scene, section: Rectangle) -> Iterator[SceneNumber]:
+    yield _relative("beam.youngs_modulus", "Pa", section.youngs_modulus)
+    yield _relative("beam.density", "kg/m3", section.density)
+    if scene.physics.shear and section.poissons_ratio is not None:
+        yield SceneNumber("beam.poissons_ratio", "", section.poissons_ratio, _STEP)
+
+
+def _of_properties(scene: Scene) -> Iterator[SceneNumber]:
+    """The properties that are modelled: axial stiffness is for the stretch alone."""
     for name, unit in _PROPERTIES.items():
-        if (profile := getattr(beam, name)) is not None:
+        profile = getattr(scene.modelled_beam, name)
+        if profile is not None and (name != "axial_stiffness" or scene.physics.stretch):
             if _is_constant(profile):
-                yield _relative(f"beam.{name}", unit, float(profile.end_values()[0][0]))
+                yield _relative(f"beam.{name}", unit, _at_root(profile))
             else:
                 yield _relative(f"{SCALE}{name}", "", 1.0)
 
 
-def _of_twist(beam: Beam) -> Iterator[SceneInput]:
+def _of_twist(beam: Beam) -> Iterator[SceneNumber]:
     if beam.twist is not None and _is_constant(beam.twist):
-        yield SceneInput("beam.twist", "rad", float(beam.twist.end_values()[0][0]), _STEP)
+        yield SceneNumber("beam.twist", "rad", _at_root(beam.twist), _STEP)
 
 
 def _is_constant(profile: Profile) -> bool:
     return profile.degree == 0 and len({*map(tuple, profile.coefficients)}) == 1
 
 
-def _of_tip(beam: Beam) -> Iterator[SceneInput]:
+def _at_root(profile: Profile) -> float:
+    return float(profile.end_values()[0][0])
+
+
+def _of_tip(beam: Beam) -> Iterator[SceneNumber]:
     """Numbers of the tip body; its steps are of the beam's size where they are small."""
     if beam.tip is None:
         return
@@ -124,16 +141,16 @@ def _of_tip(beam: Beam) -> Iterator[SceneInput]:
         if (value := getattr(beam.tip, name)) is not None:
             least = 0.0 if found.unit != "m" else -math.inf
             step = _STEP * max(abs(value), sizes[found.unit])
-            yield SceneInput(f"beam.tip.{name}", found.unit, value, step, least)
+            yield SceneNumber(f"beam.tip.{name}", found.unit, value, step, least)
 
 
-def _of_mount(scene: Scene) -> Iterator[SceneInput]:
+def _of_mount(scene: Scene) -> Iterator[SceneNumber]:
     for name, found in descriptions(Mount).items():
         value = getattr(scene.mount, name)
         if found.unit == "rad":
             if name != "precone" or value:
-                yield SceneInput(f"mount.{name}", "rad", value, _STEP)
+                yield SceneNumber(f"mount.{name}", "rad", value, _STEP)
         elif name == "radius":
-            yield SceneInput("mount.radius", "m", value, _STEP * max(value, scene.beam.length), 0.0)
+            yield SceneNumber("mount.radius", "m", value, _STEP * max(value, scene.beam.length), 0.0)
         elif math.isfinite(value) and (name == "root_stiffness" or scene.physics.planes == 2):
             yield _relative(f"mount.{name}", found.unit, value)
