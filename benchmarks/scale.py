@@ -111,10 +111,21 @@ def many_designs(count: int, workers: int) -> Iterator[Row]:
     yield "... efficiency against one process, with the killed worker", f"{efficiency:.2f}", "-"
     yield "... calls of progress; last", f"{len(accident.calls)}; {accident.calls[-1]} of {count}", "-"
     yield "... largest memory of a worker [MB]", f"{max(memory.values()):.0f}", "-"
-    yield "... largest memory of this process, before and after [MB]", f"{before:.0f}, {peak_memory():.0f}", "-"
-    yield f"... {COMPARED} of them: largest deviation from single calls, over the stated errors", f"{worst(found):.2f}", "1"
+    yield (
+        "... largest memory of this process, before and after [MB]",
+        f"{before:.0f}, {peak_memory():.0f}",
+        "-",
+    )
+    yield (
+        f"... {COMPARED} of them: largest deviation from single calls, over the stated errors",
+        f"{worst(found):.2f}",
+        "1",
+    )
     if count == sample:
-        same = all(np.array_equal(getattr(own, n), getattr(found, n), equal_nan=n == "value") for n in ("value", "error"))
+        same = all(
+            np.array_equal(getattr(own, n), getattr(found, n), equal_nan=n == "value")
+            for n in ("value", "error")
+        )
         yield "... the same to the bit as in one process", "yes" if same else "no", "yes"
 
 
@@ -150,7 +161,9 @@ def many_speeds(count: int, workers: int) -> Iterator[Row]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--designs", type=int, default=1_000_000)
     parser.add_argument("--speeds", type=int, default=10_000)
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
