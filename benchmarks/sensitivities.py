@@ -36,7 +36,7 @@ _OF_SCENE = 3  # numbers of a scene in two planes whose reference is computed
 
 
 def compare(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Errors of relative changes of the modes of one scene over its numbers, and the stated ones, shape (k,)."""
+    """Errors of the relative changes of one scene; and the stated ones with the reference's, shape (k,)."""
     rng = np.random.default_rng(seed)
     scene, speed = random_physics_scene(rng) if seed % 2 else random_scene(rng)
     with unannounced():
@@ -49,15 +49,17 @@ def compare(seed: int) -> tuple[np.ndarray, np.ndarray]:
     for k in chosen:
         number = found.inputs[k]
         size = max(abs(number.value), 100 * number.step) / found.value
-        errors.append((found.derivative[k] - reference(found.scene, speed, number)) * size)
-        stated.append(found.error[k] * size)
+        truth, doubt = reference(found.scene, speed, number)
+        errors.append((found.derivative[k] - truth) * size)
+        stated.append((found.error[k] + doubt) * size)
     return np.abs(np.concatenate(errors)), np.concatenate(stated)
 
 
-def by_differences(scene: bd.Scene, speed: float, number: SceneNumber) -> np.ndarray:
+def by_differences(scene: bd.Scene, speed: float, number: SceneNumber) -> tuple[np.ndarray, np.ndarray]:
     """Derivatives of frequencies [Hz / unit of the number] from eight 40-digit ones beside the scene.
 
-    Their squares are differenced, which are smooth where a frequency vanishes.
+    Their squares are differenced, which are smooth where a frequency vanishes.  What the derivatives' own
+    errors may be is added: the numbers of the scenes beside are rounded to 16 digits.
     """
     sides = (-4, -3, -2, -1, 1, 2, 3, 4) if number.value - number.step >= number.least else range(8)
     values = [number.value + side * _BESIDE * 100 * number.step for side in sides]
@@ -72,20 +74,25 @@ def by_differences(scene: bd.Scene, speed: float, number: SceneNumber) -> np.nda
         found = [
             mp.re(each) / (2 * s.imag) for each, s in zip(squares, exact(scene, speed, MODES), strict=True)
         ]
-        return np.array([float(each / (2 * mp.pi)) for each in found])
+        rounding = [float(2e-16 * mp.norm(weights, 1) * s.imag / mp.pi) for s in exact(scene, speed, MODES)]
+        return np.array([float(each / (2 * mp.pi)) for each in found]), np.array(rounding)
 
 
-def by_collocation(scene: bd.Scene, speed: float, number: SceneNumber) -> np.ndarray:
+def by_collocation(scene: bd.Scene, speed: float, number: SceneNumber) -> tuple[np.ndarray, np.ndarray]:
     """The same from eight frequencies by collocation of the differential equations."""
 
-    def squares(value: float) -> np.ndarray:
+    def squares(value: float) -> tuple[np.ndarray, float]:
         beside = scene_of(scene, {number.name: value})
         if scene.mount.precone:
-            return coned_frequencies_of(beside, speed, MODES, _RTOL)[0] ** 2
-        return squared_frequencies(beside, speed, MODES, _RTOL)[0]
+            found, change = coned_frequencies_of(beside, speed, MODES, _RTOL)
+            return found**2, change
+        return squared_frequencies(beside, speed, MODES, _RTOL)
 
-    values, weights = evaluate_nearby(number, squares)
-    return weights @ np.array(values) / (2 * np.sqrt(squares(number.value))) / (2 * np.pi)
+    pairs, weights = evaluate_nearby(number, squares)
+    frequency = np.sqrt(squares(number.value)[0]) / (2 * np.pi)
+    changes = weights @ np.array([square for square, _ in pairs])
+    relative = np.abs(weights).sum() * max(change for _, change in pairs) / 2
+    return changes / (8 * np.pi**2 * frequency), relative * frequency
 
 
 def summarize(scenes: int, first: int) -> Iterator[Row]:

@@ -92,19 +92,27 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """What the parts of P(s) change the eigenvalues by, each taken by its size, shape (k,)."""
+        """What P(s) would change the eigenvalues by if all its entries had one sign, shape (k,).
+
+        Rounding errors are relative to this.
+        """
         p = self.pencil
-        parts = (
-            sum(abs(self._quotient(k, part)) for part in (s**2 * p.M, p.K0, self.speed**2 * p.K2))
-            if s
-            else np.nan
+        whole = np.abs(p.K0) + self.speed**2 * np.abs(p.K2)
+        sums = [
+            np.abs(self.left[:, k]) @ (whole + abs(s) ** 2 * np.abs(p.M)) @ np.abs(self.right[:, k])
             for k, s in enumerate(self.eigenvalue)
-        )
-        return np.array([*parts])
+        ]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.array(sums) / np.abs([self._slope(k) for k in range(len(self.eigenvalue))])
 
     def _quotient(self, k: int, dP: np.ndarray) -> complex:
-        p, s, v, w = self.pencil, self.eigenvalue[k], self.right[:, k], self.left[:, k]
-        return -(w @ dP @ v) / (w @ (2 * s * p.M + p.C + self.speed * p.G) @ v)
+        return -(self.left[:, k] @ dP @ self.right[:, k]) / self._slope(k)
+
+    def _slope(self, k: int) -> complex:
+        """The derivative of P(s) by s between both eigenvectors."""
+        p = self.pencil
+        dP = 2 * self.eigenvalue[k] * p.M + p.C + self.speed * p.G
+        return self.left[:, k] @ dP @ self.right[:, k]
 
 
 _NONE = complex(np.nan, np.nan)  # a double eigenvalue 0 moves by the root of a change
