@@ -112,7 +112,7 @@ class PerturbedModes:
         """The derivative of P(s) by s between both eigenvectors."""
         p = self.pencil
         dP = 2 * self.eigenvalue[k] * p.M + p.C + self.speed * p.G
-        return self.left[:, k] @ dP @ self.right[:, k]
+        return complex(self.left[:, k] @ dP @ self.right[:, k])
 
 
 _NONE = complex(np.nan, np.nan)  # a double eigenvalue 0 moves by the root of a change

@@ -55,6 +55,17 @@ class SceneNumber:
     least: float = -math.inf
 
 
+def check_names(inputs: object) -> tuple[str, ...] | None:
+    """The names of numbers as they were given to an analysis; None for all."""
+    if inputs is None:
+        return None
+    good = isinstance(inputs, list | tuple) and inputs and all(isinstance(name, str) for name in inputs)
+    if not good:
+        raise InvalidValue("inputs", inputs, 'give names in a list, such as ["beam.thickness"]')
+    assert isinstance(inputs, list | tuple)
+    return tuple(dict.fromkeys(inputs))
+
+
 def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneNumber, ...]:
     """The numbers of a scene, all or those that are named.
 
@@ -71,7 +82,7 @@ def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneN
             near = difflib.get_close_matches(str(name), found, n=1)
             remedy = f"give {near[0] if near else ', '.join(found)}"
             raise InvalidValue("inputs", name, "it is no number of this scene", remedy)
-    return tuple(found[name] for name in dict.fromkeys(names))
+    return tuple(found[name] for name in names)
 
 
 def _all(scene: Scene) -> Iterator[SceneNumber]:

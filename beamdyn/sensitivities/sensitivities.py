@@ -28,7 +28,7 @@ from beamdyn.sensitivities.perturbation import (
     critical_vector,
 )
 from beamdyn.sensitivities.result import Sensitivities
-from beamdyn.sensitivities.scene_numbers import SceneNumber, numbers_of
+from beamdyn.sensitivities.scene_numbers import SceneNumber, check_names, numbers_of
 from beamdyn.spectrum.critical import critical_point
 from beamdyn.spectrum.modes import Modes, natural_modes
 from beamdyn.steady.resonance import Crossing, resonance_speeds
@@ -128,7 +128,7 @@ def critical_speed_sensitivities(
     ValueError
         If an argument is wrong, or there is no critical speed, or none is known.
     """
-    start = perf_counter()
+    start, names = perf_counter(), check_names(inputs)
     with unannounced():
         found = critical_point(scene, discretization, tolerance)
     if found.model is None or not (0 < found.speed < np.inf and np.isfinite(found.error)):
@@ -136,7 +136,7 @@ def critical_speed_sensitivities(
             "scene", found.speed, f"it has no critical speed to change: {found.reason}", unit="rad/s"
         )
     model = _linear(found.model)
-    numbers = numbers_of(model.scene, inputs)
+    numbers = numbers_of(model.scene, names)
     changes = changes_of(model, numbers)
     fine, coarse = (
         _critical_derivatives(pencil, solver.critical_speed, changes.of[k])
@@ -188,12 +188,12 @@ def crossing_sensitivities(
     ValueError
         If an argument is wrong, or large deflection is modelled.
     """
-    start = perf_counter()
+    start, names = perf_counter(), check_names(inputs)
     with unannounced():
         crossings = resonance_speeds(scene, top_speed, modes, order, discretization)
     scene = replace(crossings.scene, damping_ratio=0.0)
     model = _resolved(scene, top_speed, modes + 1, discretization)
-    numbers = numbers_of(scene, inputs)
+    numbers = numbers_of(scene, names)
     changes = changes_of(model, numbers)
     rates = [_crossing_derivatives(model, changes, crossing, modes) for crossing in crossings]
     derivative, error = (np.array([r[i] for r in rates]).reshape(len(rates), -1).T for i in (0, 1))
@@ -215,11 +215,10 @@ def crossing_sensitivities(
 
 def _split_speed(inputs: Sequence[str] | None) -> tuple[bool, Sequence[str] | None]:
     """Whether the speed is one of the inputs, and the others."""
-    if inputs is None:
+    names = check_names(inputs)
+    if names is None:
         return True, None
-    if isinstance(inputs, str):
-        raise InvalidValue("inputs", inputs, 'give names in a list, such as ["beam.thickness"]')
-    return SPEED in inputs, [name for name in inputs if name != SPEED]
+    return SPEED in names, [name for name in names if name != SPEED]
 
 
 def _linear(model: Model) -> Model:
