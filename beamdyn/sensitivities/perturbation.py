@@ -106,7 +106,7 @@ class PerturbedModes:
             return np.array(sums) / np.abs([self._slope(k) for k in range(len(self.eigenvalue))])
 
     def _quotient(self, k: int, dP: np.ndarray) -> complex:
-        return -(self.left[:, k] @ dP @ self.right[:, k]) / self._slope(k)
+        return -complex(self.left[:, k] @ dP @ self.right[:, k]) / self._slope(k)
 
     def _slope(self, k: int) -> complex:
         """The derivative of P(s) by s between both eigenvectors."""
