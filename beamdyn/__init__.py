@@ -56,6 +56,13 @@ _NAMES = {
         "equilibrium",
         "equilibrium_branches",
     ),
+    "sensitivities.result": ("Sensitivities",),
+    "sensitivities.scene_numbers": ("SceneNumber",),
+    "sensitivities.sensitivities": (
+        "critical_speed_sensitivities",
+        "crossing_sensitivities",
+        "frequency_sensitivities",
+    ),
     "spectrum.locus": ("Locus", "frequency_locus"),
     "spectrum.modes": ("Modes", "natural_modes"),
     "spectrum.setting_angles": ("SettingAngleLimits", "setting_angle_limits"),
@@ -115,6 +122,13 @@ if TYPE_CHECKING:
     from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
+    from beamdyn.sensitivities.result import Sensitivities
+    from beamdyn.sensitivities.scene_numbers import SceneNumber
+    from beamdyn.sensitivities.sensitivities import (
+        critical_speed_sensitivities,
+        crossing_sensitivities,
+        frequency_sensitivities,
+    )
     from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.spectrum.critical import CriticalPoint, critical_point, critical_speed

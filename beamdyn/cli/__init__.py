@@ -7,6 +7,7 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
     frequencies,
     interactive,
     published,
+    sensitivities,
     steady_state,
     studies,
     tradeoff,

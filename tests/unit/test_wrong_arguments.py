@@ -169,6 +169,20 @@ CALLS = {
         | {"combine": "product", "discretization": "ritz", "tolerance": 0.1}
         | {"workers": 1, "executor": None, "progress": None, "store": None, "window": (0.0, 0.02)},
     ),
+    "frequency_sensitivities": (
+        bd.frequency_sensitivities,
+        {"scene": SCENE, "speed": 5.0, "modes": 2, "inputs": ["beam.length"], "discretization": "ritz"}
+        | {"tolerance": 0.1},
+    ),
+    "critical_speed_sensitivities": (
+        bd.critical_speed_sensitivities,
+        {"scene": SCENE, "inputs": ["beam.length"], "discretization": "ritz", "tolerance": 0.1},
+    ),
+    "crossing_sensitivities": (
+        bd.crossing_sensitivities,
+        {"scene": MOVING, "top_speed": 60.0, "modes": 2, "inputs": ["beam.length"], "order": 1}
+        | {"discretization": "ritz"},
+    ),
     "terms": (bd.terms, {"scene": MOVING}),
     "tradeoff": (
         bd.tradeoff,
@@ -230,7 +244,7 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere |= {"OmittedEffect"}  # in the terms of a scene
     made_elsewhere |= {"EquilibriumBranch", "JudgedEffect", "PhysicsChoice"}  # parts of results
     made_elsewhere |= {"LineCrossing", "Margin"}  # parts of a diagram
-    made_elsewhere |= {"VariedInput"}  # parts of studies
+    made_elsewhere |= {"SceneNumber", "VariedInput"}  # parts of studies
     made_elsewhere |= {"IgnoredProperty", "ModePolynomial", "PropertyStep", "ShapeCheck"}  # parts of decks
     made_elsewhere |= {"load"}  # reads files: tests/unit/test_load.py
     assert rest == made_elsewhere | {"Discretization", "Motion", "Rotation"}  # the last are base classes
