@@ -1,0 +1,141 @@
+"""Loads at stations on the path of a transient: at any time, their largest magnitudes, and their errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.pickling import FieldsOnly
+from beamdyn.loads.load_rows import LoadRows, span_rows
+from beamdyn.loads.load_time_error import time_errors_of_rows
+from beamdyn.loads.section_points import Outputs
+from beamdyn.loads.stations import Stations
+from beamdyn.transient.simulate import Transient
+from beamdyn.transient.system import ModalSystem
+
+_COMPARED = 4000  # times at which two runs are compared; at most twice as many
+_BATCH = 500  # times at once
+_LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest along the span, that still bounds the error
+_MARGIN = 3.0  # error over the distance from the refined run: moments of modes fall as k^-3
+_MARGIN_OF_FORCES = 4.0  # shear forces fall as k^-2: those left out are 3 times those that it adds
+_ROUNDING = 1e-12  # relative to the largest along the span
+_REFINEMENTS, _FINE = 3, 17  # of a maximum, each on a grid so many times as fine
+
+
+@dataclass(frozen=True)
+class LoadPath(FieldsOnly):
+    """Outputs at stations as functions of the time of a run.
+
+    Parameters
+    ----------
+    run : Transient
+        The run, of a straight beam.
+    stations : Stations
+        The stations, S of them.
+    outputs : Outputs
+        The outputs of each, K of them.
+    """
+
+    run: Transient
+    stations: Stations
+    outputs: Outputs
+
+    @cached_property
+    def rows(self) -> LoadRows:
+        """The outputs by the state of the run."""
+        return self._loads.through(self.outputs.matrix)
+
+    @cached_property
+    def _loads(self) -> LoadRows:
+        """Forces and moments by the state of the run."""
+        equations, model = self._system.equations, self.run.request.model
+        return span_rows(self.run.scene, model.discretization, equations, self.stations).in_motion(equations)
+
+    @property
+    def _system(self) -> ModalSystem:
+        assert isinstance(self.run.system, ModalSystem)
+        return self.run.system
+
+    def at(self, t: np.ndarray) -> np.ndarray:
+        """Outputs at times t [s] (T,): shape (T, S, K)."""
+        return self.rows.at(self._system.root(t), *self.run.path.at(t))
+
+    # Largest magnitudes ---------------------------------------------------------------------------
+
+    def peaks(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+        """Values of largest magnitude from start to end [s], and their times [s]: shapes (S, K)."""
+        values, times = self._largest_samples(start, end)
+        station, component = (index.ravel() for index in np.indices(values.shape))
+        single = self.rows.chosen(station, component)
+        t, half_width = times.ravel()[:, None], self._longest_gap
+        for _ in range(_REFINEMENTS):
+            grid = np.linspace(-half_width, half_width, 2 * _FINE + 1)
+            near = np.clip(t + grid, start, end)
+            found = self._each_at(single, near)
+            best = np.abs(found).argmax(axis=1)[:, None]
+            t, half_width = np.take_along_axis(near, best, axis=1), half_width / _FINE
+        return np.take_along_axis(found, best, axis=1).reshape(values.shape), t.reshape(values.shape)
+
+    @property
+    def _longest_gap(self) -> float:
+        return float(np.diff(self.run.path.samples[0]).max())
+
+    def _largest_samples(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+        t = self.run.path.samples[0]
+        t = np.concatenate([[start], t[(t > start) & (t < end)], [end]])
+        best, times = np.zeros(self.rows.shape), np.full(self.rows.shape, start)
+        for some in _batches(t):
+            values = self.at(some)
+            k = np.abs(values).argmax(axis=0)[None]
+            largest = np.take_along_axis(values, k, axis=0)[0]
+            larger = np.abs(largest) > np.abs(best)
+            best, times = np.where(larger, largest, best), np.where(larger, some[k[0]], times)
+        return best, times
+
+    def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
+        """Single outputs (O, 1) at times of their own, t (O, T): shape (O, T)."""
+        root = self._system.root(t)
+        states = (each.reshape(*t.shape, -1) for each in self.run.path.at(t.ravel()))
+        total = np.zeros(t.shape)
+        for quantity, value in single.load.items():
+            total += getattr(root, quantity) * value
+        for rows, state in zip((single.position, single.velocity), states, strict=True):
+            for quantity, row in rows.items():
+                total += getattr(root, quantity) * np.einsum("otn,on->ot", state, row[:, 0])
+        return total
+
+    # Errors ---------------------------------------------------------------------------------------
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """Estimated errors (S, K) over the whole run: of the modes left out, and of time integration."""
+        if self.run.refined is None:
+            return np.full(self.rows.shape, np.inf)
+        other = LoadPath(self.run.refined, self.stations, self.outputs)
+        distance, largest = np.zeros(self.rows.shape), np.zeros(self.rows.shape)
+        t = self.run.path.samples[0]
+        for some in _batches(t[:: 1 + len(t) // _COMPARED]):
+            values = self.at(some)
+            distance = np.maximum(distance, np.abs(values - other.at(some)).max(axis=0))
+            largest = np.maximum(largest, np.abs(values).max(axis=0))
+        along_span = largest.max(axis=0)
+        of_modes = np.where(distance > _LIMIT_DIFFERENCE * along_span, np.inf, self._margins * distance)
+        return of_modes + self._time_error + _ROUNDING * along_span
+
+    @property
+    def _margins(self) -> np.ndarray:
+        margins = np.full(self.rows.shape[1], _MARGIN)
+        margins[self.outputs.places["force"]] = _MARGIN_OF_FORCES
+        return margins
+
+    @property
+    def _time_error(self) -> np.ndarray:
+        errors = time_errors_of_rows(self._loads, self._system, self.run.path, self.run.time_error)
+        return np.einsum("spk,sk->sp", np.abs(self.outputs.matrix), errors)
+
+
+def _batches(t: np.ndarray) -> Iterator[np.ndarray]:
+    return (t[k : k + _BATCH] for k in range(0, len(t), _BATCH))
