@@ -63,6 +63,11 @@ class LoadPath(FieldsOnly):
         """Outputs at times t [s] (T,): shape (T, S, K)."""
         return self.rows.at(self._system.root(t), *self.run.path.at(t))
 
+    def series_of(self, station: int, output: int, t: np.ndarray) -> np.ndarray:
+        """One output of one station at times t [s] (T,): shape (T,)."""
+        single = self.rows.chosen(np.array([station]), np.array([output]))
+        return self._each_at(single, t[None])[0]
+
     # Largest magnitudes ---------------------------------------------------------------------------
 
     def peaks(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:

@@ -73,3 +73,26 @@ def plot_load_over_time(
         ax.plot(t, values[:, k], color=COLOURS[k % len(COLOURS)], linewidth=0.9, label=label)
     ax.margins(x=0)
     return add_legend(ax)
+
+
+def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: Axes | None = None) -> Axes:
+    """Draw the number of cycles whose range is at least as large.
+
+    Parameters
+    ----------
+    ranges, counts : ndarray, shape (n,)
+        Range of each cycle, and how often it counts.
+    quantity : str
+        Name of the range, with its unit.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = set_up_axes(ax, "cycles of at least this range", quantity)
+    order = np.argsort(-ranges)
+    ax.step(np.cumsum(counts[order]), ranges[order], where="pre", color=COLOURS[0], linewidth=1.8)
+    ax.set_xscale("log")
+    return ax
