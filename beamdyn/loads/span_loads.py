@@ -160,6 +160,10 @@ class SpanLoads(Result):
         error = np.broadcast_to(self.error_of(quantity)[..., chosen], size.shape)[c, s, k]
         return self.located(quantity, float(values[c, s, k]), float(error), s, chosen[k], float(self.cases[c]))
 
+    def station_of(self, found: LargestLoad) -> int:
+        """Index of the station of a value."""
+        return int(np.flatnonzero((self.x == found.x) & (self.inboard == found.inboard))[0])
+
     def check_known(self, quantity: str) -> None:
         """Refuse a quantity of which the result has no value."""
         if not np.isfinite(self.values(quantity)).any():

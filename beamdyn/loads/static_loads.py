@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, real
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_rows import span_rows
@@ -55,6 +56,7 @@ class StaticLoads(SpanLoads):
         return self.speeds
 
 
+@announced
 def static_loads(
     scene: Scene,
     speeds: float | Sequence[float] | np.ndarray = 0.0,
