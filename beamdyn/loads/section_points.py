@@ -66,7 +66,7 @@ def sections_at(
     axial = np.zeros((len(stations.xi), 1, curvature.shape[2]))
     if beam.axial_stiffness is not None:
         axial[:, 0, 0] = 1 / beam.axial_stiffness(stations.beside)
-    notes = [] if beam.axial_stiffness is not None else [_WITHOUT_AXIAL]
+    notes = [_WITHOUT_AXIAL] if beam.axial_stiffness is None and at_stations.shape[1] else []
     bent = np.einsum("spi,sik->spk", at_stations[..., : curvature.shape[1]], curvature)
     return Sections(at_stations, curvature, axial - bent, _modulus(rectangle, youngs_modulus), (*notes,))
 
