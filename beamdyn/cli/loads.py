@@ -178,7 +178,9 @@ def _in_transient(
     return result, tables
 
 
-def _in_steady_response(scene: Scene, speeds: str, where: dict[str, Any], basis: dict[str, Any]) -> tuple[SpanLoads, list[RenderableType]]:
+def _in_steady_response(
+    scene: Scene, speeds: str, where: dict[str, Any], basis: dict[str, Any]
+) -> tuple[SpanLoads, list[RenderableType]]:
     from beamdyn import steady_loads, steady_response
     from beamdyn.tables.loads import steady_loads_table
 

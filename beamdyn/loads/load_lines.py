@@ -74,13 +74,15 @@ class LoadLines:
         return found
 
 
-def lines_of_response(response: SteadyResponse, stations: Stations, outputs: Outputs) -> LoadLines:
-    """Lines of the outputs at stations of a steady response."""
+def lines_of_response(
+    response: SteadyResponse, stations: Stations, outputs: Outputs | None = None
+) -> LoadLines:
+    """Lines of the outputs at stations of a steady response, or of the forces and moments there."""
     request, speeds = response.request, response.speeds
     model, motion = request.model, check_steady_state(request.scene.motion)
     equations = model.modal_equations(request.basis)
     rows = span_rows(model.scene, model.discretization, equations, stations).in_motion(equations)
-    rows = rows.through(outputs.matrix)
+    rows = rows if outputs is None else rows.through(outputs.matrix)
     vibration = vibration_of(model, request.basis, motion, speeds)
     pairs, q, truncated = _solve(vibration, equations, response)
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
@@ -109,7 +111,9 @@ def _solve(
     q = np.zeros((2, len(response.speeds), len(pairs), equations.size), dtype=complex)
     stable = np.flatnonzero(response.stable)
     for system, places in vibration.parts if pairs else ():
-        for some in np.array_split(stable, 1 + len(stable) * (len(pairs) * len(places)) ** 2 // _MOST_ENTRIES):
+        for some in np.array_split(
+            stable, 1 + len(stable) * (len(pairs) * len(places)) ** 2 // _MOST_ENTRIES
+        ):
             solved = solve_harmonic_balance(system[some], levels)
             for each, solution in zip(q, solved if len(levels) > 1 else (solved[0], solved[0]), strict=True):
                 each[np.ix_(some, np.arange(len(pairs)), places)] = solution
@@ -124,9 +128,7 @@ def _harmonics_that_matter(response: SteadyResponse) -> list[Pair]:
     return [*dict.fromkeys(both)]
 
 
-def _harmonics_of_loads(
-    rows: LoadRows, spectra: dict[Quantity, np.ndarray], pairs: list[Pair]
-) -> list[Pair]:
+def _harmonics_of_loads(rows: LoadRows, spectra: dict[Quantity, np.ndarray], pairs: list[Pair]) -> list[Pair]:
     """Harmonics of the loads: those of the coordinates, of the root's motion, and of their products."""
     found = set(pairs) | {(0, 0)}
     for quantity in rows.load:

@@ -11,6 +11,7 @@ import numpy as np
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.load_time_error import time_errors_of_rows
+from beamdyn.loads.mode_error import mode_error, through, with_neighbours
 from beamdyn.loads.section_points import Outputs
 from beamdyn.loads.stations import Stations
 from beamdyn.transient.simulate import Transient
@@ -18,9 +19,6 @@ from beamdyn.transient.system import ModalSystem
 
 _COMPARED = 4000  # times at which two runs are compared; at most twice as many
 _BATCH = 500  # times at once
-_LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest along the span, that still bounds the error
-_MARGIN = 3.0  # error over the distance from the refined run: moments of modes fall as k^-3
-_MARGIN_OF_FORCES = 4.0  # shear forces fall as k^-2: those left out are 3 times those that it adds
 _ROUNDING = 1e-12  # relative to the largest along the span
 _REFINEMENTS, _FINE = 3, 17  # of a maximum, each on a grid so many times as fine
 
@@ -35,21 +33,27 @@ class LoadPath(FieldsOnly):
         The run, of a straight beam.
     stations : Stations
         The stations, S of them.
-    outputs : Outputs
-        The outputs of each, K of them.
+    given : Outputs, optional
+        What is stated of each, K outputs; None if only the loads are wanted.
     """
 
     run: Transient
     stations: Stations
-    outputs: Outputs
+    given: Outputs | None = None
+
+    @property
+    def outputs(self) -> Outputs:
+        """The outputs of each station."""
+        assert self.given is not None
+        return self.given
 
     @cached_property
     def rows(self) -> LoadRows:
         """The outputs by the state of the run."""
-        return self._loads.through(self.outputs.matrix)
+        return self.loads.through(self.outputs.matrix)
 
     @cached_property
-    def _loads(self) -> LoadRows:
+    def loads(self) -> LoadRows:
         """Forces and moments by the state of the run."""
         equations, model = self._system.equations, self.run.request.model
         return span_rows(self.run.scene, model.discretization, equations, self.stations).in_motion(equations)
@@ -67,6 +71,10 @@ class LoadPath(FieldsOnly):
         """One output of one station at times t [s] (T,): shape (T,)."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
         return self._each_at(single, t[None])[0]
+
+    def loads_at(self, t: np.ndarray) -> np.ndarray:
+        """Forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
+        return self.loads.at(self._system.root(t), *self.run.path.at(t))
 
     # Largest magnitudes ---------------------------------------------------------------------------
 
@@ -119,27 +127,28 @@ class LoadPath(FieldsOnly):
         """Estimated errors (S, K) over the whole run: of the modes left out, and of time integration."""
         if self.run.refined is None:
             return np.full(self.rows.shape, np.inf)
-        other = LoadPath(self.run.refined, self.stations, self.outputs)
-        distance, largest = np.zeros(self.rows.shape), np.zeros(self.rows.shape)
-        t = self.run.path.samples[0]
-        for some in _batches(t[:: 1 + len(t) // _COMPARED]):
-            values = self.at(some)
-            distance = np.maximum(distance, np.abs(values - other.at(some)).max(axis=0))
-            largest = np.maximum(largest, np.abs(values).max(axis=0))
+        everywhere = with_neighbours(self.stations)
+        distance, largest = _compare(*(LoadPath(run, everywhere) for run in (self.run, self.run.refined)))
         along_span = largest.max(axis=0)
-        of_modes = np.where(distance > _LIMIT_DIFFERENCE * along_span, np.inf, self._margins * distance)
-        return of_modes + self._time_error + _ROUNDING * along_span
+        basis = self.run.request.basis
+        of_modes = mode_error(distance, along_span, self.stations, self.outputs, basis)
+        return of_modes + through(self.outputs, self._time_errors + _ROUNDING * along_span)
 
     @property
-    def _margins(self) -> np.ndarray:
-        margins = np.full(self.rows.shape[1], _MARGIN)
-        margins[self.outputs.places["force"]] = _MARGIN_OF_FORCES
-        return margins
+    def _time_errors(self) -> np.ndarray:
+        """Time-integration errors of the loads (S, 1 + 2 d)."""
+        return time_errors_of_rows(self.loads, self._system, self.run.path, self.run.time_error)
 
-    @property
-    def _time_error(self) -> np.ndarray:
-        errors = time_errors_of_rows(self._loads, self._system, self.run.path, self.run.time_error)
-        return np.einsum("spk,sk->sp", np.abs(self.outputs.matrix), errors)
+
+def _compare(path: LoadPath, other: LoadPath) -> tuple[np.ndarray, np.ndarray]:
+    """Largest distance of the loads of two runs over time, and their largest magnitude: (S, 1 + 2 d)."""
+    distance, largest = np.zeros((2, *path.loads.shape))
+    t = path.run.path.samples[0]
+    for some in _batches(t[:: 1 + len(t) // _COMPARED]):
+        values = path.loads_at(some)
+        distance = np.maximum(distance, np.abs(values - other.loads_at(some)).max(axis=0))
+        largest = np.maximum(largest, np.abs(values).max(axis=0))
+    return distance, largest
 
 
 def _batches(t: np.ndarray) -> Iterator[np.ndarray]:

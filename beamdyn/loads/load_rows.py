@@ -151,9 +151,7 @@ def span_rows(
     return _across_deflected_axis(rows, equations, stations, beam.length)
 
 
-def _displacements(
-    assembled: Mapping[str, FieldEquations], planes: int
-) -> Iterator[tuple[str, slice]]:
+def _displacements(assembled: Mapping[str, FieldEquations], planes: int) -> Iterator[tuple[str, slice]]:
     """Field and virtual displacements of each component: along the beam, across it, rotations."""
     for field in (Stretch.name, *_FIELD_OF_DIRECTION[:planes]):
         yield field, _translations(assembled[field].space)

@@ -109,7 +109,10 @@ def _checked(points: object, half: np.ndarray) -> np.ndarray:
         raise InvalidValue("points", points, "give finite numbers", unit="m")
     for side, name in enumerate(("first", "second")):
         limit = half[:, side].min()  # nan is no limit
-        bad, remedy = np.abs(array[:, side]) > limit * (1 + _ROUNDING), "leave points out: the outermost of each"
+        bad, remedy = (
+            np.abs(array[:, side]) > limit * (1 + _ROUNDING),
+            "leave points out: the outermost of each",
+        )
         bound = f"it lies outside the section: along its {name} direction the thinnest reaches {{limit}}"
         refuse(bad, "points", array[:, side], "m", bound, remedy, limit=limit)
     return array

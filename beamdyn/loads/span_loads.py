@@ -158,7 +158,9 @@ class SpanLoads(Result):
         size = np.where(np.isnan(values), -1.0, np.abs(values))
         c, s, k = np.unravel_index(int(size.argmax()), size.shape)
         error = np.broadcast_to(self.error_of(quantity)[..., chosen], size.shape)[c, s, k]
-        return self.located(quantity, float(values[c, s, k]), float(error), s, chosen[k], float(self.cases[c]))
+        return self.located(
+            quantity, float(values[c, s, k]), float(error), s, chosen[k], float(self.cases[c])
+        )
 
     def station_of(self, found: LargestLoad) -> int:
         """Index of the station of a value."""
@@ -187,7 +189,7 @@ class SpanLoads(Result):
         return LargestLoad(quantity, value, error, *at, component, case)
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
-        """Draw a quantity along the span: of few cases each, else the range in which it lies."""
+        """Draw a quantity along the span: of few cases, else the range in which it lies."""
         from beamdyn.output.plots_along_span import plot_along_span
 
         one_of("quantity", quantity, QUANTITIES)

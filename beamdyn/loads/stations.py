@@ -67,7 +67,9 @@ def _checked(at: Positions, length: float) -> np.ndarray:
     refuse(np.diff(x, prepend=0.0) < 0, "at", x, "m", "positions must ascend", "sort them")
     again = np.zeros(len(x), dtype=bool)
     again[2:] = x[2:] == x[:-2]
-    refuse(again, "at", x, "m", "a position stands for one side, or twice for both sides of it", "give it twice")
+    refuse(
+        again, "at", x, "m", "a position stands for one side, or twice for both sides of it", "give it twice"
+    )
     return x
 
 

@@ -14,6 +14,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import kind, one_of
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_lines import LoadLines, lines_of_response
+from beamdyn.loads.mode_error import mode_error, through, with_neighbours
 from beamdyn.loads.section_points import QUANTITIES, Outputs, SectionPoints, sections_at
 from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
 from beamdyn.loads.stations import Positions, Stations, stations_at
@@ -21,8 +22,6 @@ from beamdyn.scene.motion import Line
 from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.response import SteadyResponse
 
-_MARGIN = 3.0  # error over the distance from the refined response
-_MARGIN_OF_FORCES = 4.0
 _ROUNDING = 1e-12  # relative to the largest along the span
 
 
@@ -136,14 +135,13 @@ def steady_loads(
     )
 
 
-def _error(
-    response: SteadyResponse, lines: LoadLines, stations: Stations, outputs: Outputs
-) -> np.ndarray:
+def _error(response: SteadyResponse, lines: LoadLines, stations: Stations, outputs: Outputs) -> np.ndarray:
     """Estimated errors (C, S, K): of the modes left out, and of the harmonics left out."""
     if response.refined is None:
         return np.full(lines.largest.shape, np.inf)
-    finer = lines_of_response(response.refined, stations, outputs)
-    margin = np.full(lines.largest.shape[-1], _MARGIN)
-    margin[outputs.places["force"]] = _MARGIN_OF_FORCES
-    along_span = np.abs(lines.amplitude).sum(axis=-1).max(axis=1, keepdims=True)
-    return margin * lines.distance_from(finer) + lines.of_harmonics + _ROUNDING * along_span
+    everywhere = with_neighbours(stations)
+    rough, fine = (lines_of_response(each, everywhere) for each in (response, response.refined))
+    along_span = np.abs(rough.amplitude).sum(axis=-1).max(axis=1)
+    basis = response.request.basis
+    of_modes = mode_error(rough.distance_from(fine), along_span, stations, outputs, basis)
+    return of_modes + lines.of_harmonics + through(outputs, _ROUNDING * along_span[:, None])

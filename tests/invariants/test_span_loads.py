@@ -121,7 +121,12 @@ def test_by_newtons_law_for_the_part_outboard(name: str) -> None:
 # The model's own curvature ------------------------------------------------------------------------
 
 FULL = bd.Ritz(24)
-MADE = {"rotary_inertia": 0.4, "second_rotary_inertia": 0.9, "shear_stiffness": 9e3, "second_shear_stiffness": 6e3}
+MADE = {
+    "rotary_inertia": 0.4,
+    "second_rotary_inertia": 0.9,
+    "shear_stiffness": 9e3,
+    "second_shear_stiffness": 6e3,
+}
 ROUND = bd.Beam.from_stiffness(
     LENGTH, TAPER, 400.0 * TAPER, axial_stiffness=4e5, second_bending_stiffness=900.0,
     twist=np.polynomial.Polynomial([0.2, 0.7]), tip=bd.TipMass(1.3, 0.15, 0.3, 0.2, 0.15), **MADE,
@@ -261,7 +266,9 @@ def axial_force(beam, root, x):
 
 def nodal_functions(functions, nodes, xi):
     """Coefficients of the elements' functions with the deflection 1, or the slope 1, at a node alone."""
-    sampled = np.concatenate([functions.evaluate(nodes[1:]), functions.evaluate(nodes[1:], 1) / LENGTH], axis=1)
+    sampled = np.concatenate(
+        [functions.evaluate(nodes[1:]), functions.evaluate(nodes[1:], 1) / LENGTH], axis=1
+    )
     here = int(np.abs(nodes[1:] - xi).argmin())
     for k in (here, here + len(nodes) - 1):
         yield np.linalg.solve(sampled.T, np.eye(2 * len(nodes) - 2)[k])

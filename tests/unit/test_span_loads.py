@@ -93,9 +93,7 @@ def test_two_sides_of_a_jump_and_of_a_mass():
 
 def test_points_of_the_section():
     """Bending in two planes: corners by default, and any point inside by superposition."""
-    scene = bd.Scene(
-        BEAM, bd.Mount(0.1, math.pi, bending_angle=0.5), gravity=G, physics=bd.Physics(planes=2)
-    )
+    scene = bd.Scene(BEAM, bd.Mount(0.1, math.pi, bending_angle=0.5), gravity=G, physics=bd.Physics(planes=2))
     corners = bd.static_loads(scene, 20.0, at=[0.0, 0.1])
     assert corners.points.shape == (2, 4, 2)
     y, z = corners.points[0].T
@@ -138,7 +136,9 @@ def forced_cantilever(x):
         of_circle = [np.cos(b * at + turn), np.sin(b * at + turn)]
         return b**order * np.array([*(f(b * at) for f in hyperbolic), *of_circle])
 
-    ends = np.array([derivatives(0.0, 0), derivatives(0.0, 1), derivatives(LENGTH, 2), derivatives(LENGTH, 3)])
+    ends = np.array(
+        [derivatives(0.0, 0), derivatives(0.0, 1), derivatives(LENGTH, 2), derivatives(LENGTH, 3)]
+    )
     motion = np.linalg.solve(ends, [-3.0 / SHAKEN**2, 0, 0, 0])
     return EI * motion @ derivatives(x, 2), -EI * motion @ derivatives(x, 3)
 
@@ -214,7 +214,9 @@ def test_steady_response_is_what_remains_of_a_transient():
 def test_errors_cover_a_sudden_start():
     """Gravity that acts at once, with few modes, against many."""
     scene = bd.Scene(BEAM, OUTWARD, bd.SteadyRotation(5.0), gravity=G)
-    few, many = (bd.transient_loads(bd.simulate(scene, 0.4, m, 1e-8), t=np.linspace(0, 0.4, 300)) for m in (3, 24))
+    few, many = (
+        bd.transient_loads(bd.simulate(scene, 0.4, m, 1e-8), t=np.linspace(0, 0.4, 300)) for m in (3, 24)
+    )
     for name in ("force", "moment", "strain"):
         true = np.abs(few.values(name) - many.values(name)).max(axis=0)
         stated = few.error_of(name)
