@@ -1,9 +1,9 @@
 """Whether the stated errors of loads along the span cover the true ones, in random transients.
 
-Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics] [--save FILE].  Random scenes in motion as
-in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary inertia and springs
-in all combinations.  The reference has twice as many modes at three speeds, at least 24 shapes, in a large basis,
-and finer steps: both errors together, of modes and of time integration.  Modes contribute to shear
+Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics] [--save FILE].  Random scenes in motion
+as in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary inertia and
+springs in all combinations.  The reference has twice as many modes at three speeds, at least 24 shapes, in a
+large basis, and finer steps: both errors together, of modes and of time.  Modes contribute to shear
 forces as k^-2 after a sudden load, so that the reference itself has a part of the error there.
 """
 
@@ -41,8 +41,8 @@ SEED = 18
 class Case:
     """One random run: stated and true errors of each component, or why it was refused.
 
-    Errors are over the largest of the component along the span; of the stations, the one with the largest true
-    error over the stated one counts.
+    Errors are over the largest of the component along the span; of the stations, the one with the largest
+    true error over the stated one counts.
     """
 
     number: int

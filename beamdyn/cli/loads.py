@@ -69,7 +69,7 @@ def loads(
     speeds
         In steady response: start:stop:count, e.g. "1:150:100 rad/s", or a list, e.g. "50, 55 rad/s".
     at
-        Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of each jump.
+        Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of jumps.
     points
         Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, in which
         the beam bends, and along the second. Default: the outermost.

@@ -64,7 +64,7 @@ class LoadCycles(Result):
         Parameters
         ----------
         exponent : float
-            Exponent m of the Woehler curve: life is as range^-m; some 3 to 5 for welded steel, 10 for composites.
+            Exponent m of the Woehler curve: life is as range^-m; some 3 to 5 for steel, 10 for composites.
         cycles : float
             Number of equal cycles.
 

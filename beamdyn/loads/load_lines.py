@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.equations.root_motion import Quantity
 from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.section_points import Outputs
 from beamdyn.loads.stations import Stations
@@ -128,7 +127,7 @@ def _harmonics_that_matter(response: SteadyResponse) -> list[Pair]:
     return [*dict.fromkeys(both)]
 
 
-def _harmonics_of_loads(rows: LoadRows, spectra: dict[Quantity, np.ndarray], pairs: list[Pair]) -> list[Pair]:
+def _harmonics_of_loads(rows: LoadRows, spectra: dict[str, np.ndarray], pairs: list[Pair]) -> list[Pair]:
     """Harmonics of the loads: those of the coordinates, of the root's motion, and of their products."""
     found = set(pairs) | {(0, 0)}
     for quantity in rows.load:
@@ -144,7 +143,7 @@ def _sums(first: set[Pair], second: list[Pair]) -> Iterator[Pair]:
 
 def _expand(
     rows: LoadRows,
-    spectra: dict[Quantity, np.ndarray],
+    spectra: dict[str, np.ndarray],
     union: list[Pair],
     pairs: list[Pair],
     rates: np.ndarray,

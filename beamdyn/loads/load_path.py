@@ -84,13 +84,14 @@ class LoadPath(FieldsOnly):
         station, component = (index.ravel() for index in np.indices(values.shape))
         single = self.rows.chosen(station, component)
         t, half_width = times.ravel()[:, None], self._longest_gap
+        found = values.ravel()[:, None]
         for _ in range(_REFINEMENTS):
-            grid = np.linspace(-half_width, half_width, 2 * _FINE + 1)
-            near = np.clip(t + grid, start, end)
-            found = self._each_at(single, near)
-            best = np.abs(found).argmax(axis=1)[:, None]
-            t, half_width = np.take_along_axis(near, best, axis=1), half_width / _FINE
-        return np.take_along_axis(found, best, axis=1).reshape(values.shape), t.reshape(values.shape)
+            near = np.clip(t + np.linspace(-half_width, half_width, 2 * _FINE + 1), start, end)
+            sampled = self._each_at(single, near)
+            best = np.abs(sampled).argmax(axis=1)[:, None]
+            t, found = (np.take_along_axis(each, best, axis=1) for each in (near, sampled))
+            half_width /= _FINE
+        return found.reshape(values.shape), t.reshape(values.shape)
 
     @property
     def _longest_gap(self) -> float:

@@ -1,15 +1,16 @@
 """Loads at stations as linear functions of the state, by virtual work on a beam that is cut there.
 
-With a rigid displacement w of the part outboard of a cut (`beamdyn.loads.cut_beam`), the load R that does work
-on it is
+With a rigid displacement w of the part outboard of a cut (`beamdyn.loads.cut_beam`), the load R that does
+work on it is
 
     R = f[w] - m[q'', w] - g[q', w] - k[q, w],
 
 with the loads f of the root's motion and gravity, and the forms m, g, k of mass, gyroscopic terms and
 geometric stiffness: the loads and the inertia of the part outboard, and the lever arms that the deflection
-gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of motion
-of the kept coordinates, so that R is the moment of the kept shapes and the static one of all others, as in the
-mode-acceleration method: Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.
+gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of
+motion of the kept coordinates, so that R is the moment of the kept shapes and the static one of all others,
+as in the mode-acceleration method: Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section
+11.4.
 Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam in proportion to its mass.
 """
 
@@ -109,7 +110,7 @@ class LoadRows:
 
 
 def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
-    names = dict.fromkeys([*first, *second])
+    names: dict[Quantity, None] = dict.fromkeys([*first, *second])
     return {name: np.asarray(first.get(name, 0.0) - second.get(name, 0.0)) for name in names}
 
 
@@ -135,9 +136,9 @@ def span_rows(
     Returns
     -------
     LoadRows
-        With 1 + 2 d components, d being the number of planes: the axial force [N], tension positive; the shear
-        forces [N] in each direction across the deflected axis; the bending moments [N m], positive if they
-        bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
+        With 1 + 2 d components, d being the number of planes: the axial force [N], tension positive; the
+        shear forces [N] in each direction across the deflected axis; the bending moments [N m], positive if
+        they bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
     """
     beam = scene.modelled_beam
     cells = discretization.cells(beam)
@@ -191,7 +192,7 @@ def _gather(components: list[LoadRows]) -> LoadRows:
     """Stack the rows of K components along a new second axis."""
 
     def stack(parts: list[ByQuantity]) -> ByQuantity:
-        names = dict.fromkeys(name for part in parts for name in part)
+        names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
         return {name: np.stack(_filled([part.get(name) for part in parts]), axis=1) for name in names}
 
     return LoadRows(

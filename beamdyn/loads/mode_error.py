@@ -1,8 +1,8 @@
 """Error of loads by the modes left out, from their distance from a solution with more modes.
 
-The modes that a larger model adds vibrate in waves along the span: at the nodes of a wave the distance is small
-by chance, while other modes are not.  So the distance at a station is the largest within half a wave of the
-first mode left out, to either side.
+The modes that a larger model adds vibrate in waves along the span: at the nodes of a wave the distance is
+small by chance, while other modes are not.  So the distance at a station is the largest within half a wave of
+the first mode left out, to either side.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -168,6 +168,6 @@ class Outputs:
         ends = np.cumsum(self.sizes).tolist()
         return {name: slice(b - n, b) for name, n, b in zip(QUANTITIES, self.sizes, ends, strict=True)}
 
-    def split(self, values: np.ndarray, suffix: str = "") -> dict[str, np.ndarray]:
+    def split(self, values: np.ndarray, suffix: str = "") -> dict[str, Any]:
         """The components (..., K) of each quantity, by its name and a suffix."""
         return {name + suffix: values[..., place] for name, place in self.places.items()}

@@ -159,7 +159,7 @@ class SpanLoads(Result):
         c, s, k = np.unravel_index(int(size.argmax()), size.shape)
         error = np.broadcast_to(self.error_of(quantity)[..., chosen], size.shape)[c, s, k]
         return self.located(
-            quantity, float(values[c, s, k]), float(error), s, chosen[k], float(self.cases[c])
+            quantity, float(values[c, s, k]), float(error), int(s), chosen[k], float(self.cases[c])
         )
 
     def station_of(self, found: LargestLoad) -> int:

@@ -32,7 +32,9 @@ _MARGIN = 1.5  # of the error over the distance from the coarser model
 
 @dataclass(frozen=True)
 class StaticLoads(SpanLoads):
-    """Loads along the span in equilibrium at C steady speeds: `SpanLoads` with, besides,
+    """Loads along the span in equilibrium at C steady speeds.
+
+    The fields are those of `SpanLoads` and, besides:
 
     Parameters
     ----------
@@ -71,8 +73,8 @@ def static_loads(
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is not used.  Gravity acts as it does at the `angle` of rotation: at a speed other
-        than 0 it varies, which is the matter of `transient_loads` and `steady_loads`.
+        The scene; its motion is not used.  Gravity acts as it does at the `angle` of rotation: at a speed
+        other than 0 it varies, which is the matter of `transient_loads` and `steady_loads`.
     speeds : float or sequence of float
         Speeds [rad/s], ascending.
     at : sequence of float, optional
@@ -97,7 +99,8 @@ def static_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or large deflection is modelled.
     NoEquilibrium
-        An ArithmeticError: if the straight beam buckles at a speed or below it, or turns freely about its root.
+        An ArithmeticError: if the straight beam buckles at a speed or below it, or turns freely about its
+        root.
     """
     start = perf_counter()
     check_scene(scene)

@@ -26,7 +26,9 @@ _MOST_TIMES = 2000  # of the result by default
 
 @dataclass(frozen=True)
 class TransientLoads(SpanLoads):
-    """Loads along the span at C times of a transient: `SpanLoads` with, besides,
+    """Loads along the span at C times of a transient.
+
+    The fields are those of `SpanLoads` and, besides:
 
     Parameters
     ----------

@@ -11,7 +11,6 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
 from beamdyn.steady.harmonic_balance import (
     Pair,
@@ -102,8 +101,8 @@ def check_steady_state(motion: Motion | None) -> Motion:
 
 
 def expand_quantities(
-    equations: Equations, used: Iterable[Quantity], motion: Motion, speeds: np.ndarray
-) -> dict[Quantity, np.ndarray]:
+    equations: Equations, used: Iterable[str], motion: Motion, speeds: np.ndarray
+) -> dict[str, np.ndarray]:
     """Expand quantities of the root's motion at steady speeds in harmonics of the two phases, (S, N, N) each.
 
     Raises

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Group
@@ -102,7 +102,7 @@ def _largest_cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
 
 def _largest_lines(result: SpanLoads, window: tuple[float, float] | None = None) -> list[Text]:
     """A sentence on the largest of each quantity that has values."""
-    given = {} if window is None else {"start": window[0], "end": window[1]}
+    given: dict[str, Any] = {} if window is None else {"start": window[0], "end": window[1]}
     known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
     return [Text(_say_largest(result, result.largest(name, **given))) for name in reversed(known)]
 

@@ -1,4 +1,4 @@
-"""Loads along the span: closed forms, sides of jumps, points of sections, largest values, cycles, bad input."""
+"""Loads along the span: closed forms, sides of jumps, points, largest values, cycles, bad input."""
 
 from __future__ import annotations
 
