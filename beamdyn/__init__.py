@@ -26,7 +26,7 @@ _NAMES = {
     "equations.left_out": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
     "loads.cycles": ("LoadCycles", "count_cycles"),
-    "loads.span_loads": ("LargestLoad",),
+    "loads.span_loads": ("LargestLoad", "SpanLoads"),
     "loads.static_loads": ("StaticLoads", "static_loads"),
     "loads.steady_loads": ("SteadyLoads", "steady_loads"),
     "loads.transient_loads": ("TransientLoads", "transient_loads"),
@@ -99,7 +99,7 @@ if TYPE_CHECKING:
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.loads.cycles import LoadCycles, count_cycles
-    from beamdyn.loads.span_loads import LargestLoad
+    from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
     from beamdyn.loads.transient_loads import TransientLoads, transient_loads

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, kind, positive
+from beamdyn.common.checks import count, kind, positive
 from beamdyn.common.results import Provenance, Result
 from beamdyn.loads.span_loads import UNITS
 from beamdyn.loads.transient_loads import TransientLoads, window_in
@@ -125,19 +125,18 @@ def count_cycles(
     """
     begin = perf_counter()
     kind("loads", loads, TransientLoads, "transient_loads makes one")
-    loads.check_component(quantity, component)
+    (chosen,) = loads.check_component(quantity, component)
     loads.check_known(quantity)
-    if station not in range(len(loads.x)):
-        raise InvalidValue("station", station, f"the stations have the indices 0 to {len(loads.x) - 1}")
+    place = count("station", station, 0, len(loads.x) - 1)
     extract_cycles = _load_counter()
     first, last = window_in(loads.run, start, end)
-    index = loads.path.outputs.places[quantity].start + component
-    values = loads.path.series_of(station, index, _times_of_samples(loads, first, last))
+    index = loads.path.outputs.places[quantity].start + chosen
+    values = loads.path.series_of(place, index, _times_of_samples(loads, first, last))
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).reshape(-1, 3)
     return LoadCycles(
         quantity=quantity,
-        component=component,
-        x=float(loads.x[station]),
+        component=chosen,
+        x=float(loads.x[place]),
         ranges=counted[:, 0],
         means=counted[:, 1],
         counts=counted[:, 2],

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, one_of
+from beamdyn.common.checks import InvalidValue, count, one_of
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.loads.section_points import QUANTITIES, Sections
@@ -174,12 +173,8 @@ class SpanLoads(Result):
 
     def check_component(self, quantity: str, component: int | None) -> list[int]:
         """Indices of the components that are asked for."""
-        count = self.values(quantity).shape[-1]
-        if component is None:
-            return list(range(count))
-        if component not in range(count):
-            raise InvalidValue("component", component, f"{quantity} has the components 0 to {count - 1}")
-        return [component]
+        size = self.values(quantity).shape[-1]
+        return list(range(size)) if component is None else [count("component", component, 0, size - 1)]
 
     def located(
         self, quantity: str, value: float, error: float, station: int, component: int, case: float
@@ -217,8 +212,3 @@ def refuse_large_deflection(scene: Scene) -> None:
         bound = "loads along the span of a beam with large deflection are not computed"
         remedy = "leave large_deflection out where the deflection is small"
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
-
-
-def as_sequence(values: float | Sequence[float] | np.ndarray) -> np.ndarray | Sequence[float]:
-    """One number as a sequence of one."""
-    return values if np.iterable(values) else [values]  # pyright: ignore[reportReturnType]

@@ -15,7 +15,7 @@ from beamdyn.common.checks import ascending, real
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
-from beamdyn.loads.span_loads import SpanLoads, as_sequence, placed, refuse_large_deflection
+from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
 from beamdyn.loads.stations import Positions, Stations, stations_at
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.equilibrium import NoEquilibrium
@@ -105,7 +105,7 @@ def static_loads(
     start = perf_counter()
     check_scene(scene)
     refuse_large_deflection(scene)
-    speeds = ascending("speeds", as_sequence(speeds))
+    speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     theta = real("angle", angle, "rad")
     stations = stations_at(scene.modelled_beam, at)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, real_array, refuse
+from beamdyn.common.checks import InvalidValue, as_floats, real_array, refuse
 from beamdyn.scene.beam import Beam
 
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
@@ -59,8 +59,9 @@ def stations_at(beam: Beam, at: Positions | None) -> Stations:
 
 def _checked(at: Positions, length: float) -> np.ndarray:
     """Positions [m] that ascend along the beam, each at most twice."""
-    x = real_array("at", np.atleast_1d(np.asarray(at, dtype=object)).tolist())
-    if x.ndim != 1 or not 1 <= len(x) <= _MOST:
+    array = as_floats(at)
+    x = real_array("at", array.reshape(1) if array is not None and not array.ndim else at)
+    if not 1 <= len(x) <= _MOST:
         raise InvalidValue("at", at, f"give 1 to {_MOST} positions along the beam", unit="m")
     outside = (x < 0) | (x > length * (1 + _SAME))
     refuse(outside, "at", x, "m", "stations lie from the root, 0, to the tip, {limit}", limit=length)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, kind, real, real_array
+from beamdyn.common.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
@@ -58,7 +58,7 @@ class TransientLoads(SpanLoads):
         return self.path.run
 
     def at(self, quantity: str, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """A quantity at any times t [s] (T,) of the run: shape (T, S, k)."""
+        """A quantity at times t [s] (T,) of the run, ascending: shape (T, S, k)."""
         self.check_component(quantity, None)
         return self.path.at(_times_in(self.run, t))[..., self.path.outputs.places[quantity]]
 
@@ -129,8 +129,8 @@ def transient_loads(
     at, points, youngs_modulus
         As for `static_loads`.
     t : sequence of float, optional
-        Times of the result [s]; by default those of the run, or at most 2000 of them.  The largest values
-        (`largest`, `peaks`) and the errors are those of the run, whatever these times are.
+        Times of the result [s], ascending; by default those of the run, or at most 2000 of them.  The
+        largest values (`largest`, `peaks`) and the errors are those of the run, whatever these times are.
 
     Returns
     -------
@@ -168,8 +168,8 @@ def transient_loads(
 
 def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
     """Times (T,) [s] that lie in the run."""
-    times = real_array("t", t if np.iterable(t) else [t])  # pyright: ignore[reportArgumentType]
-    if times.size and not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
+    times = ascending("t", t)
+    if not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
         bound = f"times must lie in the run, from {run.path.start:g} to {run.path.end:g} s"
         raise InvalidValue("t", t, bound, unit="s")
     return times
