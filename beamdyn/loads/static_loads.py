@@ -99,7 +99,7 @@ def static_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or large deflection is modelled.
     NoEquilibrium
-        An ArithmeticError: if the straight beam buckles at a speed or below it, or turns freely about its
+        An ArithmeticError: if rotation or its weight buckles the straight beam, or turns freely about its
         root.
     """
     start = perf_counter()
@@ -154,8 +154,8 @@ def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarr
     least = np.linalg.eigvalsh((scaled + scaled.swapaxes(1, 2)) / 2)[:, 0]
     if (lost := least <= _SINGULAR).any():
         raise NoEquilibrium(
-            f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: it buckles at that "
-            "speed or below it, or turns freely about its root"
+            f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: rotation or its "
+            "weight buckles it there or before, or it turns freely about its root"
         )
     return np.linalg.solve(scaled, (load / size)[..., None])[..., 0] / size
 
