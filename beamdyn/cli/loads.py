@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal
 
 from beamdyn.cli.program import app, deliver
@@ -164,6 +165,8 @@ def _in_transient(
     from beamdyn import count_cycles, simulate, transient_loads
     from beamdyn.tables.loads import cycles_table, transient_loads_table
 
+    if cycles is not None and find_spec("rainflow") is None:
+        raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")
     end = parse_positive("--t-end", t_end, "s")
     span = None if window is None else parse_window(window, end)
     with naming_option("t_end", "--t-end", t_end):

@@ -56,6 +56,13 @@ def test_transient_within_a_window_with_cycles(run):
     assert "Cycles of strain at 0 mm, 0.1 to 0.3 s" in out
 
 
+def test_cycles_without_the_package_that_counts_are_refused_at_once(run, monkeypatch):
+    monkeypatch.setattr("beamdyn.cli.loads.find_spec", lambda name: None)
+    code, _, err = run(ROLLING, "--t-end", "1e9 s", "--cycles", "strain")
+    assert code == BAD_INPUT
+    assert "beamdyn[fatigue]" in err
+
+
 def test_steady_response_over_speed(run, tmp_path):
     path = tmp_path / "steady.csv"
     code, out, _ = run(
