@@ -26,6 +26,11 @@ _NAMES = {
     "equations.ritz": ("Ritz",),
     "equations.left_out": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
+    "loads.cycles": ("LoadCycles", "count_cycles"),
+    "loads.span_loads": ("LargestLoad", "SpanLoads"),
+    "loads.static_loads": ("StaticLoads", "static_loads"),
+    "loads.steady_loads": ("SteadyLoads", "steady_loads"),
+    "loads.transient_loads": ("TransientLoads", "transient_loads"),
     "scene.beam": ("Beam", "PointMass", "TipMass"),
     "scene.motion": (
         "Line",
@@ -102,6 +107,11 @@ if TYPE_CHECKING:
     from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
+    from beamdyn.loads.cycles import LoadCycles, count_cycles
+    from beamdyn.loads.span_loads import LargestLoad, SpanLoads
+    from beamdyn.loads.static_loads import StaticLoads, static_loads
+    from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
+    from beamdyn.loads.transient_loads import TransientLoads, transient_loads
     from beamdyn.modal.equilibrium import NoEquilibrium
     from beamdyn.scene.beam import Beam, PointMass, TipMass
     from beamdyn.scene.motion import (

@@ -6,6 +6,7 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
     equilibria,
     frequencies,
     interactive,
+    loads,
     published,
     sensitivities,
     steady_state,

@@ -41,6 +41,8 @@ WRONG = {
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2))
 MOVING = bd.Scene(BEAM, bd.Mount(0.2), bd.RollingWheel(0.3, 20.0, bd.RoadWave(0.3, 0.01)))
+RUN, RESPONSE = bd.simulate(MOVING, 0.02, 2, 1e-3), bd.steady_response(MOVING, [5.0], 2)
+LOADS = bd.transient_loads(RUN, at=[0.0])
 
 
 def tabulated(stations, values):
@@ -146,6 +148,23 @@ CALLS = {
         {"scene": MOVING, "t_end": 0.02, "modes": 2, "tolerance": 1e-3, "method": "auto"}
         | {"discretization": "ritz", "initial": "rest", "t_eval": None},
     ),
+    "static_loads": (
+        bd.static_loads,
+        {"scene": SCENE, "speeds": 5.0, "at": [0.0], "points": [(0.0, 0.0)], "angle": 0.1}
+        | {"youngs_modulus": 1e9, "discretization": "ritz"},
+    ),
+    "transient_loads": (
+        bd.transient_loads,
+        {"run": RUN, "at": [0.0], "points": [(0.0, 0.0)], "t": [0.01], "youngs_modulus": 1e9},
+    ),
+    "steady_loads": (
+        bd.steady_loads,
+        {"response": RESPONSE, "at": [0.0], "points": [(0.0, 0.0)], "youngs_modulus": 1e9},
+    ),
+    "count_cycles": (
+        bd.count_cycles,
+        {"loads": LOADS, "quantity": "moment", "station": 0, "component": 0, "start": 0.0, "end": 0.02},
+    ),
     "sweep": (
         bd.sweep,
         {"scene": MOVING, "speeds": [5.0], "window": (0.0, 0.02), "t_end": None, "modes": 2}
@@ -244,6 +263,7 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere |= {"OmittedEffect"}  # in the terms of a scene
     made_elsewhere |= {"EquilibriumBranch", "JudgedEffect", "PhysicsChoice"}  # parts of results
     made_elsewhere |= {"LineCrossing", "Margin"}  # parts of a diagram
+    made_elsewhere |= {"LargestLoad"}  # parts of loads
     made_elsewhere |= {"SceneNumber", "VariedInput"}  # parts of studies
     made_elsewhere |= {"IgnoredProperty", "ModePolynomial", "PropertyStep", "ShapeCheck"}  # parts of decks
     made_elsewhere |= {"load"}  # reads files: tests/unit/test_load.py
