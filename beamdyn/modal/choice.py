@@ -200,7 +200,7 @@ def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Disc
     if segments > _FEW_SEGMENTS:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
-        digits = -np.log10(max(target, _MOMENTS_TARGET))
+        digits = -np.log10(max(target, MOMENTS_TARGET))
         return Ritz(max(modes, int(least + modes + per_digit * digits)), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
     total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
