@@ -177,3 +177,8 @@ class CutSpaces:
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return self.functions(rows).product(self.functions(columns), weight, orders)
+
+    def shares_functions(self, other: CutSpaces) -> bool:
+        """Whether the functions of the beam and the cuts are the same."""
+        same = np.array_equal(self.quadrature.stations, other.quadrature.stations)
+        return same and self.spaces.shares_functions(other.spaces)

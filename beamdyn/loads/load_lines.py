@@ -13,19 +13,13 @@ from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.section_points import Outputs
 from beamdyn.loads.stations import Stations
 from beamdyn.steady.excitation_phases import check_steady_state, expand_quantities
-from beamdyn.steady.harmonic_balance import (
-    Pair,
-    convolution_matrix,
-    generate_harmonics,
-    largest_over_phases,
-    list_harmonics,
-    solve_harmonic_balance,
-)
+from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
+from beamdyn.steady.largest_over_phases import largest_over_phases
+from beamdyn.steady.periodic_system import Pair, generate_harmonics, list_harmonics
 from beamdyn.steady.response import SteadyResponse
 from beamdyn.steady.vibration import Vibration, vibration_of
 
 _BATCH = 2000  # sums of lines whose largest values are sought at once
-_MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
 _NEGLIGIBLE = 1e-12  # of the tip, over the sum of all lines: its harmonics of one interaction more are kept
 
 
@@ -107,15 +101,13 @@ def _solve(
     coupling = set().union(*(system.coupling for system, _ in vibration.parts))
     levels = generate_harmonics(_harmonics_that_matter(response), coupling, 1)
     pairs = [h for level in levels for h in level]
+    fewer = pairs if len(levels) == 1 else [h for level in levels[:-1] for h in level]
     q = np.zeros((2, len(response.speeds), len(pairs), equations.size), dtype=complex)
     stable = np.flatnonzero(response.stable)
     for system, places in vibration.parts if pairs else ():
-        for some in np.array_split(
-            stable, 1 + len(stable) * (len(pairs) * len(places)) ** 2 // _MOST_ENTRIES
-        ):
-            solved = solve_harmonic_balance(system[some], levels)
-            for each, solution in zip(q, solved if len(levels) > 1 else (solved[0], solved[0]), strict=True):
-                each[np.ix_(some, np.arange(len(pairs)), places)] = solution
+        for each, kept in zip(q, (pairs, fewer), strict=True):
+            of_part = np.ix_(stable, np.arange(len(kept)), places)
+            each[of_part] = solve_harmonic_balance(system[stable], kept)
     return pairs, q[0], q[1]
 
 

@@ -9,12 +9,7 @@ from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_error import estimate_record_error
 from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.time_error import (
-    CheckedSteps,
-    TimeError,
-    estimate_time_error,
-    vibration_frequencies,
-)
+from beamdyn.transient.time_error import TimeError, estimate_time_error, vibration_frequencies
 from beamdyn.transient.trajectory import Path, Trajectory
 
 _TIMES_CHECKED = 65  # of a run, at which loads per coordinate are compared
@@ -49,10 +44,10 @@ def _of_component(sizes: np.ndarray, system: ModalSystem, path: Trajectory) -> n
     """Errors (S,) of one component, per unit of each coordinate (S, n), from the errors of coordinates."""
     largest = sizes.max(axis=0)
     scale = np.where(largest > 0, largest, 1.0)
-    checks = [CheckedSteps.of_segment(s) for s in path.segments if isinstance(s, Segment)]
+    steps = [segment for segment in path.segments if isinstance(segment, Segment)]
     records = (s for s in path.segments if isinstance(s, RecordSegment))
     outputs = np.diag(largest)
-    estimated = [estimate_time_error(system, checks, outputs)] if checks else []
+    estimated = [estimate_time_error(system, steps, outputs)] if steps else []
     estimated += [estimate_record_error(system, segment, outputs) for segment in records]
     return sum((_at_stations(error, sizes / scale, system) for error in estimated), np.zeros(len(sizes)))
 
