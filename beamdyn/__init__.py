@@ -35,10 +35,15 @@ _NAMES = {
         "Rotation",
         "RotationFunction",
         "SampledRotation",
+        "SampledTranslation",
         "SpinUp",
         "SteadyRotation",
         "UserMotion",
     ),
+    "linear_models.excitations": ("BaseMotion", "PointForce"),
+    "linear_models.matrices": ("Matrices", "matrices"),
+    "linear_models.observations": ("AccelerationAt", "DeflectionAt", "MomentAtRoot", "StrainAtRoot"),
+    "linear_models.state_space": ("state_space",),
     "modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
@@ -94,6 +99,10 @@ if TYPE_CHECKING:
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.modal.equilibrium import NoEquilibrium
+    from beamdyn.linear_models.excitations import BaseMotion, PointForce
+    from beamdyn.linear_models.matrices import Matrices, matrices
+    from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
+    from beamdyn.linear_models.state_space import state_space
     from beamdyn.scene.beam import Beam, PointMass, TipMass
     from beamdyn.scene.motion import (
         Line,
@@ -104,6 +113,7 @@ if TYPE_CHECKING:
         Rotation,
         RotationFunction,
         SampledRotation,
+        SampledTranslation,
         SpinUp,
         SteadyRotation,
         UserMotion,
