@@ -98,11 +98,11 @@ if TYPE_CHECKING:
     from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
-    from beamdyn.modal.equilibrium import NoEquilibrium
     from beamdyn.linear_models.excitations import BaseMotion, PointForce
     from beamdyn.linear_models.matrices import Matrices, matrices
     from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
     from beamdyn.linear_models.state_space import state_space
+    from beamdyn.modal.equilibrium import NoEquilibrium
     from beamdyn.scene.beam import Beam, PointMass, TipMass
     from beamdyn.scene.motion import (
         Line,

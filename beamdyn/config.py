@@ -23,6 +23,7 @@ from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file
+from beamdyn.record_files import with_record_file
 from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
@@ -34,7 +35,7 @@ __all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
-    """Read a scene from a TOML file, and the CSV file of its stations if it names one.
+    """Read a scene from a TOML file, and the CSV files of its stations and its motion if it names some.
 
     Parameters
     ----------
@@ -51,15 +52,14 @@ def load_scene(path: str | PathLike[str]) -> Scene:
         If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
         the CSV file is named by its line.
     """
-    text = read(path)
     try:
-        data = parse(text, str(path))
+        data = parse(read(path), str(path))
     except ConfigError as error:
         if Path(path).suffix.lower() == ".toml":
             raise
         hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
         raise ConfigError(str(path), ["; ".join([*error.mistakes, hint])]) from None
-    return scene_from_dict(_with_station_file(data, Path(path).parent), str(path))
+    return scene_from_dict(with_record_file(_with_station_file(data, Path(path).parent), path), str(path))
 
 
 def parse_scene(text: str, source: str = "scene") -> Scene:

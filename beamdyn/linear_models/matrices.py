@@ -180,7 +180,8 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
     length, deflection = model.scene.beam.length, model.equations.deflections.get(field_name)
     spaces = model.discretization.spaces(model.scene.modelled_beam)
     nodes = getattr(spaces, "nodes", None)
-    nodal = [] if nodes is None or deflection is None else [deflection.space.evaluate(nodes, k) for k in (0, 1)]
+    known = nodes is not None and deflection is not None
+    nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)] if known else []
     for k in range(size):
         at = [(order, int(values[k].argmax())) for order, values in enumerate(nodal) if _is_nodal(values[k])]
         if nodes is None or not at:

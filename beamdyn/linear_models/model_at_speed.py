@@ -8,18 +8,20 @@ Fundamentals of Structural Dynamics (2006), section 11.4).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg
 
-from beamdyn.common.checks import InvalidValue, refuse
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.root_moment import RootMoment, StaticLoad, root_moment, static_moment
-from beamdyn.equations.root_motion import RootMotion, root_motion
+from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.linear_models.excitations import Accelerations, Excitation
 from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, StrainAtRoot
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
@@ -135,8 +137,6 @@ class ModelAtSpeed(FieldsOnly):
         """Eigenvalues of free motion [1/s]; those of coordinates without mass are not finite."""
         n, zero = self.equations.size, np.zeros((self.equations.size, self.equations.size))
         eye = np.eye(n)
-        import scipy.linalg
-
         A = np.block([[zero, eye], [-self.K, -self.C]])
         E = np.block([[eye, zero], [zero, self.M]])
         return np.asarray(scipy.linalg.eigvals(A, E))
@@ -151,13 +151,13 @@ class ModelAtSpeed(FieldsOnly):
     def _drive(self, accelerations: Accelerations, excitation: Excitation) -> Drive:
         full = self.model.equations
         force = excitation.force(self.scene.beam)
-        load = np.zeros(full.size, dtype=complex)
+        load: np.ndarray = np.zeros(full.size, dtype=complex)
         for quantity, value in accelerations.items():
-            load = load + value * full.vectors.get(quantity, 0.0)
+            load += value * full.vectors.get(quantity, np.zeros(full.size))
         if force is not None:
             self._check_direction("input", force[1])
-            load = load + full.deflection(np.array(force[:1]), direction=force[1])[:, 0]
-        load = load if load.imag.any() else load.real
+            load += full.deflection(np.array(force[:1]), direction=force[1])[:, 0]
+        load = load if np.imag(load).any() else np.real(load)
         if not load.any():
             bound = "it does not load the beam: it acts along it, or in a direction in which it is rigid"
             raise InvalidValue("input", excitation.label, bound, "model both planes, or turn the beam")
@@ -188,9 +188,8 @@ class ModelAtSpeed(FieldsOnly):
             return self._row_at(observation, self.equations)
         zero = np.zeros(self.equations.size)
         moment, factor = self._moment, self._per_moment(observation)
-        return Row(
-            factor * self._at_speed(moment.position, zero), factor * self._at_speed(moment.velocity, zero), zero
-        )
+        position, velocity = (self._at_speed(rows, zero) for rows in (moment.position, moment.velocity))
+        return Row(factor * position, factor * velocity, zero)
 
     def residual(self, observation: Observation, drive: Drive) -> np.ndarray:
         """What the static deflection beyond the kept coordinates adds to an output: shape (3,).
@@ -241,10 +240,10 @@ class ModelAtSpeed(FieldsOnly):
     def _per_moment(self, observation: Observation) -> float:
         return observation.per_moment(self.scene.beam) if isinstance(observation, StrainAtRoot) else 1.0
 
-    def _at_speed(self, by_quantity: dict | object, zero: np.ndarray) -> np.ndarray:
+    def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
         """Sum of rows by the quantities of the root's motion at the speed."""
         root, total = self._root, zero
-        for quantity, row in by_quantity.items():  # pyright: ignore[reportAttributeAccessIssue]
+        for quantity, row in by_quantity.items():
             total = total + float(getattr(root, quantity)) * row
         return total
 

@@ -140,5 +140,6 @@ def as_observation(name: str, given: Any) -> Observation:
         return _WORDS[given]
     if not isinstance(given, DeflectionAt | MomentAtRoot | StrainAtRoot):
         words = ", ".join(map(repr, _WORDS))
-        raise InvalidValue(name, given, f"give {words}, a DeflectionAt(position) or an AccelerationAt(position)")
+        objects = "a DeflectionAt(position) or an AccelerationAt(position)"
+        raise InvalidValue(name, given, f"give {words}, {objects}")
     return given

@@ -49,9 +49,9 @@ class SampledTranslation(Motion):
     """
 
     times: Sequence[Annotated[float, Described("s", "t", "times of the record, from 0, evenly spaced")]]
-    along_n1: Sequence[Annotated[float, Described("m/s2", "a_1", "accelerations of the centre along n1")]] = ()
-    along_n2: Sequence[Annotated[float, Described("m/s2", "a_2", "accelerations of the centre along n2")]] = ()
-    along_n3: Sequence[Annotated[float, Described("m/s2", "a_3", "accelerations of the centre along n3")]] = ()
+    along_n1: Sequence[Annotated[float, Described("m/s2", "a_1", "accelerations along n1")]] = ()
+    along_n2: Sequence[Annotated[float, Described("m/s2", "a_2", "accelerations along n2")]] = ()
+    along_n3: Sequence[Annotated[float, Described("m/s2", "a_3", "accelerations along n3")]] = ()
     rotation: Annotated[float | Rotation, Described(key="rotation")] = 0.0
     interpolation: Annotated[
         BetweenSamples, Described(meaning="straight lines between samples, or a cubic spline")
@@ -145,7 +145,7 @@ def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.nda
     intervals = np.diff(times)
     bound, remedy = "it follows {limit}", "sort the record, drop repeats"
     refuse(intervals <= 0, name, times[1:], "s", bound, remedy, limit=times[:-1])
-    refuse(times[0] != 0, name, times[0], "s", "a motion begins at t = 0", f"subtract {times[0]:g} s from all")
+    refuse(times[0] != 0, name, times[0], "s", "a motion begins at t = 0", f"subtract {times[0]:g} s")
     usual = float(np.median(intervals))
     bound = f"samples are missing since {{limit}}: other intervals are {usual:.6g} s"
     remedy = "fill the gap, or cut the record there"
