@@ -25,7 +25,9 @@ _NAMES = {
     "equations.ritz": ("Ritz",),
     "equations.left_out": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
-    "scene.beam": ("Beam", "PointMass", "TipMass"),
+    "scene.beam": ("Beam",),
+    "scene.points": ("PointMass", "PointSpring", "TipMass"),
+    "scene.damping": ("Damping",),
     "scene.motion": (
         "Line",
         "Motion",
@@ -103,7 +105,8 @@ if TYPE_CHECKING:
     from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
     from beamdyn.linear_models.state_space import state_space
     from beamdyn.modal.equilibrium import NoEquilibrium
-    from beamdyn.scene.beam import Beam, PointMass, TipMass
+    from beamdyn.scene.beam import Beam
+    from beamdyn.scene.damping import Damping
     from beamdyn.scene.motion import (
         Line,
         Motion,
@@ -121,6 +124,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.mount import Mount
     from beamdyn.scene.physics import Physics
     from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
+    from beamdyn.scene.points import PointMass, PointSpring, TipMass
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.backbone import Backbone, backbone

@@ -153,7 +153,8 @@ def static_moment(
 def _freed(scene: Scene, discretization: Discretization, direction: int) -> Equations:
     """Equations of the scene with a root that turns freely in one direction."""
     hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
-    freed = replace(scene, damping_ratio=0.0, mount=replace(scene.mount, **hinges))
+    local = replace(scene.damping, ratios=())  # damping of modes does no work on the test function
+    freed = replace(scene, damping_ratio=0.0, damping=local, mount=replace(scene.mount, **hinges))
     return assemble_over(freed, discretization.spaces(scene.modelled_beam))
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, count, real
@@ -45,10 +43,5 @@ def model_at_speed(
     if modes is None and not isinstance(discretization, str):
         check_discretization(discretization)
         return ModelAtSpeed(Model(scene, discretization), speed, None)
-    chosen = choose_model(undamped(scene), discretization, np.array([speed]), modes or _MODES)
+    chosen = choose_model(scene.undamped, discretization, np.array([speed]), modes or _MODES)
     return ModelAtSpeed(Model(scene, chosen.discretization), speed, modes)
-
-
-def undamped(scene: Scene) -> Scene:
-    """The scene without damping."""
-    return replace(scene, damping_ratio=0.0)

@@ -55,7 +55,8 @@ def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
     """Whether the designs of a study over some inputs are similar to beams of one shape and basis."""
     plain = scene.physics == Physics() and not scene.chooses_physics
     clamped = scene.is_slender_beam_in_one_plane
-    beyond = scene.damping_ratio or scene.mount.precone or scene.beam.point_masses
+    points = scene.beam.point_masses or scene.beam.point_springs
+    beyond = scene.is_damped or scene.mount.precone or points
     return plain and clamped and not beyond and names <= SIMILAR
 
 
