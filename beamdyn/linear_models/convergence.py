@@ -1,0 +1,125 @@
+"""How many modes a linear model needs, and the error of what is computed with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue, count, within
+from beamdyn.linear_models.choice import model_at_speed
+from beamdyn.linear_models.model_at_speed import ModelAtSpeed
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+
+Evaluation = Callable[[ModelAtSpeed], np.ndarray]
+
+_FIRST = 4  # modes of the first basis of "auto"
+_ACCURATE = 8  # modes for which its functions are chosen
+_MOST = 40  # of the last
+_MARGIN = 2.0  # error over the distance from more modes, or from a coarser discretization
+_ROUNDING = 1e-12  # of the largest value
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A value with its error, of the model with enough modes.
+
+    Parameters
+    ----------
+    model : ModelAtSpeed
+        The model.
+    value, error : ndarray
+        The value and its estimated error, of one shape.
+    truncation : float
+        Largest error by the modes left out.
+    method, compared_with : str
+        The model, and those that the error was estimated by.
+    """
+
+    model: ModelAtSpeed
+    value: np.ndarray
+    error: np.ndarray
+    truncation: float
+    method: str
+    compared_with: str
+
+
+def refine(
+    scene: Scene,
+    speed: float,
+    top: float,
+    modes: int | str | None,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+    evaluate: Evaluation,
+) -> Refined:
+    """Evaluate with as many modes as the tolerance needs, or as are given.
+
+    Parameters
+    ----------
+    scene, speed, discretization
+        As for `model_at_speed`.
+    top : float
+        Highest angular frequency at which the beam answers [rad/s]; "auto" keeps modes beyond it.
+    modes : int, "auto" or None
+        Number of modes, the fewest with which the error meets the tolerance, or all functions.
+    tolerance : float
+        Truncation error aimed at, relative to the largest value.
+    evaluate : callable
+        The value by a model.
+    """
+    tolerance = within("tolerance", tolerance, 1e-14, 0.1)
+    if modes is None:
+        model = model_at_speed(scene, speed, None, discretization)
+        return _with_error(model, evaluate(model), None, evaluate)
+    if modes != "auto":
+        size = count("modes", modes, remedy='or "auto", or None, which keeps all functions')
+        model = model_at_speed(scene, speed, size, discretization)
+        return _with_error(model, evaluate(model), _larger(model, discretization), evaluate)
+    model = replace(model_at_speed(scene, speed, _ACCURATE, discretization), modes=_FIRST)
+    value = evaluate(model)
+    while (larger := _larger(model, discretization)) is not None:
+        finer = evaluate(larger)
+        settled = np.abs(finer - value).max() <= tolerance / _MARGIN * np.abs(finer).max()
+        if (settled and np.sqrt(larger.K.diagonal().max()) > top) or (larger.modes or 0) >= _MOST:
+            return _with_error(model, value, larger, evaluate, finer)
+        model, value = larger, finer
+    return _with_error(model, value, None, evaluate)
+
+
+def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
+    """The model with half as many modes more, at least two; None if the discretization has too few."""
+    assert model.modes is not None
+    modes, coarser = model.modes + max(2, model.modes // 2), model.model.coarser.equations
+    if all(len(coarser.places(names)) >= modes for names in coarser.coupled):
+        return replace(model, modes=modes)
+    if not isinstance(discretization, str):
+        return None
+    try:
+        return model_at_speed(model.scene, model.speed, modes, discretization)
+    except InvalidValue:
+        return None
+
+
+def _with_error(
+    model: ModelAtSpeed,
+    value: np.ndarray,
+    larger: ModelAtSpeed | None,
+    evaluate: Evaluation,
+    finer: np.ndarray | None = None,
+) -> Refined:
+    """The value, with its distance from that of more modes and of a coarser discretization."""
+    coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
+    error = _MARGIN * np.abs(evaluate(coarse) - value) + _ROUNDING * np.abs(value).max()
+    truncation, compared = np.zeros(()), [str(coarse.discretization)]
+    if model.modes is not None and larger is None:
+        truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]
+    elif larger is not None:
+        finer = evaluate(larger) if finer is None else finer
+        truncation, compared = _MARGIN * np.abs(finer - value), [*compared, f"{larger.modes} modes"]
+    kept = "all functions" if model.modes is None else f"{model.modes} modes at {model.speed:.6g} rad/s"
+    method = f"{model.discretization}, {kept}"
+    largest = float(np.max(truncation))
+    return Refined(model, value, error + truncation, largest, method, ", ".join(compared))
