@@ -43,8 +43,12 @@ _NAMES = {
         "UserMotion",
     ),
     "linear_models.excitations": ("BaseMotion", "PointForce"),
+    "linear_models.frequency_response": ("FrequencyResponse", "frequency_response"),
     "linear_models.matrices": ("Matrices", "matrices"),
     "linear_models.observations": ("AccelerationAt", "DeflectionAt", "MomentAtRoot", "StrainAtRoot"),
+    "linear_models.parametric": ("ParametricTerm",),
+    "linear_models.random_response": ("RandomResponse", "random_response"),
+    "linear_models.spectra": ("PowerSpectrum", "RoadRoughness"),
     "linear_models.state_space": ("state_space",),
     "modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
@@ -101,8 +105,12 @@ if TYPE_CHECKING:
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.linear_models.excitations import BaseMotion, PointForce
+    from beamdyn.linear_models.frequency_response import FrequencyResponse, frequency_response
     from beamdyn.linear_models.matrices import Matrices, matrices
     from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
+    from beamdyn.linear_models.parametric import ParametricTerm
+    from beamdyn.linear_models.random_response import RandomResponse, random_response
+    from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.linear_models.state_space import state_space
     from beamdyn.modal.equilibrium import NoEquilibrium
     from beamdyn.scene.beam import Beam

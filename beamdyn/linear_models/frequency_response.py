@@ -99,7 +99,7 @@ def frequency_response(
     scene: Scene,
     speed: float,
     frequencies: Sequence[float] | np.ndarray,
-    input: Excitation | str = "bending",  # noqa: A002  (the word of the field)
+    input: Excitation | str = "bending",
     output: Observation | str = "tip",
     modes: int | str | None = "auto",
     tolerance: float = 1e-9,
@@ -175,9 +175,7 @@ def frequency_response(
     )
 
 
-def _warnings(
-    scene: Scene, tolerance: float, modes: int | str | None, refined: Refined
-) -> Iterator[str]:
+def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: Refined) -> Iterator[str]:
     yield from warn_of_left_out(scene)
     if not scene.is_damped:
         yield "there is no damping: near natural frequencies the response is that of no real beam"

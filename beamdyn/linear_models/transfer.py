@@ -69,7 +69,10 @@ def check_stable(model: ModelAtSpeed) -> None:
     poles = model.poles[np.isfinite(model.poles)]
     speed = model.speed
     if np.abs(poles).min() < _STILL * np.median(np.abs(poles)):
-        bound, remedy = "the beam turns freely about its root, or is at its critical speed", "change the speed"
+        bound, remedy = (
+            "the beam turns freely about its root, or is at its critical speed",
+            "change the speed",
+        )
         raise InvalidValue("speed", speed, bound, remedy, "rad/s")
     if (poles.real > _GROWING * np.abs(poles)).any():
         bound = f"free motion grows at {poles.real.max():.3g} 1/s: the speed is past the critical speed"
