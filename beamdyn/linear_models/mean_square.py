@@ -4,13 +4,13 @@ With H(s) = d + sum r_k / (s - p_k), on the imaginary axis
 
     |H|^2 = |d|^2 + 2 Re sum c_k / (s - p_k),    c_k = r_k conj(H)(p_k),
 
-where conj(H)(s) = conj(d) + sum conj(r_j) / (-s - conj(p_j)).  So the integral of |H|^2 S over a piece on which
-S is analytic is that of S, and those of S / (f - mu_k), mu_k = p_k / (2 pi i).  Where the pole mu_k is near,
+where conj(H)(s) = conj(d) + sum conj(r_j) / (-s - conj(p_j)).  So the integral of |H|^2 S over a piece on
+which S is analytic is that of S, and those of S / (f - mu_k), mu_k = p_k / (2 pi i).  Where mu_k is near,
 
     int S / (f - mu) df = S(mu) log((b - mu) / (a - mu)) + int (S(f) - S(mu)) / (f - mu) df,
 
 whose last integrand is smooth: resonances, however sharp, are integrated in closed form.  The mean square by
-white noise is a sum of residues, pi times that of the c_k per unit of the angular frequency.
+white noise is half its density times the sum of the c_k.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class PartialFractions:
         return PartialFractions(0.0, np.append(passed, residue), np.append(self.poles, pole))
 
     def mean_square(self, spectrum: PowerSpectrum, shift: float = 0.0) -> float:
-        """Integral of |H|^2 times a one-sided density, H at the frequency f of the density plus a shift [Hz]."""
+        """Integral over f of a one-sided density times |H|^2 at f plus a shift [Hz]."""
         mu, c = self.poles / (2j * np.pi) - shift, self.of_square / (2j * np.pi)
         total = 0.0
         for piece in (part for whole in spectrum.pieces() for part in whole.divided()):

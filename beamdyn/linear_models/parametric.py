@@ -1,7 +1,7 @@
 """Size of the parametric term that linear models leave out: accelerations along the beam vary its stiffness.
 
 A random acceleration a along the beam varies the squared frequency of a mode by the fraction xi = kappa a,
-kappa = |phi K_GA phi| / omega^2 for its shape phi of unit mass.  For an oscillator with the damping ratio zeta,
+kappa = |phi K_GA phi| / omega^2 for its shape phi of unit mass.  For an oscillator of the damping ratio zeta,
 
     q'' + 2 zeta omega q' + omega^2 (1 + xi) q = w,
 
@@ -55,8 +55,8 @@ class ParametricTerm:
             yield f"the parametric term that is left out would raise the root mean square {size}"
         if self.by_gravity > _LARGE:
             yield (
-                f"gravity along the beam varies the lowest squared frequency by {self.by_gravity:.1%} within a "
-                "turn, which is left out"
+                f"gravity along the beam varies the lowest squared frequency by {self.by_gravity:.1%} "
+                "within a turn, which is left out"
             )
 
 

@@ -214,7 +214,7 @@ def _highest(spectrum: PowerSpectrum | float) -> float:
 
 
 def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: ModelAtSpeed) -> np.ndarray:
-    """Frequencies of the density of the response [Hz]: as given, or up to the highest, with the resonances."""
+    """Frequencies of the density of the response [Hz]: those given, or up to a highest, with resonances."""
     if given is not None:
         f = ascending("frequencies", given)
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
@@ -48,14 +49,12 @@ class SpectrumPiece:
 
     def divided(self) -> Iterator[SpectrumPiece]:
         """Yield parts on which a power law is nearly a polynomial."""
-        parts = math.ceil(math.log(self.end / self.start, _WIDEST)) if self.power else 1
-        ends = np.geomspace(self.start, self.end, parts + 1) if self.power else [self.start, self.end]
-        for a, b in zip(ends[:-1], ends[1:], strict=True):
-            yield (
-                SpectrumPiece(float(a), float(b), float(self(np.array(a))), 0.0, self.power)
-                if self.power
-                else self
-            )
+        if not self.power:
+            yield self
+            return
+        parts = math.ceil(math.log(self.end / self.start, _WIDEST))
+        for a, b in pairwise(np.geomspace(self.start, self.end, parts + 1).tolist()):
+            yield SpectrumPiece(a, b, float(self(np.array(a))), 0.0, self.power)
 
 
 @dataclass(frozen=True)
@@ -172,7 +171,7 @@ class RoadRoughness:
         return ISO_CLASSES[self.roughness] if isinstance(self.roughness, str) else self.roughness
 
     def acceleration(self, velocity: float) -> PowerSpectrum:
-        """Density of the vertical acceleration [(m/s2)2/Hz] of a point that follows the road at a velocity [m/s].
+        """Density of the vertical acceleration [(m/s2)2/Hz] of what follows the road at a velocity [m/s].
 
         At the frequency f = n v it is (2 pi f)^4 G(n) / v.
         """
