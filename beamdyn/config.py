@@ -143,12 +143,15 @@ def _auto_as_table(given: Any) -> Any:
     return {AUTO_NAME: True}
 
 
-def _in_a_list(given: Any) -> Any:
-    """Refuse one table where there may be several."""
-    if isinstance(given, Mapping):
-        remedy = "give a table [[beam.point_mass]] or [[beam.point_spring]] in two brackets, one for each"
-        raise InvalidInput("", dict(given), remedy)
-    return given
+def _in_a_list(key: str) -> BeforeValidator:
+    """A validator that refuses one table where there may be several."""
+
+    def refuse_one(given: Any) -> Any:
+        if isinstance(given, Mapping):
+            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets, one for each")
+        return given
+
+    return BeforeValidator(refuse_one)
 
 
 if TYPE_CHECKING:
@@ -176,8 +179,8 @@ class _BeamInput(CoreSection):
         Along | None,
         Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
     ] = None
-    point_mass: Annotated[list[_PointMassInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012  (the same)
-    point_spring: Annotated[list[_PointSpringInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012
+    point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
+    point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
 
     @property
     def _arguments(self) -> dict[str, Any]:

@@ -74,7 +74,7 @@ def refine(
     if modes is None:
         model = model_at_speed(scene, speed, None, discretization)
         return _with_error(model, evaluate(model), None, evaluate)
-    if modes != "auto":
+    if not (isinstance(modes, str) and modes == "auto"):
         size = count("modes", modes, remedy='or "auto", or None, which keeps all functions')
         model = model_at_speed(scene, speed, size, discretization)
         return _with_error(model, evaluate(model), _larger(model, discretization), evaluate)

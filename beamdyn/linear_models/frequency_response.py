@@ -180,7 +180,7 @@ def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: 
     if not scene.is_damped:
         yield "there is no damping: near natural frequencies the response is that of no real beam"
     largest = np.abs(refined.value).max()
-    if modes == "auto" and refined.truncation > tolerance * largest:
+    if isinstance(modes, str) and refined.truncation > tolerance * largest:
         yield (
             f"tolerance = {tolerance:g} is not reached: the estimated error by the modes left out is "
             f"{refined.truncation / largest:.1g} of the largest response"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import real_array, refuse
+from beamdyn.common.checks import InvalidValue, real_array, refuse, several
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
@@ -149,10 +149,18 @@ def matrices(
     )
 
 
+def listed(name: str, given: Any) -> tuple[Any, ...]:
+    """The members of a sequence, of which there is one at least."""
+    members = several(name, given, object)
+    if not members:
+        raise InvalidValue(name, given, "it is empty", "give one at least, or leave it out")
+    return members
+
+
 def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
     """The excitations of a request, or the usual ones of a scene."""
     if given is not None:
-        return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(given)]
+        return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(listed("inputs", given))]
     usual: list[Excitation] = [BaseMotion(), PointForce()]
     return usual if scene.physics.planes == 1 else [*usual, BaseMotion(ACROSS), PointForce(None, ACROSS)]
 

@@ -109,7 +109,7 @@ class StrainAtRoot:
 
     @staticmethod
     def per_moment(beam: Beam) -> float:
-        """Strain per bending moment [1/(N m)]; an InvalidValue where the beam has no outer fibre."""
+        """Strain per bending moment [1/(N m)]; a ValueError where the beam has no outer fibre."""
         root = np.zeros(1)
         if beam.outer_fibre is None:
             bound, remedy = "the strain needs beam.outer_fibre", "give it to Beam.from_stiffness"

@@ -10,7 +10,7 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue
 from beamdyn.linear_models.choice import check_linear, model_at_speed
 from beamdyn.linear_models.excitations import Excitation
-from beamdyn.linear_models.matrices import list_inputs, steady_drive
+from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive
 from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, as_observation
 from beamdyn.modal.choice import DiscretizationChoice
@@ -68,7 +68,7 @@ def state_space(
     scene, speed = check_linear(scene, speed, modes)
     model = model_at_speed(scene, speed, modes, discretization)
     drives = [steady_drive(model, each) for each in list_inputs(inputs, scene)]
-    observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(outputs)]
+    observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
     M, n = _with_mass(model), model.equations.size
     loads = np.column_stack([drive.load for drive in drives])
     of_state, of_load = np.linalg.solve(M, -np.hstack([model.K, model.C])), np.linalg.solve(M, loads)

@@ -48,7 +48,7 @@ class Damping:
     ] = 0.0
 
     def __post_init__(self) -> None:
-        ratios = real_array("damping.ratios", self.ratios if len(self.ratios) else [])
+        ratios = real_array("damping.ratios", self.ratios)
         bound = "each is from 0 to below 1"
         refuse((ratios < 0) | (ratios >= 1), "damping.ratios", ratios, "", bound, _RATIO["remedy"])
         set_fields(self, ratios=tuple(ratios.tolist()))

@@ -64,8 +64,8 @@ class SampledTranslation(Motion):
         for name in _AXES:
             set_fields(self, **{name: _check_samples(name, getattr(self, name), len(times))})
         if not any(getattr(self, name) for name in _AXES):
-            remedy = "give at least one, such as along_n2"
-            raise InvalidValue(_AXES[1], (), "the record has no acceleration", remedy)
+            bound, remedy = "no direction has an acceleration", "give one at least, such as along_n2"
+            raise InvalidValue(", ".join(_AXES), (), bound, remedy)
         if not isinstance(self.rotation, Rotation):
             remedy = "or a rotation, such as SpinUp(speed, duration)"
             speed = real("rotation", self.rotation, "rad/s", remedy)
@@ -155,7 +155,7 @@ def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.nda
 
 def _check_samples(name: str, given: Sequence[float], count: int) -> tuple[float, ...]:
     """Accelerations as numbers, as many as times; none if none are given."""
-    samples = real_array(name, given if len(given) else [])
+    samples = real_array(name, given)
     if len(samples) not in (0, count):
         bound = f"{len(samples)} accelerations at {count} times"
         raise InvalidValue(name, tuple(samples[:3].tolist()), bound, "give as many")
