@@ -185,18 +185,19 @@ def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
 
 
 def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator[str]:
-    length, deflection = model.scene.beam.length, model.equations.deflections.get(field_name)
-    spaces = model.discretization.spaces(model.scene.modelled_beam)
-    nodes = getattr(spaces, "nodes", None)
-    known = nodes is not None and deflection is not None
-    nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)] if known else []
+    """What each coordinate of a field is: a deflection or a slope at a node, or else a coefficient."""
+    deflection = model.equations.deflections.get(field_name)
+    nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
+    nodal: list[np.ndarray] = []
+    if nodes is not None and deflection is not None:
+        nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)]
     for k in range(size):
         at = [(order, int(values[k].argmax())) for order, values in enumerate(nodal) if _is_nodal(values[k])]
         if nodes is None or not at:
             yield f"{field_name}, coefficient of function {k + 1} [m]"
             continue
         (order, node), what = at[0], ("deflection", "slope by x/L")
-        yield f"{field_name}, {what[order]} at {nodes[node] * length:.6g} m [m]"
+        yield f"{field_name}, {what[order]} at {nodes[node] * model.scene.beam.length:.6g} m [m]"
 
 
 def _is_nodal(values: np.ndarray) -> bool:

@@ -219,7 +219,7 @@ def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: 
         f = ascending("frequencies", given)
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
         return f
-    resonances = np.abs(model.poles.imag[np.isfinite(model.poles)]) / _TURN
+    resonances = np.abs(np.imag(model.poles[np.isfinite(model.poles)])) / _TURN
     top = top or 10 * float(resonances.min())
     return np.union1d(np.geomspace(top / 10**_DECADES, top, _POINTS), resonances[resonances < top])
 

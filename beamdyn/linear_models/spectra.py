@@ -178,4 +178,4 @@ class RoadRoughness:
         v = positive("velocity", abs(velocity), "m/s", "at rest a road does not shake")
         n = np.array([self.lowest, self.highest])
         height = self.density * (n / REFERENCE) ** -self.waviness / v
-        return PowerSpectrum(n * v, (2 * np.pi * n * v) ** 4 * height)
+        return PowerSpectrum((n * v).tolist(), ((2 * np.pi * n * v) ** 4 * height).tolist())

@@ -74,6 +74,7 @@ def check_stable(model: ModelAtSpeed) -> None:
             "change the speed",
         )
         raise InvalidValue("speed", speed, bound, remedy, "rad/s")
-    if (poles.real > _GROWING * np.abs(poles)).any():
-        bound = f"free motion grows at {poles.real.max():.3g} 1/s: the speed is past the critical speed"
+    growth = np.real(poles)
+    if (growth > _GROWING * np.abs(poles)).any():
+        bound = f"free motion grows at {growth.max():.3g} 1/s: the speed is past the critical speed"
         raise InvalidValue("speed", speed, bound, "lower the speed", "rad/s")

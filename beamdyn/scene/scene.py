@@ -182,7 +182,7 @@ _STIFFEST_POINT = 1e9  # spring over EI/L^3 of the beam: beyond, rounding hides 
 
 
 def _check_point_springs(scene: Scene) -> None:
-    """Refuse springs that rounding does not tell from supports, in a rigid direction, or beside a hinge."""
+    """Refuse springs that rounding does not tell from supports, and those in a rigid direction."""
     beam = scene.beam
     for k, spring in enumerate(beam.point_springs):
         stiffest = _STIFFEST_POINT * mean(beam.bending_stiffness) / beam.length**3
@@ -192,9 +192,6 @@ def _check_point_springs(scene: Scene) -> None:
         if spring.direction == ACROSS and scene.physics.planes == 1:
             bound, remedy = "a beam of one plane is rigid in this direction", "give physics.planes = 2"
             raise InvalidValue(f"point_springs[{k}].direction", ACROSS, bound, remedy)
-    if beam.point_springs and 0 in scene.mount.root_stiffnesses[: scene.physics.planes]:
-        bound = "a hinge that turns freely and springs along the beam are not modelled together"
-        raise InvalidValue("mount.root_stiffness", 0.0, bound, "give a soft spring", "N m/rad")
 
 
 # Properties that the physics needs ----------------------------------------------------------------

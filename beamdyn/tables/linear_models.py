@@ -46,7 +46,7 @@ def response_csv(result: FrequencyResponse) -> Iterator[Sequence[object]]:
     numbers = [f"_{h:+d}" if h else "" for h in result.harmonics.tolist()]
     names = [f"{name}{n}" for n in numbers for name in ("answer_Hz", "real", "imaginary", "error")]
     yield "frequency_Hz", *names
-    each = [result.response_frequencies, result.response.real, result.response.imag, result.error]
+    each = [result.response_frequencies, np.real(result.response), np.imag(result.response), result.error]
     for frequency, row in zip(result.frequencies.tolist(), np.stack(each, axis=-1), strict=True):
         yield frequency, *row.ravel().tolist()
 
