@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, count, real
+from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.modal.choice import DiscretizationChoice, check_discretization, choose_model
 from beamdyn.modal.model import Model
@@ -34,6 +38,16 @@ def check_linear(scene: Scene, speed: float, modes: int | None) -> tuple[Scene, 
         remedy = "leave large_deflection out"
         raise InvalidValue("physics.large_deflection", True, _STRAIGHT, remedy)
     return scene, speed
+
+
+def with_forces(scene: Scene, inputs: Sequence[Excitation]) -> Scene:
+    """The scene with breakpoints of the beam where forces act within the span, and the shear force jumps."""
+    found = [force[0] for each in inputs if (force := each.force(scene.beam)) is not None and force[0] < 1]
+    if not found:
+        return scene
+    xi = np.unique(found)
+    mass = scene.beam.mass_per_length.stepped(xi, np.zeros(len(xi)))
+    return replace(scene, beam=replace(scene.beam, mass_per_length=mass))
 
 
 def model_at_speed(

@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, ascending, refuse
 from beamdyn.common.results import Provenance, Result
-from beamdyn.linear_models.choice import check_linear
+from beamdyn.linear_models.choice import check_linear, with_forces
 from beamdyn.linear_models.convergence import Refined, refine
 from beamdyn.linear_models.excitations import Excitation, as_excitation
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TURN = 2 * np.pi
+_DIRECT = 300  # functions up to which all are kept: some milliseconds a frequency
 
 
 @dataclass(frozen=True)
@@ -126,8 +127,9 @@ def frequency_response(
         What is observed.  A word may stand for it: "tip", "tip across", "tip acceleration", "root moment" or
         "root strain".
     modes : int, "auto" or None
-        Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
-        truncation error meets the tolerance; None keeps all functions of the discretization.
+        Number of modes at the speed of each set of coupled fields; "auto": all functions of the
+        discretization up to 300 of them, else the fewest modes with which the truncation error meets the
+        tolerance; None keeps all functions.
     tolerance : float
         Truncation error aimed at by "auto", relative to the largest response.
     discretization : {"ritz", "fem"} or Discretization
@@ -153,7 +155,9 @@ def frequency_response(
         return transfer(model, drive, seen, given)[1]
 
     top = _TURN * float(given[-1]) + abs(speed)
-    refined: Refined = refine(scene, speed, top, modes, tolerance, discretization, evaluate)
+    refined: Refined = refine(
+        with_forces(scene, [drive]), speed, top, modes, tolerance, discretization, evaluate, _DIRECT
+    )
     check_stable(refined.model)
     harmonics, _ = transfer(refined.model, drive, seen, given[:1])
     if not np.isfinite(refined.value).all():

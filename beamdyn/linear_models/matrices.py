@@ -14,7 +14,7 @@ from beamdyn.common.checks import InvalidValue, real_array, refuse, several
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.linear_models.choice import check_linear, model_at_speed
+from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
 from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
 from beamdyn.modal.choice import DiscretizationChoice
@@ -125,8 +125,8 @@ def matrices(
     """
     start = perf_counter()
     scene, speed = check_linear(scene, speed, modes)
-    model = model_at_speed(scene, speed, modes, discretization)
     given = list_inputs(inputs, scene)
+    model = model_at_speed(with_forces(scene, given), speed, modes, discretization)
     equations, pencil = model.equations, model.pencil
     kept = "all functions" if modes is None else f"{modes} modes at {speed:.6g} rad/s"
     axial = equations.matrices[0].get("root_axial", np.zeros_like(pencil.M))

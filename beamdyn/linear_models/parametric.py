@@ -21,6 +21,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 
 from beamdyn.linear_models.excitations import BaseMotion, Excitation
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
@@ -77,7 +78,7 @@ def parametric_term(
     K_GA = model.equations.matrices[0].get("root_axial")
     if K_GA is None:
         return ParametricTerm(0.0, 0.0, 0.0)
-    squared, shapes = np.linalg.eigh(model.K)  # of modes of unit mass
+    squared, shapes = scipy.linalg.eigh(model.K, model.M)
     kappa = abs(shapes[:, 0] @ K_GA @ shapes[:, 0]) / squared[0]
     of_gravity = BaseMotion("n2").accelerations(model.scene.mount, model.speed).values()
     weight = abs(model.scene.gravity) * sum(abs(given.get("root_axial", 0.0)) for given in of_gravity)

@@ -14,7 +14,7 @@ from beamdyn._version import __version__
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, ascending, kind, positive, refuse
 from beamdyn.common.results import Provenance, Result
-from beamdyn.linear_models.choice import check_linear
+from beamdyn.linear_models.choice import check_linear, with_forces
 from beamdyn.linear_models.convergence import refine
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, as_excitation
 from beamdyn.linear_models.mean_square import PartialFractions, partial_fractions
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 _TURN = 2 * np.pi
 _POINTS = 500  # frequencies of the result, if none are given
 _DECADES = 3  # below the highest frequency, at which they begin
+_DIRECT = 0  # functions up to which all are kept: their poles are too far apart, and lose digits
 _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
 
 
@@ -128,7 +129,8 @@ def random_response(
     frequencies : sequence of float, optional
         Frequencies at which the density of the response is computed [Hz], ascending from 0 or more.
     modes : int or "auto"
-        As for `frequency_response`; the tolerance is that of the root mean square.
+        Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
+        truncation error meets the tolerance.
     tolerance : float
         Truncation error aimed at by "auto", relative to the root mean square.
     discretization : {"ritz", "fem"} or Discretization
@@ -152,17 +154,19 @@ def random_response(
     if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
         bound = "by white noise its mean square is not finite, or takes all modes"
         raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
-    top = _highest(spectrum)
+    top, loaded = _highest(spectrum), with_forces(scene, [drive])
     refined = refine(
-        scene, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
+        loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
         lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
+        _DIRECT,
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
     check_stable(model)
     f = _frequencies(frequencies, top + abs(speed) / _TURN, model)
     of_psd = refine(
-        scene, speed, 0.0, model.modes, tolerance, discretization,
+        loaded, speed, 0.0, model.modes, tolerance, discretization,
         lambda model: _density(_expand(model, drive, seen), spectrum, speed, f),
+        _DIRECT,
     )  # fmt: skip
     parametric = parametric_term(model, drive, spectrum)
     return RandomResponse(

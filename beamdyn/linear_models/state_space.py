@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.linear_models.choice import check_linear, model_at_speed
+from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive
 from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
@@ -66,8 +66,9 @@ def state_space(
     from scipy.signal import StateSpace  # here, because it is slow to import
 
     scene, speed = check_linear(scene, speed, modes)
-    model = model_at_speed(scene, speed, modes, discretization)
-    drives = [steady_drive(model, each) for each in list_inputs(inputs, scene)]
+    excitations = list_inputs(inputs, scene)
+    model = model_at_speed(with_forces(scene, excitations), speed, modes, discretization)
+    drives = [steady_drive(model, each) for each in excitations]
     observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
     M, n = _with_mass(model), model.equations.size
     loads = np.column_stack([drive.load for drive in drives])

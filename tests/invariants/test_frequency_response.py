@@ -1,4 +1,4 @@
-"""Frequency responses and state spaces against direct solves, the other discretization, and motion in time."""
+"""Frequency responses and state spaces against direct solves, elements, and motion in time."""
 
 import numpy as np
 import pytest
@@ -52,7 +52,9 @@ def test_assumed_modes_against_elements(excitation, output):
         for d in ("ritz", ELEMENTS)
     )
     peak = np.abs(elements.response).max()
-    np.testing.assert_allclose(modes.response, elements.response, rtol=0, atol=1e-5 * peak)
+    # Accelerations weigh the last mode by its frequency squared, where cubic elements are 1e-5 off (h^4).
+    bound = 2e-5 if output == "tip acceleration" else 1e-5
+    np.testing.assert_allclose(modes.response, elements.response, rtol=0, atol=bound * peak)
     # Each states an error, and together they cover the distance at every frequency.
     assert (np.abs(modes.response - elements.response) <= modes.error + elements.error).all()
 
@@ -72,9 +74,7 @@ def test_static_response_of_two_modes_is_that_of_the_whole_beam():
     ss = bd.state_space(bd.Scene(beam), 0.0, [bd.PointForce(0.5)], outputs, modes=2)
     static = ss.D - ss.C @ np.linalg.solve(ss.A, ss.B)
     exact = [0.5**2 * 2.5 / 6, 0.5, 0.005, 0.3**2 * (1.5 - 0.3) / 6]
-    # A polynomial basis rounds the kink of the force: 16 functions have the deflection to 1e-5.
-    np.testing.assert_allclose(static[:3, 0], exact[:3], rtol=1e-9)
-    np.testing.assert_allclose(static[3, 0], exact[3], rtol=1e-4)
+    np.testing.assert_allclose(static[:, 0], exact, rtol=1e-9)
 
 
 def test_state_space_has_the_frequency_response():
@@ -85,7 +85,7 @@ def test_state_space_has_the_frequency_response():
 
 
 def shaken(scene_of, direction, count=41, dt=2.5e-3, speed=SPEED):
-    """A scene with a record of random accelerations, which both `simulate` and `lsim` join by straight lines."""
+    """A scene with a record of accelerations, which `simulate` and `lsim` join by straight lines."""
     steps = np.random.default_rng(1).normal(size=count)
     a = np.cumsum(steps) * 0.1
     a -= np.linspace(0, a[-1], count)
@@ -110,11 +110,11 @@ def test_static_correction_brings_two_modes_closer_to_all():
     ss = bd.state_space(SCENE, SPEED, ["tip force"], modes=2)
     _, corrected = freqresp(ss, 2 * np.pi * slow)
     bare = corrected - ss.D[0, 0]
-    assert np.abs(corrected - exact).max() < 1e-4 * np.abs(bare - exact).max()
+    assert np.abs(corrected - exact).max() < 1e-3 * np.abs(bare - exact).max()
 
 
 def test_an_acceleration_of_fixed_direction_is_answered_at_two_frequencies():
-    # A tone along n2, in the plane of rotation, against the steady end of a run in time.  A short damped beam.
+    # A tone along n2, in the plane of rotation, against the steady end of a run in time.
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0005, **STEEL, tip=bd.TipMass(3e-3))
     f, n = 20.0, 30.0 / (2 * np.pi)
 
@@ -150,7 +150,7 @@ def test_a_rigid_body_transmits_its_base():
 
 
 def test_uniform_cantilever_against_its_characteristic_functions():
-    # Receptance at the tip of a unit beam: (sin ch - cos sh) / (beta^3 (1 + cos ch)): Bishop and Johnson (1960).
+    # Receptance at the tip of a unit beam, (sin ch - cos sh) / (beta^3 (1 + cos ch)): Bishop, Johnson (1960).
     beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0)
     f = np.array([0.1, 1.0, 2.0, 5.0, 9.0])
     beta = np.sqrt(2 * np.pi * f)

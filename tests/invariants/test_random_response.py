@@ -55,7 +55,7 @@ def test_white_noise_against_lyapunovs_equation():
 
 
 def test_one_resonance_against_the_variance_of_an_oscillator():
-    # Crandall and Mark (1963): pi S / (2 zeta omega^3) for two-sided S per rad/s; S1 = 4 pi S per Hz, one-sided.
+    # Crandall and Mark (1963): pi S / (2 zeta omega^3) by two-sided S per rad/s; one-sided per Hz is 4 pi S.
     scene = bd.Scene(BEAM, damping_ratio=0.02)
     M = bd.matrices(scene, 0.0, 1, inputs=["bending"])
     omega, load = np.sqrt(M.stiffness[0, 0]), M.input_matrix[0, 0] * M.deflection([0.05])[0, 0]
