@@ -21,6 +21,7 @@ from benchmarks import (
     brakes,
     extremes,
     frequencies,
+    responses,
     screens,
     stated_frequency_errors,
     stated_physics_errors,
@@ -37,6 +38,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "measured.md"
 SECTIONS = {
     "Frequencies": frequencies,
     "Many designs": study,
+    "Responses": responses,
     "Transients": transient,
     "Steady response": steady,
     "Sweeps": sweep,
