@@ -20,6 +20,7 @@ _NAMES = {
     "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
     "decks.blade": ("IgnoredProperty",),
     "decks.deck": ("Deck", "read_deck"),
+    "decks.mode_shapes": ("ModePolynomial",),
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
@@ -99,6 +100,7 @@ if TYPE_CHECKING:
     from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
     from beamdyn.decks.blade import IgnoredProperty
     from beamdyn.decks.deck import Deck, read_deck
+    from beamdyn.decks.mode_shapes import ModePolynomial
     from beamdyn.equations.discretization import Discretization
     from beamdyn.equations.fem import Fem
     from beamdyn.equations.left_out import OmittedEffect

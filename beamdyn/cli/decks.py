@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from beamdyn.cli.program import app, warn
-from beamdyn.cli.values import Text, naming_option, parse_quantity
+from beamdyn.cli.values import Text, naming_option, parse_quantity, parse_speed
 from beamdyn.common.edge.outputs import Flag, Outputs
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 DeckFile = Annotated[Path, Parameter(name="FILE")]
 Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]
+PolynomialFile = Annotated[Path | None, Parameter(name="--polynomials")]
 
 
 @app.command(name="import")
@@ -29,6 +30,8 @@ def import_deck(
     output: Output = None,
     length: Text | None = None,
     hub_radius: Text | None = None,
+    polynomials: PolynomialFile = None,
+    speed: Text | None = None,
     force: Flag = False,
 ) -> None:
     """Read a blade of ElastoDyn, FAST 7 or BModes, or a CSV table: audit it, and write it as a scene.
@@ -45,20 +48,41 @@ def import_deck(
         Length of the blade with its unit, where the file does not say it (TipRad - HubRad).
     hub_radius
         Distance of the root from the axis of rotation with its unit, where the file does not say it.
+    polynomials
+        Write polynomials of the mode shapes into this file, in the lines of ElastoDyn's blade files.
+    speed
+        Speed of rotation of these mode shapes with its unit; without it that of the file, or 0.
     force
         Overwrite a file that exists.
     """
     from beamdyn.common.edge.tables import show
 
     outputs = Outputs(force=force)
-    outputs.check(file, output=output)
+    outputs.check(file, output=output, polynomials=polynomials)
+    at = None if speed is None else parse_speed("--speed", speed)
+    if at is not None and polynomials is None:
+        raise ValueError(f'--speed = "{speed}": it is that of --polynomials; give both, or leave it out')
     deck = read_with(file, length, hub_radius)
-    outputs.check(*deck.sources, output=output)
+    outputs.check(*deck.sources, output=output, polynomials=polynomials)
     show(_deck_tables(deck))
     if output is not None:
         deck.write_scene(output, force)
         show([f"Written: {output}, for beamdyn modes {output} and the other commands."])
+    if polynomials is not None:
+        _write_polynomials(deck, polynomials, at, force)
     warn(deck.audit.warnings)
+
+
+def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool) -> None:
+    """Write the polynomials, and say how well they fit."""
+    from beamdyn.common.edge.tables import show, table
+    from beamdyn.common.files import check_writable, write_text
+
+    fitted = deck.fit_mode_polynomials(speed)
+    lines = [line for each in fitted for line in each.lines()]
+    write_text(check_writable(path, force=force), "\n".join([*lines, ""]))
+    rows = [(each.mode, f"{each.difference:.4f}", f"{each.frequency:.5g}") for each in fitted]
+    show([table(f"Written: {path}", ("mode", "largest difference from it", "frequency [Hz]"), rows)])
 
 
 def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:

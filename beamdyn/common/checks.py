@@ -170,9 +170,10 @@ def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
 
 
 def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A finite number of zero or more."""
+    """A number of zero or more, not so large that powers and products overflow."""
     number = real(name, value, unit, remedy)
     refuse(number < 0, name, number, unit, "it must be 0 or more", remedy)
+    refuse(number > MOST, name, number, unit, "give at most {limit}", remedy, limit=MOST)
     return number
 
 

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from beamdyn.common.results import Result
 from beamdyn.decks.blade import Blade
+from beamdyn.decks.mode_shapes import PLACES, polynomial, shape_of
 from beamdyn.equations.mass import moments_about_root
-from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import Mount
-from beamdyn.scene.physics import Physics
-from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.modes import natural_modes
 
 STEEP = 3.0  # factor between neighbouring stations from which a step is named
 _SUM_ERROR = 1e-3  # of the coefficients of a mode shape, which ElastoDyn lets pass
 _SHAPE_ERROR = 0.05  # difference of a mode shape, of its tip deflection, that is warned of
-_TOLERANCE = 1e-6  # of the frequencies of the shapes that are compared
-_POINTS = 401  # at which shapes are compared
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
 _NAMES |= {"second_bending_stiffness": "edge stiffness"}
@@ -170,40 +164,11 @@ def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
 
 def _check_shape(scene: Scene, mode: str, coefficients: np.ndarray, speed: float) -> ShapeCheck:
     """Compare a polynomial with the mode of the same plane, without twist, at the speed of the deck."""
-    plane, number = mode.split()
-    x = np.linspace(0, 1, _POINTS)
-    stated = (coefficients[:, None] * x ** np.arange(2, 7)[:, None]).sum(axis=0)
     total = float(coefficients.sum())
-    modes = natural_modes(_one_plane(scene, plane), speed, int(number), tolerance=_TOLERANCE)
-    shape = np.real(modes.shape(x * scene.beam.length))[-1]
-    apart = np.abs(stated / total - shape / shape[-1]) if total else np.full(_POINTS, math.inf)
+    shape, frequency = shape_of(scene, mode, speed)
+    apart = np.abs(polynomial(coefficients) / total - shape) if total else np.full(len(shape), math.inf)
     k = int(apart.argmax())
-    return ShapeCheck(mode, total, float(apart[k]), float(x[k]), float(modes.frequency[-1]))
-
-
-def _one_plane(scene: Scene, plane: str) -> Scene:
-    """The blade without twist, bending in one plane alone: the model of the deck's program."""
-    second = scene.beam.second_bending_stiffness
-    stiffness: Profile | None = scene.beam.bending_stiffness if plane == "flap" else second
-    assert stiffness is not None
-    blade = scene.beam
-    beam = Beam(
-        blade.length,
-        blade.mass_per_length,
-        stiffness,
-        tip=_turned(blade.tip, plane),
-        point_masses=blade.point_masses,
-    )
-    angle = math.pi / 2 if plane == "flap" else 0.0
-    mount = Mount(scene.mount.radius, scene.mount.setting_angle, angle)
-    return replace(scene, beam=beam, mount=mount, physics=Physics())
-
-
-def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
-    """The tip body for bending in the plane."""
-    if tip is None or plane == "flap":
-        return tip
-    return replace(tip, inertia=tip.inertia_about_bending_direction, transverse_inertia=tip.inertia)
+    return ShapeCheck(mode, total, float(apart[k]), float(PLACES[k]), frequency)
 
 
 def _warnings(shapes: tuple[ShapeCheck, ...]) -> list[str]:

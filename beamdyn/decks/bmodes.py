@@ -14,6 +14,7 @@ import numpy as np
 from beamdyn.common.edge.data_text import (
     DataText,
     check_all_there,
+    check_named,
     named_number,
     named_values,
     plain_name,
@@ -100,18 +101,18 @@ def read_main_file(text: DataText) -> Blade:
 def _check_kind(text: DataText, found: dict, values: dict[str, float]) -> None:
     """Refuse what is no cantilevered blade."""
 
-    def check(bad: bool, name: str, wanted: str) -> None:
-        if bad:
-            named = found[plain_name(name)]
-            raise text.refusal(named.line, f"expected {name} {wanted}, found {named.word}")
+    def check(key: str, good: bool, wanted: str) -> None:
+        check_named(text, found[key], good, wanted)
 
-    check(values["beamtype"] != 1, "beam_type", "= 1, a blade (towers are not read)")
-    check(values["hubconn"] != 1, "hub_conn", "= 1, a cantilever (other roots are not read)")
-    check(values["hubrad"] < 0, "hub_rad", "of 0 or more")
-    check(values["radius"] <= values["hubrad"], "radius", f"above hub_rad = {values['hubrad']:g}")
-    check(values["tipmass"] < 0, "tip_mass", "of 0 or more")
-    for name in _NEEDED:
-        check(name.endswith("_mult") and values[plain_name(name)] <= 0, name, "above 0")
+    check("beamtype", values["beamtype"] == 1, "= 1, a blade (towers are not read)")
+    check("hubconn", values["hubconn"] == 1, "= 1, a cantilever (other roots are not read)")
+    check("hubrad", values["hubrad"] >= 0, "of 0 or more")
+    check("radius", values["radius"] > values["hubrad"], f"above hub_rad = {values['hubrad']:g}")
+    check("tipmass", values["tipmass"] >= 0, "of 0 or more")
+    check("precone", abs(values["precone"]) < 90, "below 90 deg either way")
+    for _, multiplier in _PROPERTIES.values():
+        key = plain_name(multiplier)
+        check(key, values[key] > 0, "above 0")
 
 
 def _speed(values: dict[str, float]) -> float:

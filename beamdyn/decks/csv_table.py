@@ -20,8 +20,7 @@ _SECTION = ("width", "thickness")
 
 def is_csv(text: DataText) -> bool:
     """Whether the text is a table with units in brackets in its first line, but for comments."""
-    lines = (line for line in text.lines if line.strip() and not line.lstrip().startswith("#"))
-    first = next(lines, "")
+    first = next((line for n, line in enumerate(text.lines, 1) if not text.is_comment(n)), "")
     return text.path.suffix.lower() in (".csv", ".tsv") or ("[" in first and any(c in first for c in ",;\t"))
 
 

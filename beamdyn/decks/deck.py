@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from beamdyn.common.checks import InvalidValue, not_negative, size
+from beamdyn.common.checks import InvalidValue, moderate, not_negative, size
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.data_text import DataText, read_data
 from beamdyn.common.files import check_writable, write_text
@@ -18,6 +18,7 @@ from beamdyn.config import scene_from_dict
 from beamdyn.decks import bmodes, csv_table, elastodyn
 from beamdyn.decks.audit import DeckAudit, audit
 from beamdyn.decks.blade import Blade, IgnoredProperty
+from beamdyn.decks.mode_shapes import ModePolynomial, fit_mode_polynomials
 from beamdyn.decks.scene_file import tables_of, text_of
 from beamdyn.scene.scene import Scene
 
@@ -57,6 +58,31 @@ class Deck(Result):
     def audit(self) -> DeckAudit:
         """Mass and moments, steep steps, and the files' mode shapes beside ours."""
         return audit(self.blade, self.scene)
+
+    def fit_mode_polynomials(self, speed: float | None = None) -> tuple[ModePolynomial, ...]:
+        """Polynomials of the mode shapes, such as a blade file of ElastoDyn states: flap 1, flap 2, edge 1.
+
+        Each is a mode of one plane without twist, as that program takes them.
+
+        Parameters
+        ----------
+        speed : float, optional
+            Speed of rotation [rad/s]; that of the deck if not given, which may be 0.
+
+        Returns
+        -------
+        tuple of ModePolynomial
+            Each with its coefficients, its largest difference from the mode shape, and the frequency.
+
+        Raises
+        ------
+        ValueError
+            If the speed is not finite.
+        """
+        stated = self.blade.speed * math.pi / 30
+        return fit_mode_polynomials(
+            self.scene, stated if speed is None else moderate("speed", speed, "rad/s")
+        )
 
     def scene_text(self) -> str:
         """The scene as the text of a TOML file: the stations as a table, what is ignored as comments."""
@@ -171,7 +197,8 @@ def _needed(
     if missing := [name for name in needed if needed[name] and given[name] is None]:
         words = {"length": "the length of the blade", "hub_radius": "the radius of the hub"}
         names, unsaid = " and ".join(missing), " nor ".join(words[name] for name in missing)
-        said = f"{names}: missing; the file does not say {unsaid}: give {names}; {remedy}"
+        options = " and ".join(f"--{name.replace('_', '-')}" for name in missing)
+        said = f"{names}: missing; the file does not say {unsaid}: give {names} ({options}); {remedy}"
         raise ConfigError(str(text.path), [said])
     values = (given[name] if needed[name] else math.nan for name in needed)
     found_length, found_radius = values

@@ -18,11 +18,13 @@ from beamdyn.common.edge.data_text import (
     DataText,
     NamedValue,
     check_all_there,
+    check_named,
     named_number,
     named_values,
     plain_name,
     read_data,
 )
+from beamdyn.decks import mode_shapes
 from beamdyn.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
 from beamdyn.decks.stations import Column, Stations, read_stations
 
@@ -60,8 +62,7 @@ _REASONS = {
 _FACTORS = {"AdjBlMs": "BMassDen", "AdjFlSt": "FlpStff", "AdjEdSt": "EdgStff"}
 _DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
 _TUNERS = ("FlStTunr(1)", "FlStTunr(2)")
-_MODES = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
-_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in _MODES.items()}
+_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in mode_shapes.NAMES.items()}
 _BLADE_NAMES = {
     plain_name(name): name
     for name in (
@@ -75,6 +76,7 @@ _BLADE_NAMES = {
 _MAIN_NAMES = {
     plain_name(name): name for name in ("TipRad", "HubRad", "PreCone(1)", "TipMass(1)", "BldFile(1)")
 }
+_ELASTODYN = 1  # CompElast: 2 is BeamDyn's blades with ElastoDyn's hub, 3 a simplified ElastoDyn
 _MAIN_MORE = {plain_name(name): name for name in ("BlPitch(1)", "RotSpeed")}
 
 
@@ -95,8 +97,19 @@ def is_openfast_file(text: DataText) -> bool:
 
 def read_openfast_file(text: DataText) -> Blade:
     """Read the first blade of the turbine: the file of ElastoDyn and all that it names."""
-    blade = read_main_file(read_data(named_file(text, named_values(text, {"edfile"})["edfile"])))
-    return replace(blade, sources=(text.path, *blade.sources))
+    found = named_values(text, {"edfile", "compelast"})
+    blade = read_main_file(read_data(named_file(text, found["edfile"])))
+    ignored = (*_other_elastic_model(text, found), *blade.ignored)
+    return replace(blade, sources=(text.path, *blade.sources), ignored=ignored)
+
+
+def _other_elastic_model(text: DataText, found: Mapping[str, NamedValue]) -> tuple[IgnoredProperty, ...]:
+    """What to say where the turbine's blades are not those of ElastoDyn."""
+    model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
+    if model == _ELASTODYN:
+        return ()
+    reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
+    return ignore("CompElast", model, "", reason)
 
 
 def read_main_file(text: DataText) -> Blade:
@@ -104,16 +117,13 @@ def read_main_file(text: DataText) -> Blade:
     found = named_values(text, _MAIN_NAMES.keys() | _MAIN_MORE.keys())
     check_all_there(text, found, _MAIN_NAMES)
     values = {key: named_number(text, named) for key, named in found.items() if key != "bldfile1"}
-    hub_radius = values["hubrad"]
-    if not 0 <= hub_radius < values["tiprad"]:
-        said = f"expected HubRad of 0 or more and below TipRad = {values['tiprad']:g}, found {hub_radius:g}"
-        raise text.refusal(found["hubrad"].line, said)
-    if values["tipmass1"] < 0:
-        raise text.refusal(
-            found["tipmass1"].line, f"expected a mass of 0 or more, found {values['tipmass1']:g}"
-        )
+    hub_radius, tip_radius = values["hubrad"], values["tiprad"]
+    wanted = f"of 0 or more and below TipRad = {tip_radius:g}"
+    check_named(text, found["hubrad"], 0 <= hub_radius < tip_radius, wanted)
+    check_named(text, found["tipmass1"], values["tipmass1"] >= 0, "of 0 or more")
+    check_named(text, found["precone1"], abs(values["precone1"]) < 90, "below 90 deg either way")
     blade = read_blade_file(
-        read_data(named_file(text, found["bldfile1"])), values["tiprad"] - hub_radius, hub_radius
+        read_data(named_file(text, found["bldfile1"])), tip_radius - hub_radius, hub_radius
     )
     return replace(
         blade,
@@ -184,8 +194,7 @@ def _factors(text: DataText, found: Mapping[str, NamedValue]) -> dict[str, float
     for name, column in _FACTORS.items():
         named = found[plain_name(name)]
         factors[column] = named_number(text, named)
-        if factors[column] <= 0:
-            raise text.refusal(named.line, f"expected {name} above 0, found {named.word}")
+        check_named(text, named, factors[column] > 0, "above 0")
     return factors
 
 

@@ -52,11 +52,12 @@ def clients(first):
 
     made = []
 
-    async def another():
+    async def another(stored=None):
+        """A client whose browser holds a text."""
         transport = httpx.ASGITransport(core.app)
         user = User(httpx.AsyncClient(transport=transport, base_url="http://test")) if made else first
         made.append(user)
-        user.javascript_rules[re.compile(r".*sessionStorage\.getItem")] = lambda _: None
+        user.javascript_rules[re.compile(r".*sessionStorage\.getItem")] = lambda _: stored
         await user.open("/")
         return user
 

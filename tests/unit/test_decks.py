@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.decks.mode_shapes import fit_mode_polynomials
 from tests.unit import decks_written as written
 
 FILES = {
@@ -72,6 +73,29 @@ def test_main_file_brings_hub_tip_pitch_and_speed(folder, name):
     assert [path.rpartition("/")[2] for path in deck.sources][-2:] == ["main.dat", "blade.dat"]
 
 
+def test_blades_that_the_turbine_computes_otherwise_are_named(folder):
+    (folder / "all.fst").write_text('2 CompElast - which\n"main.dat"  EDFile - Name of the file\n')
+    assert "CompElast" in [entry.name for entry in bd.read_deck(folder / "all.fst").ignored]
+    (folder / "all.fst").write_text('1 CompElast - which\n"main.dat"  EDFile - Name of the file\n')
+    assert "CompElast" not in [entry.name for entry in bd.read_deck(folder / "all.fst").ignored]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"PreCone(1)": 90}, "line 6: expected PreCone(1) below 90 deg either way, found '90'"),
+        ({"HubRad": 50}, "line 5: expected HubRad of 0 or more and below TipRad = 41.25, found '50'"),
+        ({"TipMass(1)": -1}, "line 8: expected TipMass(1) of 0 or more, found '-1'"),
+        ({"TipMass(1)": "1e400"}, "line 8: expected a number for TipMass(1), found '1e400'"),
+    ],
+)
+def test_a_bad_main_file_is_refused_by_line(folder, changes, said):
+    (folder / "main.dat").write_text(written.elastodyn_main(**changes))
+    with pytest.raises(bd.ConfigError) as refused:
+        bd.read_deck(folder / "main.dat")
+    assert said in str(refused.value)
+
+
 def test_bmodes_main_file(folder):
     deck = bd.read_deck(folder / "main.bmi")
     check_blade(deck.scene.beam)
@@ -107,6 +131,13 @@ def test_csv_in_mixed_units(folder):
     check_blade(deck.scene.beam, **ADJUSTED)
     assert deck.scene.mount.radius == pytest.approx(1.25, rel=1e-13)
     assert [entry.sentence() for entry in deck.ignored] == ["chord (0.5 to 4 m): no property of a beam"]
+
+
+@pytest.mark.parametrize("mark", "#!")
+def test_comments_of_a_csv_stand_anywhere(folder, mark):
+    lines = written.CSV.splitlines()[1:]
+    (folder / "blade.csv").write_text("\n".join([f"{mark} head", lines[0], f" {mark} below", *lines[1:]]))
+    check_blade(bd.read_deck(folder / "blade.csv").scene.beam, **ADJUSTED)
 
 
 def test_structural_twist_of_a_csv_has_the_other_sense(folder):
@@ -190,7 +221,7 @@ def test_the_command_audits_writes_and_the_scene_runs(folder, run):
 
 def test_length_and_hub_are_asked_for_by_option(folder, run):
     code, _, err = run("import", folder / "blade.dat", "--length", "40 m")
-    assert code == 2 and "hub_radius: missing" in err and "main file" in err
+    assert code == 2 and "hub_radius: missing" in err and "main file" in err and "--hub-radius" in err
     code, _, err = run("import", folder / "main.dat", "--length", "40 m")
     assert code == 2 and "--length" in err and "leave it out" in err
 
@@ -245,6 +276,43 @@ def test_a_polynomial_that_is_the_mode_agrees_and_another_does_not(folder):
     assert edge.coefficient_sum == pytest.approx(1.4, rel=1e-12)
     warnings = bd.read_deck(folder / "b.dat", length=40.0, hub_radius=0.0).audit.warnings
     assert any("edge 1 add up to 1.4" in each for each in warnings)
+
+
+def test_fitted_polynomials_are_those_of_the_closed_form():
+    """Of a uniform beam: the best fit of cosh - cos - s (sinh - sin), to the six digits that are written."""
+    scene = bd.Scene(
+        bd.Beam.from_stiffness(40.0, 100.0, 1e8, second_bending_stiffness=4e8), bd.Mount(1.0, math.pi)
+    )
+    x, powers = np.linspace(0, 1, 401), np.arange(2, 7)
+    flap, second, edge = fit_mode_polynomials(scene, 0.0)
+    for fitted, k in ((flap, 1.8751040687), (second, 4.6940911330), (edge, 1.8751040687)):
+        s = (math.cosh(k) + math.cos(k)) / (math.sinh(k) + math.sin(k))
+        shape = np.cosh(k * x) - np.cos(k * x) - s * (np.sinh(k * x) - np.sin(k * x))
+        shape /= shape[-1]
+        assert sum(fitted.coefficients) == pytest.approx(1.0, abs=1e-12)
+        apart = x[:, None] ** powers @ fitted.coefficients - shape
+        assert np.abs(apart).max() == pytest.approx(fitted.difference, abs=1e-9)
+        for other in powers[:-1]:  # of least squares: no neighbour that is 1 at the tip is closer
+            slope = apart @ (x**other - x**6) / 401
+            assert abs(slope) < 1e-6  # coefficients are rounded to 1e-6
+    assert edge.frequency == pytest.approx(2 * flap.frequency, rel=1e-9)
+
+
+def test_written_polynomials_are_read_back_and_audited(folder, run):
+    path = folder / "shapes.dat"
+    code, out, _ = run("import", folder / "main.dat", "--polynomials", path, "--speed", "18 rpm")
+    assert code == 0 and "largest difference" in out
+    blade = (folder / "sub" / "blade.dat").read_text()
+    kept = blade[: blade.index("--------- BLADE MODE SHAPES")]
+    (folder / "sub" / "blade.dat").write_text(kept + "--- SHAPES ---\n" + path.read_text())
+    deck = bd.read_deck(folder / "main.dat")
+    fitted = deck.fit_mode_polynomials()
+    assert [each.mode for each in deck.audit.shapes] == [each.mode for each in fitted]
+    for stated, made in zip(deck.audit.shapes, fitted, strict=True):
+        assert stated.coefficient_sum == pytest.approx(1.0, abs=1e-12)
+        assert stated.difference == pytest.approx(made.difference, abs=1e-9)
+    code, _, err = run("import", folder / "main.dat", "--speed", "18 rpm")
+    assert code == 2 and "--polynomials" in err
 
 
 # What is refused ----------------------------------------------------------------------------------
@@ -317,6 +385,8 @@ def test_comments_tabs_and_other_encodings_are_read(folder):
         ({"tip_mass": "heavy"}, "a number for tip_mass, found 'heavy'"),
         ({"precone:": ""}, "a value before precone"),
         ({"flp_stff_mult:": -1.0}, "flp_stff_mult above 0"),
+        ({"precone:": -91}, "precone below 90 deg either way, found '-91'"),
+        ({"tip_mass": "1e60"}, "a number up to 1e+50 for tip_mass"),
     ],
 )
 def test_a_bad_main_file_of_bmodes_is_refused_by_line(folder, changes, said):

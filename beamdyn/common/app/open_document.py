@@ -82,6 +82,14 @@ class OpenDocument:
         options = {path: self.entries[path] for path in self.document.aside}
         self.entries, self.mistakes = opened | options, {}
 
+    def recall(self, stored: Mapping[str, object]) -> bool:
+        """Take up entries from an earlier page, but for those changed since; say whether any differed."""
+        base = self.document.base_entries
+        changed = {path: text for path, text in self.entries.items() if base.get(path) != text}
+        before = self.entries
+        self._take({path: str(text) for path, text in stored.items()} | changed)
+        return self.entries != before
+
     def text(self) -> str:
         """The design as TOML, including entries with mistakes."""
         tables = tables_of(self.entries, self.inputs)
@@ -89,8 +97,11 @@ class OpenDocument:
 
     def put(self, path: str, text: str) -> None:
         """Change one entry; entries of inputs that no longer exist are dropped."""
-        changed = self.entries | {path: text}
-        self.entries = {entry.path: changed.get(entry.path, "") for entry in self.document.inputs(changed)}
+        self._take(self.entries | {path: text})
+
+    def _take(self, entries: Entries) -> None:
+        """Make these the entries, as far as there are inputs for them."""
+        self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 
     def needed(self, screen: Screen) -> Entries:
         """The entries that a screen's answer follows from."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from nicegui import ui
@@ -81,6 +82,7 @@ class Page:
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
         self._tabs: dict[str, Any] = {}
+        self._recalled = False  # until then nothing is stored: it would replace what is to be restored
         ui.add_css(_LAYOUT + STYLE + BOARD)
         ui.colors(primary="#0072B2", secondary="#444444", negative="#8c1c00")
         ui.add_body_html(_STOPPED.format(name=program.name))
@@ -236,22 +238,28 @@ class Page:
 
     def _remember(self) -> None:
         """Store the entries and the name of the front screen in this tab of the browser."""
+        if not self._recalled:
+            return
         designs = {name: work.entries for name, work in self.works.items()}
         stored = json.dumps({"front": self.front, "designs": designs})
         # by the page's own client: the field that has changed may be gone, of a form that was made anew
         self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(stored)})")
 
     async def recall(self) -> None:
-        """Restore what the browser stored."""
+        """Restore what the browser stored, and store every change from now on."""
         await ui.context.client.connected()
         try:
             stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=_ANSWERS)
         except TimeoutError:
-            return
-        page = json.loads(stored or "{}")
-        for name, entries in page.get("designs", {}).items():
-            if (work := self.works.get(name)) is not None:
-                work.entries = {str(path): str(text) for path, text in entries.items()}
+            stored = None
+        self._restore(json.loads(stored or "{}"))
+        self._recalled = True
+        self._remember()
+
+    def _restore(self, stored: Mapping[str, Any]) -> None:
+        """Put stored designs into the forms; a form that shows its design already is left alone."""
+        for name, entries in stored.get("designs", {}).items():
+            if (work := self.works.get(name)) is not None and work.recall(entries):
                 self._rebuild(work.document)
-        if page.get("front") in self.places:
-            self._bar.set_value(page["front"])
+        if stored.get("front") in self.places:
+            self._bar.set_value(stored["front"])

@@ -13,6 +13,7 @@ Made = TypeVar("Made")
 def in_thread(make: Callable[[], Made]) -> Future[Made]:
     """Start a function in a thread, which the end of the program does not wait for either."""
     future: Future[Made] = Future()
+    future.set_running_or_notify_cancel()  # else a closed page cancels it, and its result is refused
 
     def run() -> None:
         try:

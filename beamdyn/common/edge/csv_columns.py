@@ -67,7 +67,8 @@ class CsvTable:
 def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, str]) -> CsvTable:
     """Read a CSV file.
 
-    Lines that are empty or begin with # are comments.  Columns are separated by commas, semicolons or tabs.
+    Lines that are empty or begin with # or ! are comments.  Columns are separated by commas, semicolons
+    or tabs.
 
     Parameters
     ----------
@@ -83,7 +84,7 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
     ConfigError
         At the first head or cell that is wrong: names file, line, and what was expected.
     """
-    lines = [n for n, line in enumerate(text.lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    lines = [line for line in range(1, len(text.lines) + 1) if not text.is_comment(line)]
     if not lines:
         raise text.lacking("expected a line of heads with units, such as 'x [m], mass [kg/m]'")
     head_line, *rest = lines

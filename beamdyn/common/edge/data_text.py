@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from beamdyn.common.checks import MOST
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.files import as_path
 
@@ -45,6 +46,11 @@ class DataText:
     def lacking(self, sentence: str) -> ConfigError:
         """The error that something is missing from the whole file."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
+
+    def is_comment(self, line: int) -> bool:
+        """Whether a line is empty or a comment: one that begins with # or !."""
+        plain = self.lines[line - 1].lstrip()
+        return not plain or plain[0] in "#!"
 
     def words(self, line: int) -> list[str]:
         """The words of a line as FORTRAN separates them, by blanks, tabs and commas; quotes keep together."""
@@ -124,6 +130,8 @@ def number_at(text: DataText, line: int, word: str, name: str) -> float:
     number = to_number(word)
     if number is None:
         raise text.refusal(line, f"expected a number for {name}, found {quote(word)}{_advice(word)}")
+    if abs(number) > MOST:
+        raise text.refusal(line, f"expected a number up to {MOST:g} for {name}, found {quote(word)}")
     return number
 
 
@@ -217,6 +225,12 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
 def named_number(text: DataText, named: NamedValue) -> float:
     """The number that a name has."""
     return number_at(text, named.line, named.word, named.name)
+
+
+def check_named(text: DataText, named: NamedValue, good: bool, wanted: str) -> None:
+    """Refuse the value of a name unless it is good."""
+    if not good:
+        raise text.refusal(named.line, f"expected {named.name} {wanted}, found {quote(named.word)}")
 
 
 def named_count(text: DataText, named: NamedValue, least: int = 2) -> int:
