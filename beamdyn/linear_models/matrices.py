@@ -16,7 +16,7 @@ from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
-from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene
@@ -165,7 +165,7 @@ def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
     return usual if scene.physics.planes == 1 else [*usual, BaseMotion(ACROSS), PointForce(None, ACROSS)]
 
 
-def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> Drive:
+def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
     """Load of an excitation that is none of the rotating ones, which a model of constant matrices has not."""
     drives = model.drives(excitation)
     bound = "as the beam turns, it acts at its frequency plus and minus the speed, not by a constant matrix"

@@ -21,7 +21,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
 from beamdyn.linear_models.spectra import PowerSpectrum
 
@@ -87,7 +87,9 @@ class PartialFractions:
         return density / 2 * float(np.real(proper.of_square.sum()))
 
 
-def partial_fractions(model: ModelAtSpeed, drive: Drive, observation: Observation) -> PartialFractions:
+def partial_fractions(
+    model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation
+) -> PartialFractions:
     """Expand the transfer function of one drive.
 
     What an acceleration gains by the modes left out, s^2 times their static deflection, is not in it.

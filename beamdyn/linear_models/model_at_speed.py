@@ -32,7 +32,7 @@ from beamdyn.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class Drive:
+class HarmonicDrive:
     """Load and feedthrough of an excitation at one harmonic of the rotation, per unit of the input.
 
     Parameters
@@ -143,12 +143,12 @@ class ModelAtSpeed(FieldsOnly):
 
     # Inputs -----------------------------------------------------------------------------------------
 
-    def drives(self, excitation: Excitation) -> dict[int, Drive]:
+    def drives(self, excitation: Excitation) -> dict[int, HarmonicDrive]:
         """Loads of an excitation, by harmonic of the rotation."""
         accelerations = excitation.accelerations(self.scene.mount, self.speed)
         return {h: self._drive(given, excitation) for h, given in accelerations.items()}
 
-    def _drive(self, accelerations: Accelerations, excitation: Excitation) -> Drive:
+    def _drive(self, accelerations: Accelerations, excitation: Excitation) -> HarmonicDrive:
         full = self.model.equations
         force = excitation.force(self.scene.beam)
         load: np.ndarray = np.zeros(full.size, dtype=complex)
@@ -161,7 +161,7 @@ class ModelAtSpeed(FieldsOnly):
         if not load.any():
             bound = "it does not load the beam: it acts along it, or in a direction in which it is rigid"
             raise InvalidValue("input", excitation.label, bound, "model both planes, or turn the beam")
-        return Drive(self.shapes.T @ load, self._residual(load), accelerations, force)
+        return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
 
     def _residual(self, load: np.ndarray) -> np.ndarray:
         """Static deflection of all functions under a load, minus that of the kept coordinates."""
@@ -191,7 +191,7 @@ class ModelAtSpeed(FieldsOnly):
         position, velocity = (self._at_speed(rows, zero) for rows in (moment.position, moment.velocity))
         return Row(factor * position, factor * velocity, zero)
 
-    def residual(self, observation: Observation, drive: Drive) -> np.ndarray:
+    def residual(self, observation: Observation, drive: HarmonicDrive) -> np.ndarray:
         """What the static deflection beyond the kept coordinates adds to an output: shape (3,).
 
         Per unit of the input, and of its first and second time derivative.

@@ -11,7 +11,7 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive
-from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, as_observation
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
@@ -81,7 +81,7 @@ def state_space(
     return StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
 
 
-def _correction(model: ModelAtSpeed, observation: Observation, drive: Drive) -> float:
+def _correction(model: ModelAtSpeed, observation: Observation, drive: HarmonicDrive) -> float:
     """What an output gains by the static deflection of what is left out, and by the base itself."""
     return float(np.real(model.residual(observation, drive)[0]))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.linear_models.excitations import Excitation
-from beamdyn.linear_models.model_at_speed import Drive, ModelAtSpeed
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
 
 _GROWING = 1e-6  # growth rate over the size of a pole, beyond rounding
@@ -34,7 +34,7 @@ def transfer(
     return np.array([*drives]), np.column_stack(each)
 
 
-def respond(model: ModelAtSpeed, drive: Drive, observation: Observation, s: np.ndarray) -> np.ndarray:
+def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation, s: np.ndarray) -> np.ndarray:
     """Transfer function of one drive at complex frequencies s [1/s] (F,): shape (F,)."""
     row, extra = model.row(observation), model.residual(observation, drive)
     size = model.equations.size
