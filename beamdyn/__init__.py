@@ -76,7 +76,8 @@ _NAMES = {
     "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
-    "studies.inputs": ("VariedInput",),
+    "common.designs": ("VariedInput",),
+    "common.parallel.tasks": ("StudyInterrupted",),
     "studies.result": ("Study",),
     "studies.study": ("study",),
     "tradeoffs": ("Tradeoff", "tradeoff"),
@@ -94,7 +95,9 @@ if TYPE_CHECKING:
     from beamdyn.campbell_diagram.crossings import LineCrossing
     from beamdyn.campbell_diagram.diagram import Campbell, campbell
     from beamdyn.campbell_diagram.margins import Margin
+    from beamdyn.common.designs import VariedInput
     from beamdyn.common.edge.config import ConfigError
+    from beamdyn.common.parallel.tasks import StudyInterrupted
     from beamdyn.common.results import load
     from beamdyn.config import load_scene
     from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
@@ -156,7 +159,6 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
-    from beamdyn.studies.inputs import VariedInput
     from beamdyn.studies.result import Study
     from beamdyn.studies.study import study
     from beamdyn.tradeoffs import Tradeoff, tradeoff

@@ -60,8 +60,8 @@ _SCENE = (
 )
 _BLADE = (*_SCENE[1:3], "terms --json out.json")  # motions of 48 segments take longer than the limit
 _CALIPER = ("caliper --json out.json", "caliper --csv out.csv", "caliper --free-bodies out.svg", "caliper")
-_DRUM = ("drum --json out.json", "drum --csv out.csv", "drum --sweep friction=0.1:0.5:3")
-_FORKLIFT = ("forklift --json out.json", "forklift --csv out.csv", "forklift --sweep speed=10:30:3km/h")
+_DRUM = ("drum --json out.json", "drum --csv out.csv", "drum --vary friction=0.1:0.5:3")
+_FORKLIFT = ("forklift --json out.json", "forklift --csv out.csv", "forklift --vary speed=10:30:3km/h")
 
 
 @dataclass(frozen=True)

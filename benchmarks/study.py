@@ -1,14 +1,17 @@
-"""Frequencies of many designs at once, over a loop of single calls.  Run: python -m benchmarks.study
+"""Answers of many designs at once, over a loop of single calls.  Run: python -m benchmarks.study
 
 10 000 designs: ten thicknesses, tip masses, radii and speeds each.  The loop makes the scene of each design
 and calls `natural_modes`, of this commit, with the default tolerance, as the study has; it is timed on a
 random sample of the designs, whose answers are compared.  Both run in one process with one thread.
+Then other answers and scenes, with random thickness, radius and speed, in processor time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from time import perf_counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from time import perf_counter, process_time
+from typing import Literal
 
 import numpy as np
 
@@ -24,6 +27,7 @@ VARY = {
     "speed": np.linspace(0.0, 80.0, 10),
 }
 SAMPLE = 300  # designs of the loop of single calls
+OTHERS, SAMPLE_OF_OTHERS, TOP_SPEED = 2000, 20, 150.0  # of other questions
 
 
 def single(design: dict[str, float]) -> bd.Modes:
@@ -64,7 +68,57 @@ def _deviation(modes: bd.Modes, frequency: np.ndarray, error: np.ndarray) -> flo
     return float(np.nanmax(np.abs(frequency / modes.frequency - 1) / (error + modes.error)))
 
 
-PARTS = (compare,)
+@dataclass(frozen=True)
+class Case:
+    """A question of random designs, and the same of one."""
+
+    name: str
+    scene: bd.Scene
+    single: Callable[[bd.Scene, float], object]
+    what: Literal["frequencies", "critical_speed", "crossings"] = "frequencies"
+    more: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+
+def list_cases() -> Iterator[Case]:
+    """What else is answered in batches."""
+    beam, wheel = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY), bd.Mount(0.1)
+    road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
+    rolling = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), road)
+
+    def modes(scene: bd.Scene, speed: float) -> bd.Modes:
+        return bd.natural_modes(scene, speed)
+
+    yield Case("damped frequencies", bd.Scene(beam, wheel), modes, more={"model.damping_ratio": (0.0, 0.1)})
+    springs = {"mount.root_stiffness": (0.01, 1.0)}
+    yield Case("frequencies on springs", bd.Scene(beam, wheel), modes, more=springs)
+    yield Case("frequencies in two planes", bd.Scene(beam, wheel, physics=bd.Physics(planes=2)), modes)
+    yield Case("critical speeds", bd.Scene(beam, wheel), lambda s, _: bd.critical_point(s), "critical_speed")
+    resonances = bd.Scene(beam, wheel, rolling, gravity=9.81)
+    yield Case("crossings", resonances, lambda s, _: bd.resonance_speeds(s, TOP_SPEED), "crossings")
+
+
+def compare_others() -> Iterator[Row]:
+    """Time of a design by studies of other kinds, over single calls."""
+    for case in list_cases():
+        random = np.random.default_rng(17)
+        ranges = {"beam.thickness": (1e-4, 4e-4), "mount.radius": (0.01, 0.3)} | case.more
+        ranges |= {"speed": (0.0, 80.0)} if case.what == "frequencies" else {}
+        drawn = {name: random.uniform(*ends, OTHERS) for name, ends in ranges.items()}
+        speed = {"speed": TOP_SPEED} if case.what == "crossings" else {}
+        study = bd.study(case.scene, drawn, case.what, combine="zip", **speed)
+        many = best_time(
+            lambda c=case, d=drawn, s=speed: bd.study(c.scene, d, c.what, combine="zip", **s), 2, process_time
+        )
+        places = random.integers(OTHERS, size=SAMPLE_OF_OTHERS).tolist()
+        scenes = [(study.scene_at(i), study.design(i).get("speed", 0.0)) for i in places]
+        with one_blas_thread():
+            alone = best_time(lambda c=case, s=scenes: [c.single(*each) for each in s], 1, process_time)
+        ratio = alone / SAMPLE_OF_OTHERS / (many / OTHERS)
+        name = f"{case.name} of {OTHERS} random designs: a design [us], one by one over a study"
+        yield name, f"{1e6 * many / OTHERS:.0f}, {ratio:.0f}", "-"
+
+
+PARTS = compare, compare_others
 
 
 def main() -> None:

@@ -18,16 +18,18 @@ from beamdyn.common.app.form_entries import entries_of
 from beamdyn.common.app.screens import Sweeps
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.curves import sweep_figure
+from beamdyn.common.designs import check_designs
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import (
     MOST_ONE_BY_ONE,
     InputSweep,
     Output,
-    check_cases,
     chosen,
+    designs_of,
     numbers,
     one_by_one,
     parse_axis,
+    solve_cases,
 )
 from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR
 from beamdyn.output.notes import note_below
@@ -184,15 +186,15 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
 
     def run(tables: Mapping[str, Any], text: str, names: str) -> InputSweep:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
-        check_cases([axis], MOST_ONE_BY_ONE, "sweep")
-        wanted = chosen(outputs(_modes(tables)), names, "results")
+        check_designs(designs_of([axis]), MOST_ONE_BY_ONE, "sweep")
+        wanted = [*chosen(outputs(_modes(tables)), names, "results"), _MODEL_ERROR]
         cases: list[SweepCase] = []
 
         def case_of(design: Mapping[str, Any]) -> SweepCase:
             cases.append(SweepCase(*read(design)))
             return cases[-1]
 
-        swept = one_by_one(tables, [axis], [*wanted, _MODEL_ERROR], case_of)
+        swept = one_by_one(tables, [axis], wanted, lambda task: solve_cases(task, wanted, case_of))
         return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases), *_say_choices(cases)))
 
     return Sweeps(partial(_names, outputs), example, results, run, _draw)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING, Literal
 
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
@@ -13,19 +11,19 @@ from beamdyn.cli.values import (
     PhysicsOption,
     SceneFile,
     Text,
-    Workers,
     load_with,
+    parse_window,
     speed_or_final,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, Varying
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.input_sweep import Axis
     from beamdyn.common.edge.inputs import Input
 
-Varied = Annotated[tuple[str, ...], Parameter(name="--vary", allow_leading_hyphen=True, negative=())]
 _MOST = 1_000_000  # designs
-_OPTION = "--vary"
+_FACTOR = "factor of a property along the beam"
 
 
 @app.command
@@ -33,18 +31,17 @@ def study(
     scene: SceneFile,
     /,
     *,
-    vary: Varied,
-    what: Literal["frequencies", "critical_speed", "amplitude"] = "frequencies",
+    varying: Varying = NOTHING_VARIED,
+    what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     speed: Text | None = None,
     modes: ModeCount = 3,
-    together: Annotated[bool, Parameter(negative="")] = False,
+    window: Text = "20:30 s",
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
-    workers: Workers = 1,
     physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Frequencies, critical speeds or amplitudes over all combinations of inputs of the scene.
+    """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs.
 
     For example: beamdyn study scene.toml --vary "beam.thickness=0.1:0.4:31 mm" --vary "speed=0:100:11 rad/s"
 
@@ -52,25 +49,24 @@ def study(
     ----------
     scene
         The scene.
-    vary
-        An input and its values, name=start:stop:count and a unit: "beam.thickness=0.1:0.4:31 mm". Names are
-        those of the file, or "speed"; give the option once for each input.
+    varying
+        Inputs that are varied. Names are those of the file; "speed"; or factors of properties as they are
+        along the beam, such as "beam.scale.bending_stiffness=0.9:1.1:5".
     what
-        frequencies, with their errors; critical_speed, at which the beam buckles; or amplitude, of the tip in
-        steady motion.
+        frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the speeds at
+        which modes meet lines of the excitation; amplitude, of the tip in steady motion; or peak, its largest
+        deflection in a window of time.
     speed
-        Speed of frequencies and amplitudes with its unit, where it is not varied; default: the final speed of
-        the scene's motion, or 0 without one.
+        Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed of
+        crossings. Default: the final speed of the scene's motion, or 0 without one.
     modes
-        Number of frequencies, from the lowest.
-    together
-        Take the first values of all inputs, then the second, in place of all combinations.
+        Number of modes, from the lowest.
+    window
+        Beginning and end of the window of time of peaks.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
         Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
-    workers
-        Number of processes; the answer is the same for any.
     physics
         auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
@@ -78,32 +74,35 @@ def study(
     """
     from beamdyn import study
     from beamdyn.cautions import warnings_of
+    from beamdyn.common.designs import check_designs
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.input_sweep import check_cases, parse_axis
+    from beamdyn.common.edge.input_sweep import designs_of, parse_axis
     from beamdyn.common.edge.tables import progress_bar
     from beamdyn.common.edge.wording import of_file
     from beamdyn.tables.studies import study_csv, study_table
 
     outputs.check(scene)
+    if not varying.vary:
+        raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
     known = _inputs()
-    axes = [parse_axis(known, text, _OPTION) for text in vary]
-    check_cases(axes if not together else axes[:1], _MOST, _OPTION)
+    axes = [parse_axis(known, text, OPTION, _MOST) for text in varying.vary]
+    check_designs(designs_of(axes, varying.combine), _MOST, OPTION)
     loaded = load_with(scene, physics)
-    options = {"modes": modes, "discretization": discretization, "tolerance": tolerance, "workers": workers}
-    question = Question.on_file(
-        "beamdyn study", scene, vary=", ".join(vary), what=what, speed=speed, **options, physics=physics
-    )
+    options = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
+    asked = varying.options | {"what": what, "speed": speed, "window": window} | options
+    question = Question.on_file("beamdyn study", scene, **asked, physics=physics)
+    span = parse_window(window)
     with progress_bar("designs") as progress, of_file({}):
         result = study(
             loaded,
             {axis.input.path: axis.values for axis in axes},
             what,
             speed=speed_or_final(loaded, speed),
-            modes=modes,
-            combine="zip" if together else "product",
-            discretization=discretization,
-            tolerance=tolerance,
-            workers=workers,
+            **options,
+            window=span,
+            combine=varying.combine,
+            workers=varying.workers,
+            store=varying.store,
             progress=progress,
         )
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
@@ -116,11 +115,15 @@ def _inputs() -> list[Input]:
     from beamdyn.common.edge.input_sweep import numbers
     from beamdyn.common.edge.inputs import Input, Quantity, describe
     from beamdyn.config import SceneInput
-    from beamdyn.studies.inputs import NAMES, SPEED
+    from beamdyn.studies.inputs import NAMES, SCALE, SPEED
 
     by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in NAMES}
+    factors = (name for name in NAMES if name.startswith(SCALE))
+    of_scale = [
+        Input(name, SceneInput, float, Quantity("", "", _FACTOR), (), False, None) for name in factors
+    ]
     of_speed = Quantity("rad/s", "omega", "speed")
-    return [*by_path.values(), Input(SPEED, SceneInput, float, of_speed, (), False, None)]
+    return [*by_path.values(), *of_scale, Input(SPEED, SceneInput, float, of_speed, (), False, None)]
 
 
 def _unit_of(axis: Axis) -> tuple[str, float]:

@@ -31,7 +31,8 @@ def sweep_figure(swept: Any) -> Figure:
     figure = Figure(figsize=(7.5, max(4.5, 2.7 * len(groups))), layout="constrained")
     panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
     for ax, (heading, labels, values) in zip(panels, groups, strict=True):
-        curves(ax, swept.values[0], values, labels)
+        order = np.argsort(swept.values[0], kind="stable") if swept.combine == "zip" else slice(None)
+        curves(ax, swept.values[0][order], values[:, order], labels)
         ax.set_ylabel(heading)
         if len(labels) > 1:
             ax.legend(title=_second(swept), fontsize=9, title_fontsize=9)
@@ -42,9 +43,10 @@ def sweep_figure(swept: Any) -> Figure:
 def _groups(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
     """Panels: heading, names of the curves, the curves. Results of one unit share a panel."""
     results = [*zip(swept.results, swept.result_units, swept.found, strict=True)]
-    if len(swept.values) > 1:
+    if _has_curves(swept):
         names = [f"{value:.4g}" for value in swept.values[1]]
-        return [(_named(name, unit), names, values) for name, unit, values in results]
+        at_first = (slice(None), slice(None), *(0,) * (len(swept.values) - 2))
+        return [(_named(name, unit), names, values[at_first].T) for name, unit, values in results]
     groups: dict[str, list[tuple[str, np.ndarray]]] = {}
     for name, unit, values in results:
         groups.setdefault(unit or name, []).append((name, values))
@@ -59,9 +61,17 @@ def _groups(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
     ]
 
 
+def _has_curves(swept: Any) -> bool:
+    """Whether there is a curve for each value of a second input."""
+    return len(swept.values) > 1 and swept.combine == "product"
+
+
 def _second(swept: Any) -> str | None:
-    """Heading of the legend: the second input."""
-    return _input(swept, 1) if len(swept.values) > 1 else None
+    """Heading of the legend: the second input, and further ones at their first value."""
+    if not _has_curves(swept):
+        return None
+    further = [f"{_input(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
+    return "\n".join([_input(swept, 1), *further])
 
 
 def _input(swept: Any, place: int) -> str:

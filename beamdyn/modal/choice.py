@@ -18,9 +18,7 @@ from beamdyn.scene.sections import section_tensor
 
 DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
-_MOMENTS_TARGET = (
-    1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
-)
+MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
 _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
 _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
@@ -134,7 +132,7 @@ def _choose(
             if found is None:
                 raise
             break
-        if at_ends.meet(target if finer.discretization.converges_regularly else max(target, _MOMENTS_TARGET)):
+        if at_ends.meet(target if finer.discretization.converges_regularly else max(target, MOMENTS_TARGET)):
             break
     assert found is not None
     return found

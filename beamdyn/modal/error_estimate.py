@@ -88,29 +88,39 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 
 
 def error_of_assumed_modes(
-    squared: np.ndarray, distance: np.ndarray, rounding: np.ndarray, lowest_at_rest: np.ndarray
+    squared: np.ndarray,
+    distance: np.ndarray,
+    rounding: np.ndarray,
+    lowest_at_rest: np.ndarray,
+    is_slender: bool = True,
+    is_regular: bool = True,
 ) -> np.ndarray:
-    """Errors that `solve_with_error` states of slender beams clamped in one plane, by a Legendre basis.
+    """Errors that `solve_with_error` states of assumed modes that stand on no hinge.
 
     Parameters
     ----------
     squared : ndarray, shape (S, k)
-        Squares of the eigenvalues, which are real.
+        Squares of the eigenvalues.
     distance : ndarray, shape (S, k)
         Their distances from those of the coarser basis.
     rounding : ndarray, shape (S, k)
         Relative error of the eigenvalues by rounding.
     lowest_at_rest : ndarray, shape (S,)
         Lowest squared frequency at rest of each.
+    is_slender : bool
+        Whether the beams are slender, clamped, and bend in one plane.
+    is_regular : bool
+        Whether the basis converges regularly.
 
     Returns
     -------
     ndarray, shape (S, k)
         inf where unresolved.
     """
+    margin, parts = _MARGIN if is_slender else _MARGIN_OF_FIELDS, _REGULAR if is_regular else _IRREGULAR
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
-        error = _ritz_error(distance, squared, lowest_at_rest, _MARGIN, _REGULAR) + _ROUNDING * rounding
+        error = _ritz_error(distance, squared, lowest_at_rest, margin, parts) + _ROUNDING * rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
     resolved &= ~_may_be_passed(squared, distance, resolved)
     return np.where(resolved, error, np.inf)

@@ -12,7 +12,7 @@ import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
-from beamdyn.steady.harmonic_balance import (
+from beamdyn.steady.periodic_system import (
     Pair,
     PeriodicSystem,
     fourier_coefficients,

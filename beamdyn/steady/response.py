@@ -37,13 +37,9 @@ from beamdyn.steady.excitation_phases import (
     check_steady_state,
     name_line,
 )
-from beamdyn.steady.harmonic_balance import (
-    Pair,
-    PeriodicSystem,
-    generate_harmonics,
-    largest_over_phases,
-    solve_harmonic_balance,
-)
+from beamdyn.steady.harmonic_balance import solve_harmonic_balance
+from beamdyn.steady.largest_over_phases import largest_over_phases
+from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
 from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
@@ -51,7 +47,7 @@ if TYPE_CHECKING:
 
 _MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
 _MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
-_MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
+_MOST_UNKNOWNS = 2**17  # that are solved for at once: they fit the processor's cache
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
 _FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
@@ -284,9 +280,11 @@ class ResponseRequest(FieldsOnly):
         c[~stable], error[~stable] = np.nan, np.nan
         harmonic, vibrating = _combine_pairs(c, used, motion)
         line, share = _add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
+        vibrated = _largest(vibrating, harmonic, stable)
+        without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
-            amplitude=_largest(line, harmonic, stable),
+            amplitude=vibrated if without_static else _largest(line, harmonic, stable),
             bound=_sizes(line).sum(axis=1),
             stable=stable,
             status=status,
@@ -298,9 +296,7 @@ class ResponseRequest(FieldsOnly):
             line_amplitude=_along(line),
             line_amplitude_across=_across(line),
             harmonics=harmonic,
-            warnings=tuple(
-                _warnings(self, status, _largest(vibrating, harmonic, stable), error * share, undecided)
-            ),
+            warnings=tuple(_warnings(self, status, vibrated, error * share, undecided)),
             provenance=self._provenance(len(used), start),
             request=self,
         )
@@ -375,31 +371,38 @@ def _solve_harmonics(
     most = _MOST_INTERACTIONS if steps is None else steps
     levels = generate_harmonics(system.load_harmonics, system.coupling, most + 1)
     complete, levels = len(levels) <= most + 1, levels[: most + 1]
-    sizes = np.cumsum([len(level) for level in levels])
-    c = np.zeros((S, d, sizes[-1]), dtype=complex)
-    error = np.full(S, np.inf)
-    for used in range(min(3 if steps is None else most + 1, len(levels)), len(levels) + 1):
-        exact = complete and used == len(levels)
+    harmonics, sizes = [h for level in levels for h in level], np.cumsum([0, *map(len, levels)])
+    c, error = np.zeros((S, d, sizes[-1]), dtype=complex), np.full(S, np.inf)
+    first, kept = min(3 if steps is None else most + 1, len(levels)), slice(0)
+    for used in range(first - 1, len(levels) + 1):
+        kept, exact = slice(sizes[used]), complete and used == len(levels)
         unconverged = np.flatnonzero(~(error <= tolerance))
-        for part in _split_by_memory(unconverged, system.size * sizes[used - 1]):
-            c[part, :, : sizes[used - 1]], error[part] = _solve_tip(system[part], tips[part], levels[:used])
-            error[part] = _ROUNDING if exact else error[part]
-    return [h for level in levels for h in level], c, error
+        for part in _split(unconverged, system.size * sizes[used]):
+            finer = _solve_tip(system[part], tips[part], harmonics[kept])
+            if used >= first:  # the one before is only what this is compared with
+                error[part] = _ROUNDING if exact else _distance(finer, c[part, :, kept])
+            c[part, :, kept] = finer
+        if (error <= tolerance).all():
+            break
+    return harmonics[kept], c[..., kept], error
 
 
-def _split_by_memory(unconverged: np.ndarray, size: int) -> list[np.ndarray]:
-    """Split indices of speeds into parts whose matrices fit into memory."""
-    return [p for p in np.array_split(unconverged, 1 + len(unconverged) * size**2 // _MOST_ENTRIES) if len(p)]
+def _split(rows: np.ndarray, unknowns: int) -> list[np.ndarray]:
+    """Split indices of speeds, of so many unknowns each, into parts that fit into the cache."""
+    return [p for p in np.array_split(rows, 1 + len(rows) * unknowns // _MOST_UNKNOWNS) if len(p)]
 
 
-def _solve_tip(
-    system: PeriodicSystem, tips: np.ndarray, levels: list[list[Pair]]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Tip deflections (S, d, H), and their distance from those without the last level, over their sum."""
-    solutions = solve_harmonic_balance(system, levels)
-    c, truncated = (np.einsum("shn,sdn->sdh", q, tips) for q in solutions)
-    total = _sizes(c).sum(axis=1)
-    return c, _sizes(c - truncated).sum(axis=1) / np.where(total == 0, 1, total)
+def _solve_tip(system: PeriodicSystem, tips: np.ndarray, harmonics: list[Pair]) -> np.ndarray:
+    """Tip deflections (S, d, H) in some harmonics."""
+    if not harmonics:
+        return np.zeros((*tips.shape[:2], 0), dtype=complex)
+    return np.einsum("shn,sdn->sdh", solve_harmonic_balance(system, harmonics), tips)
+
+
+def _distance(finer: np.ndarray, coarser: np.ndarray) -> np.ndarray:
+    """Sum over the lines of the differences (S,) of two deflections (S, d, H), over that of the finer."""
+    total = _sizes(finer).sum(axis=1)
+    return _sizes(finer - coarser).sum(axis=1) / np.where(total == 0, 1, total)
 
 
 def _sizes(c: np.ndarray) -> np.ndarray:

@@ -10,9 +10,10 @@ With V = 0 the eigenvalues are sigma_a - i Omega_h.  Each stays in the Gershgori
 the radius rho_a, the sum of its row of |V|.  Without damping, and with a mean energy that is positive, an
 eigenvalue leaves the imaginary axis only by meeting one of opposite energy (Krein), so that the motion is
 stable if no disc of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h, or if all discs lie left of
-the axis.  Only where discs overlap are the eigenvalues computed: with the harmonics h of the overlaps and
-(0, 0), between which the motion resonates, and those that some interactions with the periodic coefficients
-add on all sides.  Their number grows until the growth rate settles.
+the axis.  Without damping, discs that are far from others are drawn smaller first, by scaling the
+coordinates.  Only where discs still overlap are the eigenvalues computed: with the harmonics h of the
+overlaps and (0, 0), between which the motion resonates, and those that some interactions with the periodic
+coefficients add on all sides.  Their number grows until the growth rate settles.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ import numpy as np
 import scipy.sparse
 from scipy.sparse.linalg import ArpackError, eigs
 
-from beamdyn.steady.harmonic_balance import Pair, PeriodicSystem, convolution_matrix, generate_harmonics
+from beamdyn.steady.harmonic_balance import convolution_matrix
+from beamdyn.steady.mean_modes import MeanModes
+from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
 
 _TONGUE_ORDER = 2  # largest number of interactions with the periodic coefficients by which two modes resonate
 _ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding error
@@ -63,7 +66,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
         singular.
     """
     A, periodic = _first_order(system)
-    sigma, R = np.linalg.eig(A)
+    sigma, R = _solve_mean(system, A)
     scale = np.abs(sigma).max(axis=1)
     rate, error = _largest_real_part(sigma, scale), np.zeros(len(A))
     if not system.coupling:
@@ -74,7 +77,8 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     if len(rows):
         V = _to_modes(sigma[rows], R[rows], [(f[rows], B[rows]) for f, B in periodic])
         free = _FreeMotion(system.rates[rows], system.coupling, sigma[rows], V)
-        shift = np.where(rate[rows, None] == 0, 0.0, free.second_order_shift())
+        shift, damped = np.zeros((len(rows), sigma.shape[1])), np.flatnonzero(rate[rows])
+        shift[damped] = free[damped].second_order_shift()
         error[rows] = shift.max(axis=1)
         for i, resonances in free.resonances(rate[rows] <= 0):
             rate[rows[i]], error[rows[i]] = _combine(sigma[rows[i]], shift[i], resonances)
@@ -125,6 +129,17 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
     return A, periodic
 
 
+def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (S, 2 n) and vectors (S, 2 n, 2 n) of A; without damping by those of the stiffness."""
+    if system.mean[1].any():
+        return np.linalg.eig(A)
+    modes, n = MeanModes.of_system(system), system.size
+    root = np.sqrt(-modes.squared.astype(complex))
+    sigma = np.concatenate([root, -root], axis=1)
+    shapes = np.tile(modes.shapes, 2)
+    return sigma, np.concatenate([A[:, :1, n, None] * shapes, sigma[:, None] * shapes], axis=1)
+
+
 def _to_modes(
     sigma: np.ndarray, R: np.ndarray, periodic: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -158,6 +173,11 @@ class _FreeMotion:
     sigma: np.ndarray
     V: list[tuple[np.ndarray, np.ndarray]]
 
+    def __getitem__(self, chosen: np.ndarray) -> _FreeMotion:
+        """Free motion at the chosen pairs of rates."""
+        V = [(spectrum[chosen], v[chosen]) for spectrum, v in self.V]
+        return _FreeMotion(self.rates[chosen], self.coupling, self.sigma[chosen], V)
+
     @property
     def radius(self) -> np.ndarray:
         """Radius of the Gershgorin disc of each mode, shape (S, m)."""
@@ -173,10 +193,7 @@ class _FreeMotion:
     def second_order_shift(self) -> np.ndarray:
         """Shift (S, m) of each eigenvalue by the periodic coefficients in second order, within its disc."""
         harmonics = sorted(self.coupling)
-        h = np.array(harmonics)
-        spectra = [convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V]
-        parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
-        coupling = reduce(np.add, parts)
+        h, coupling = np.array(harmonics), self._couple(harmonics)
         product = np.abs(coupling[..., _opposite(h)] * np.swapaxes(coupling, 1, 2))
         own = np.arange(product.shape[1])
         product[:, own, own] = 0  # h and -h, of opposite gaps, cancel: a frequency that varies shifts no rate
@@ -184,15 +201,34 @@ class _FreeMotion:
             shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
         return np.minimum(shift, self.radius)
 
+    def _couple(self, harmonics: list[Pair]) -> np.ndarray:
+        """Periodic coefficients between the modes, in some harmonics: shape (S, m, m, H)."""
+        spectra = (convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V)
+        parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
+        return reduce(np.add, parts)
+
+    def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
+        """Radius (S, m) of smaller discs, if discs are far from each other or close together.
+
+        Scaling the coordinates of all that are far away by t < 1 leaves of a row what couples it with those
+        close by, and t times the rest; discs of those far away grow by 1/t, to half their distance.
+        """
+        radius, distance = self.radius, np.abs(self.gap(harmonics))
+        close = 2 * radius.max(axis=1)[:, None, None, None]
+        between = ((distance > close) & (distance <= 2 * close)).any(axis=(1, 2, 3))
+        nearest = np.where(distance > close, distance, np.inf).min(axis=(1, 2, 3))
+        direct = (np.abs(self._couple(harmonics)) * (distance <= close)).sum(axis=(2, 3))
+        scaled = direct + (close[:, 0, 0] / nearest[:, None]) * (radius - direct)
+        return np.where(between[:, None], radius, np.minimum(radius, scaled))
+
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
         """Yield each index at which discs of opposite energy overlap, with the resonances there."""
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
-        radius = self.radius
-        near = np.abs(self.gap(harmonics)) <= (radius[:, :, None] + radius[:, None, :])[..., None]
-        opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
-        rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0
-        overlap = near & opposite[..., None] & (rightmost & considered)[:, None, None, None]
+        overlap = self._overlap(harmonics, self.radius) & considered[:, None, None, None]
+        undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
+        rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
+        overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
             V, still = [(f[i : i + 1], v[i]) for f, v in self.V], self._find_still(self.rates[i])
             found = []
@@ -202,6 +238,13 @@ class _FreeMotion:
                     _Resonance(self.rates[i], self.coupling, self.sigma[i], V, int(a), partners, still)
                 )
             yield int(i), found
+
+    def _overlap(self, harmonics: list[Pair], radius: np.ndarray) -> np.ndarray:
+        """Whether discs of opposite energy, not all left of the axis, overlap: shape (S, m, m, H)."""
+        near = np.abs(self.gap(harmonics)) <= (radius[:, :, None] + radius[:, None, :])[..., None]
+        opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
+        rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0
+        return near & opposite[..., None] & rightmost[:, None, None, None]
 
     @cached_property
     def _reached(self) -> np.ndarray:

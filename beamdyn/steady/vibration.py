@@ -22,7 +22,7 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.excitation_phases import periodic_system, periodic_system_of_each, split_uncoupled
-from beamdyn.steady.harmonic_balance import PeriodicSystem
+from beamdyn.steady.periodic_system import PeriodicSystem
 from beamdyn.steady.stability import fastest_growth
 
 UNSTABLE = "parametric instability"

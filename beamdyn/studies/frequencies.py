@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.choice import DEFAULT_TARGET, DiscretizationChoice, list_models
-from beamdyn.modal.many_designs import ManyModes, solve_many
+from beamdyn.modal.choice import DiscretizationChoice, warn_of_missed_tolerance
+from beamdyn.modal.many_designs import PencilStack, solve_many
+from beamdyn.scene.validity import (
+    LARGE_DEFLECTION,
+    LARGE_STRAIN,
+    warn_of_static_deflection,
+    warn_of_strain,
+)
+from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
+from beamdyn.studies.refinement import Found, Refinement
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
-CHUNK = 1024  # designs of a task
-_ENTRIES = 300_000  # of matrices of one size at once, which fit into the processor's cache
+_LARGE_ERROR = 1e-6  # of a frequency, beyond which it is said to be unresolved
 
 
 @dataclass(frozen=True)
@@ -25,8 +31,8 @@ class SolvedDesigns:
 
     Parameters
     ----------
-    squared : ndarray, shape (R, S, k)
-        Squared angular frequencies [rad2/s2]; negative where the beam diverges, nan where there are none.
+    eigenvalue : ndarray of complex, shape (R, S, k)
+        s in exp(s t) [1/s]; nan where there are none.
     error : ndarray, shape (R, S, k)
         Estimated relative error of the frequencies.
     deflection : ndarray, shape (R, S)
@@ -35,7 +41,7 @@ class SolvedDesigns:
         Largest number of functions that was needed.
     """
 
-    squared: np.ndarray
+    eigenvalue: np.ndarray
     error: np.ndarray
     deflection: np.ndarray
     functions: int
@@ -57,6 +63,8 @@ class SimilarFrequencies(FieldsOnly):
         As for `natural_modes`.
     tolerance : float, optional
         As for `natural_modes`.
+    ratio : ndarray, shape (N,), optional
+        Damping ratio of each; undamped if not given.
     """
 
     designs: SimilarDesigns
@@ -64,99 +72,92 @@ class SimilarFrequencies(FieldsOnly):
     modes: int
     discretization: DiscretizationChoice
     tolerance: float | None
-
-    @property
-    def target(self) -> float:
-        """Relative error to be met."""
-        return DEFAULT_TARGET if self.tolerance is None else self.tolerance
+    ratio: np.ndarray | None = None
 
     @cached_property
-    def _families(self) -> dict[Discretization, PencilFamily]:
-        return {}
-
-    def bases(self) -> Iterator[Discretization]:
-        """Bases to try in turn."""
-        reference, cheapest = self.designs.reference, self.tolerance is not None
-        models = list_models(reference, self.discretization, self.modes, self.target, cheapest)
-        return (model.discretization for model in models)
-
-    @property
-    def can_be_batched(self) -> bool:
-        """Whether the functions are the same in all designs."""
-        if self.discretization != "ritz" and not isinstance(self.discretization, Ritz):
-            return False
-        first = next(self.bases())
-        return isinstance(first, Ritz) and first.basis != "moments"
-
-    def split(self) -> list[SimilarFrequencies]:
-        """The designs of each task: they follow from the request, not from the workers."""
-        return [self._part(slice(start, start + CHUNK)) for start in range(0, self.designs.count, CHUNK)]
-
-    def _part(self, rows: slice) -> SimilarFrequencies:
-        part = replace(self, designs=self.designs.part(rows), speeds=self.speeds[rows])
-        part.__dict__["_families"] = self._families  # common to all within a process
-        return part
+    def _refinement(self) -> Refinement:
+        return Refinement(self.designs.reference, self.modes, self.discretization, self.tolerance)
 
     def solve(self) -> SolvedDesigns:
         """Solve the designs, in finer and finer bases until all errors meet the target."""
-        pending, shape = np.arange(self.designs.count), (*self.speeds.shape, self.modes)
-        squared, error = np.full(shape, np.nan), np.full(shape, np.inf)
-        deflection, functions = np.full(shape[:2], np.nan), 0
-        for basis in self.bases():
-            unmet = []
-            for batch in self._batches(pending, basis):
-                if (found := self._solve_batch(batch, basis)) is None:
-                    continue  # rounding of so many functions: the last result is the best
-                squared[batch], error[batch], functions = found.squared, found.error, _size(basis)
-                across = self.designs.across[batch][:, None] / self.designs.reference.beam.length
-                deflection[batch] = np.abs(found.static) * across
-                unmet.append(batch[~found.meet(self.target)])
-            if not (pending := np.concatenate([np.empty(0, dtype=int), *unmet])).size:
-                break
-        time = self.designs.time[:, None, None]
-        return SolvedDesigns(squared / time**2, error, deflection, functions)
+        count, speeds = self.speeds.shape
+        found, functions = self._refinement.solve(count, speeds, self._solve_batch)
+        if not found:
+            shape = (*self.speeds.shape, self.modes)
+            found = [
+                np.full(shape, np.nan, dtype=complex),
+                np.full(shape, np.inf),
+                np.full(self.speeds.shape, np.nan),
+            ]
+        eigenvalue, error, deflection = found
+        error = np.where(np.isnan(eigenvalue), np.inf, error)
+        return SolvedDesigns(eigenvalue / self.designs.time[:, None, None], error, deflection, functions)
 
-    def _batches(self, designs: np.ndarray, basis: Discretization) -> list[np.ndarray]:
-        """Split designs so that the matrices of each part fit into the cache."""
-        most = max(1, _ENTRIES // (_size(basis) ** 2 * self.speeds.shape[1]))
-        return np.split(designs, range(most, len(designs), most))
+    def _solve_batch(self, rows: np.ndarray, basis: Discretization) -> Found:
+        designs = self.designs
+        family, weights = designs.family(basis), designs.weights(rows)
+        stack, speeds = family.stack(weights), self.speeds[rows] * designs.time[rows, None]
+        ratio = None if self.ratio is None else self.ratio[rows]
+        coarse = coarser_stack(designs, basis, family, stack, weights)
+        load = np.einsum("rt,tdn,rd->rn", weights, family.loads, designs.across[rows], optimize=True)
+        found = solve_many(
+            stack, coarse, speeds, self.modes, load, family.tips, ratio, designs.estimate(basis)
+        )
+        target = np.maximum(self._refinement.target_of(basis), 3 * found.rounding)
+        met = np.all(found.error <= target, axis=(1, 2))
+        deflection = found.static / designs.reference.beam.length
+        return Found((found.eigenvalue, found.error, deflection), met)
 
-    def _solve_batch(self, designs: np.ndarray, basis: Discretization) -> ManyModes | None:
-        """Solve designs; None for one that rounding leaves without a solution."""
-        if basis not in self._families:
-            self._families[basis] = self.designs.family(basis)
-        family, weights = self._families[basis], self.designs.weights(designs)
-        speeds = self.speeds[designs] * self.designs.time[designs, None]
-        load = weights @ family.load
-        try:
-            stack = family.stack(weights)
-            return solve_many(stack, family.coarse, speeds, self.modes, load, family.tip)
-        except np.linalg.LinAlgError:
-            return None if len(designs) == 1 else self._solve_halves(designs, basis)
+    def answers(self) -> DesignAnswers:
+        """The answers of the designs, with what limits them."""
+        found = self.solve()
+        s = found.eigenvalue
+        growing, oscillating, none = np.real(s) > 0, np.imag(s) != 0, np.isnan(s)
+        words = [REFUSED, "flutter", "divergence", "stable", "neutral"]
+        status = np.select([none, growing & oscillating, growing, oscillating, s == 0], words, "overdamped")
+        frequency = np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
+        method = f"Ritz, at most {found.functions} functions, batched"
+        return DesignAnswers(frequency, found.error, status, (*self._cautions(found, status),), method)
 
-    def _solve_halves(self, designs: np.ndarray, basis: Discretization) -> ManyModes:
-        """Solve two halves, of which one failed; designs without a solution get none."""
-        halves = np.array_split(designs, 2)
-        found = [self._solve_batch(half, basis) or _none(half, self.speeds, self.modes) for half in halves]
-        joined = zip(*((f.squared, f.error, f.rounding, f.static) for f in found), strict=True)
-        return ManyModes(*map(np.concatenate, joined))
-
-
-def join(parts: list[SolvedDesigns]) -> SolvedDesigns:
-    """Put the results of tasks together."""
-    squared, error, deflection = (
-        np.concatenate(values)
-        for values in zip(*((p.squared, p.error, p.deflection) for p in parts), strict=True)
-    )
-    return SolvedDesigns(squared, error, deflection, max(part.functions for part in parts))
-
-
-def _none(designs: np.ndarray, speeds: np.ndarray, modes: int) -> ManyModes:
-    shape = (len(designs), speeds.shape[1], modes)
-    nothing, unknown = np.full(shape, np.nan), np.full(shape, np.inf)
-    return ManyModes(nothing, unknown, unknown, nothing[:, :, 0])
+    def _cautions(self, found: SolvedDesigns, status: np.ndarray) -> Iterator[Caution]:
+        """Yield what `natural_modes` warns of."""
+        unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
+        yield from caution_where(unstable, "a", 0.0, ": the beam diverges; see status")
+        strain = self.designs.strains(self.speeds)
+        large = strain > LARGE_STRAIN
+        if large.any():
+            yield from caution_where(
+                large, "b", strain, f": {next(warn_of_strain(float(np.nanmax(strain))))}"
+            )
+        bent = found.deflection > LARGE_DEFLECTION
+        if bent.any():
+            at = np.unravel_index(np.nanargmax(found.deflection), bent.shape)
+            said = next(warn_of_static_deflection(found.deflection[at][None], 1.0, self.speeds[at][None]))
+            yield from caution_where(bent, "c", found.deflection, f": {said}")
+        missing = (status == REFUSED).any(axis=2)
+        yield from caution_where(
+            missing, "d", 0.0, " there is no answer: rounding of the matrices leaves none"
+        )
+        yield from cautions_of_error(found.error, self.tolerance)
 
 
-def _size(basis: Discretization) -> int:
-    assert isinstance(basis, Ritz)
-    return basis.functions
+def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:
+    """Yield a caution of errors (R, S, k) past a tolerance, or past what is promised without one."""
+    worst, limit = error.max(axis=2), _LARGE_ERROR if tolerance is None else tolerance
+    said = f" the estimated relative error is above {limit:g}: see error"
+    if tolerance is not None and worst.max() > tolerance:
+        said = f": {next(warn_of_missed_tolerance(float(worst.max()), tolerance))}"
+    yield from caution_where(worst > limit, "e", worst, said)
+
+
+def coarser_stack(
+    designs: SimilarDesigns,
+    basis: Discretization,
+    family: PencilFamily,
+    stack: PencilStack,
+    weights: np.ndarray,
+) -> PencilStack:
+    """The matrices of designs of some weights in the coarser basis."""
+    if family.coarse is not None:
+        return stack.part(family.coarse)
+    return designs.family(basis.coarser()).stack(weights)

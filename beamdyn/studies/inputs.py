@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
-import numpy as np
-
-from beamdyn.common.checks import InvalidValue, one_of, real_array
+from beamdyn.common.checks import InvalidValue, positive, real_array
 from beamdyn.common.described import descriptions
+from beamdyn.common.designs import VariedInput
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.profile import as_profile, to_profile
@@ -19,7 +18,7 @@ from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.scene.scene import Scene
 
 SPEED = "speed"
-COMBINATIONS = ("product", "zip")
+SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
 _OF_RECTANGLE = {
     "width": "m",
     "thickness": "m",
@@ -38,9 +37,22 @@ _OF_STIFFNESS = {
     "rotary_inertia": "kg m",
     "second_rotary_inertia": "kg m",
 }
+# Powers of the sides of a section in its properties, whatever its form.
+_LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
+_OF_FIRST = ("bending_stiffness", "rotary_inertia")
+_OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
+SECTION_POWERS = {
+    "thickness": {
+        "outer_fibre": 1,
+        **dict.fromkeys((*_LINEAR, *_OF_SECOND), 1),
+        **dict.fromkeys(_OF_FIRST, 3),
+    },
+    "width": {**dict.fromkeys((*_LINEAR, *_OF_FIRST), 1), **dict.fromkeys(_OF_SECOND, 3)},
+}
 _OF_BEAM = {"length": "m", "twist": "rad"}
 _UNITS: dict[str, str] = {
     **{f"beam.{name}": unit for name, unit in (_OF_BEAM | _OF_RECTANGLE | _OF_STIFFNESS).items()},
+    **{SCALE + name: "" for name in (*SECTION_POWERS, *_OF_STIFFNESS)},
     **{f"beam.tip.{name}": found.unit for name, found in descriptions(TipMass).items()},
     **{f"mount.{name}": found.unit for name, found in descriptions(Mount).items()},
     "model.damping_ratio": "",
@@ -48,30 +60,6 @@ _UNITS: dict[str, str] = {
     SPEED: "rad/s",
 }
 NAMES = tuple(_UNITS)
-
-
-@dataclass(frozen=True)
-class VariedInput:
-    """An input that a study varies.
-
-    Parameters
-    ----------
-    name : str
-        Its path in scene files, such as "beam.thickness", or "speed".
-    unit : str
-        Its SI unit.
-    values : ndarray, shape (n,)
-        Its values [unit].
-    """
-
-    name: str
-    unit: str
-    values: np.ndarray
-
-    @property
-    def label(self) -> str:
-        """For tables and pictures: name and unit."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
 def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
@@ -96,30 +84,6 @@ def _check_input(name: str, values: Any) -> VariedInput:
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
     return VariedInput(name, _UNITS[name], array)
-
-
-def check_combination(combine: str, inputs: Sequence[VariedInput]) -> None:
-    """Refuse an unknown combination, and inputs of different lengths that are to be taken together."""
-    one_of("combine", combine, COMBINATIONS)
-    lengths = {len(each.values) for each in inputs}
-    if combine == "zip" and len(lengths) > 1:
-        bound = f"the inputs have {' and '.join(map(str, sorted(lengths)))} values"
-        raise InvalidValue("combine", combine, bound, 'give as many of each, or combine="product"')
-
-
-def shape_of(inputs: Sequence[VariedInput], combine: str) -> tuple[int, ...]:
-    """Shape of the answers: one axis an input, or one for all that are taken together."""
-    if combine == "zip":
-        return (len(inputs[0].values),)
-    return tuple(len(each.values) for each in inputs)
-
-
-def columns_of(inputs: Sequence[VariedInput], combine: str) -> dict[str, np.ndarray]:
-    """The value of each input in each of N designs, (N,): the last input of a product changes fastest."""
-    if combine == "zip":
-        return {each.name: each.values for each in inputs}
-    grids = np.meshgrid(*(each.values for each in inputs), indexing="ij")
-    return {each.name: grid.ravel() for each, grid in zip(inputs, grids, strict=True)}
 
 
 # The scene of a design ----------------------------------------------------------------------------
@@ -162,8 +126,13 @@ def _part(design: Mapping[str, float], prefix: str) -> dict[str, Any]:
 
 
 def _beam_of(beam: Beam, design: Mapping[str, float]) -> Beam:
+    """The beam with inputs replaced, and then with what is multiplied."""
+    return _scaled(_replaced(beam, design), _part(design, SCALE))
+
+
+def _replaced(beam: Beam, design: Mapping[str, float]) -> Beam:
     of_tip = _part(design, "beam.tip.")
-    given = {name: v for name, v in _part(design, "beam.").items() if not name.startswith("tip.")}
+    given = {name: v for name, v in _part(design, "beam.").items() if "." not in name}
     if of_tip:
         beam = replace(beam, tip=replace(beam.tip or TipMass(0.0), **of_tip))
     if "twist" in given:
@@ -175,6 +144,18 @@ def _beam_of(beam: Beam, design: Mapping[str, float]) -> Beam:
         raise InvalidValue(f"beam.{next(iter(of_section))}", next(iter(of_section.values())), bound)
     length = {"length": given["length"]} if "length" in given else {}
     return _rectangular(beam, length | of_section) if of_section else replace(beam, **length, **of_stiffness)
+
+
+def _scaled(beam: Beam, factors: Mapping[str, float]) -> Beam:
+    """The beam with properties multiplied, or with sections stretched in a direction."""
+    for name, factor in factors.items():
+        if name in _OF_STIFFNESS and getattr(beam, name) is None:
+            raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
+        size = positive(SCALE + name, factor)
+        powers = SECTION_POWERS.get(name, {name: 1})
+        there = {each: getattr(beam, each) for each in powers if getattr(beam, each) is not None}
+        beam = replace(beam, **{each: p.scaled(size ** powers[each]) for each, p in there.items()})
+    return beam
 
 
 def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
@@ -194,11 +175,3 @@ def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
         "breakpoints": beam.breakpoints[1:-1],
     }
     return Beam.rectangular(**{**own, **arguments, **given})
-
-
-def corners(columns: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
-    """The designs of the smallest and largest value of each input: every bound is kept if they keep it."""
-    ends = {name: np.unique([values.min(), values.max()]) for name, values in columns.items()}
-    grids = np.meshgrid(*ends.values(), indexing="ij")
-    points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
-    return [dict(zip(ends, point, strict=True)) for point in points]

@@ -1,4 +1,4 @@
-"""Answers of designs one by one, by the analysis of a single scene."""
+"""Answers of designs one by one, by the analysis of a single scene; of a response, for all speeds at once."""
 
 from __future__ import annotations
 
@@ -9,20 +9,27 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.announced import unannounced
-from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.common.designs import rows_of
+from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint, critical_point
 from beamdyn.spectrum.modes import natural_modes
+from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
-from beamdyn.studies.inputs import SPEED, scene_of
+from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
+from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
+from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, lines_of
+from beamdyn.studies.inputs import scene_of
+from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
+from beamdyn.transient.chunks import DONE
+from beamdyn.transient.sweep import sweep
 
-CHUNK = 16  # designs of a task
-REFUSED = "refused"
-_OF_RESPONSES = 1e-5  # tolerance of `steady_response` by default
+SINGLE_CALLS = "single calls"
+_FAILURES = (ValueError, ArithmeticError)
 
 
-class DesignAnswer(NamedTuple):
-    """Answer of one design: values, errors and states (k,), and its warnings."""
+class SpeedAnswer(NamedTuple):
+    """Answer of one design at S speeds: values, errors and states (S, k), and its warnings."""
 
     value: np.ndarray
     error: np.ndarray
@@ -31,84 +38,144 @@ class DesignAnswer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class StudyQuestion:
-    """What is asked of every design.
+class SingleDesigns(FieldsOnly):
+    """Designs that are answered one by one.
 
     Parameters
     ----------
-    scene : Scene
-        The scene, of which inputs are replaced.
-    what : str
-        Name of the answer in `ANALYSES`.
-    speed : float
-        Speed of designs without one of their own [rad/s].
-    modes : int
-        Number of modes.
-    discretization, tolerance
-        As for `natural_modes`.
+    question : StudyQuestion
+        What is asked of them.
+    columns : mapping of str to ndarray, shape (N,)
+        Their inputs, but for the speed.
+    speeds : ndarray, shape (N, S)
+        Speeds of each [rad/s]; (N, 1), and not used, where the answer belongs to none.
     """
 
-    scene: Scene
-    what: str
-    speed: float
-    modes: int
-    discretization: DiscretizationChoice
-    tolerance: float | None
+    question: StudyQuestion
+    columns: Mapping[str, np.ndarray]
+    speeds: np.ndarray
 
-    @property
-    def numbers(self) -> int:
-        """How many numbers the answer of a design has."""
-        return self.modes if self.what == "frequencies" else 1
+    def answers(self) -> DesignAnswers:
+        """The answers of the designs; one that is refused has the reason as a caution."""
+        designs = rows_of(dict(self.columns)) if self.columns else [{}]
+        with unannounced():
+            found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
+        value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
+        return DesignAnswers(value, error, status, (*self._cautions(designs, found),), SINGLE_CALLS)
+
+    def _cautions(
+        self, designs: Sequence[Mapping[str, float]], found: Sequence[SpeedAnswer]
+    ) -> list[Caution]:
+        """How many answers are refused, and how many have warnings, with those of the first."""
+        made, speeds = [], self.speeds.shape[1]
+        refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
+        warned = [
+            0 if no or not answer.warnings else speeds for answer, no in zip(found, refused, strict=True)
+        ]
+        for counts, words in ((refused, "there is no answer"), (warned, "there are warnings")):
+            if any(counts):
+                first = next(i for i, count in enumerate(counts) if count)
+                at = ", ".join(f"{name} = {value:.6g}" for name, value in designs[first].items())
+                said = "; ".join(found[first].warnings)
+                made.append(Caution(words, sum(counts), 0.0, f" {words}{at and '; at ' + at}: {said}"))
+        return made
 
 
-def _frequencies(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
-    speed = design.get(SPEED, question.speed)
-    scene = scene_of(question.scene, design)
-    found = natural_modes(scene, speed, question.modes, question.discretization, question.tolerance)
-    return DesignAnswer(found.frequency, found.error, found.status, found.warnings)
+def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
+    """The answer of a design at its speeds; of all at once, or where these are refused of each."""
+    analysis = _ANALYSES[question.what]
+    try:
+        return analysis(question, scene_of(question.scene, design), speeds)
+    except _FAILURES as error:
+        if len(speeds) == 1:
+            shape = 1, question.numbers
+            states = np.full(shape, REFUSED)
+            return SpeedAnswer(np.full(shape, np.nan), np.full(shape, np.inf), states, (str(error),))
+    each = [_answer(question, design, speeds[[i]]) for i in range(len(speeds))]
+    return _together(each)
 
 
-def _critical_speed(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
-    scene = scene_of(question.scene, design)
+def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
+    arrays = (np.concatenate([answer[i] for answer in each]) for i in range(3))
+    return SpeedAnswer(
+        *arrays, warnings=tuple(dict.fromkeys(said for answer in each for said in answer.warnings))
+    )
+
+
+def _frequencies(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    def at(speed: float) -> SpeedAnswer:
+        found = natural_modes(scene, speed, question.modes, question.discretization, question.tolerance)
+        return SpeedAnswer(found.frequency[None], found.error[None], found.status[None], found.warnings)
+
+    return _together([at(speed) for speed in speeds.tolist()])
+
+
+def _critical_speed(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
     found = critical_point(scene, question.discretization, question.tolerance)
-    answer = (np.array([each]) for each in (found.speed, found.error, _state_of(found)))
-    return DesignAnswer(*answer, warnings=found.warnings)
-
-
-def _amplitude(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
-    scene, tolerance = scene_of(question.scene, design), question.tolerance or _OF_RESPONSES
-    speeds = [design.get(SPEED, question.speed)]
-    found = steady_response(scene, speeds, tolerance=tolerance, discretization=question.discretization)
-    with np.errstate(divide="ignore", invalid="ignore"):  # the errors of a response are relative to its bound
-        error = (found.error + found.mode_error) * found.bound / found.amplitude
-    return DesignAnswer(found.amplitude, np.nan_to_num(error, nan=np.inf), found.status, found.warnings)
+    answer = (np.array([[each]]) for each in (found.speed, found.error, _state_of(found)))
+    return SpeedAnswer(*answer, warnings=found.warnings)
 
 
 def _state_of(found: CriticalPoint) -> str:
     if np.isinf(found.error):
-        return "not found"
-    return "buckles" if np.isfinite(found.speed) else "does not buckle"
+        return NOT_FOUND
+    return BUCKLES if np.isfinite(found.speed) else DOES_NOT_BUCKLE
 
 
-# Analyses by what is asked for, with the unit of the answer.
-ANALYSES: dict[str, tuple[str, Callable[[StudyQuestion, Mapping[str, float]], DesignAnswer]]] = {
-    "frequencies": ("Hz", _frequencies),
-    "critical_speed": ("rad/s", _critical_speed),
-    "amplitude": ("m", _amplitude),
+def _crossings(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    """The lowest crossing of each mode with each line."""
+    found = resonance_speeds(scene, question.speed, question.modes, discretization=question.discretization)
+    lowest: dict[Any, Any] = {}
+    for crossing in found:  # they ascend in speed
+        lowest.setdefault((crossing.kind, round(crossing.line.multiple, 9), crossing.mode), crossing)
+    there = {(kind, round(line.multiple, 9)) for kind, line in lines_of(scene, question.speed)}
+    shape = 1, question.numbers
+    value, error = np.full(shape, np.nan), np.zeros(shape)
+    status = np.full(shape, max(RESONATES, NO_RESONANCE, NO_LINE, key=len))
+    for i, resonance in enumerate(question.resonances):
+        crossing = lowest.pop(resonance.key, None)
+        status[0, i] = NO_RESONANCE if resonance.key[:2] in there else NO_LINE
+        if crossing is not None:
+            value[0, i], error[0, i], status[0, i] = crossing.speed, crossing.error, RESONATES
+    more = [
+        f"there is also one at {c.speed:.6g} rad/s with {c.line.name} ({c.kind})" for c in lowest.values()
+    ]
+    return SpeedAnswer(value, error, status, (*found.warnings, *more))
+
+
+def _amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    tolerance, (ascending, order) = question.tolerance or OF_RESPONSES, _ascending(speeds)
+    found = steady_response(scene, ascending, tolerance=tolerance, discretization=question.discretization)
+    with np.errstate(divide="ignore", invalid="ignore"):  # the errors of a response are relative to its bound
+        error = (found.error + found.mode_error) * found.bound / found.amplitude
+    error = np.nan_to_num(error, nan=np.inf)
+    columns = (values[order, None] for values in (found.amplitude, error, np.asarray(found.status)))
+    return SpeedAnswer(*columns, warnings=found.warnings)
+
+
+def _peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    tolerance, (ascending, order) = question.tolerance or OF_RESPONSES, _ascending(speeds)
+    options: dict[str, Any] = {"tolerance": tolerance, "discretization": question.discretization}
+    found = sweep(scene, ascending, question.window, **options)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error = (found.time_error + found.mode_error * found.largest) / found.peaks
+    error = np.nan_to_num(error, nan=np.inf)
+    failed = [status for status in found.status if status != DONE]
+    status = np.where(np.isin(found.status, failed), "failed", DONE)
+    columns = (values[order, None] for values in (found.peaks, error, status))
+    return SpeedAnswer(*columns, warnings=(*found.warnings, *dict.fromkeys(failed)))
+
+
+def _ascending(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The speeds in ascending order, each once, and the place of each of those given."""
+    ascending, order = np.unique(speeds, return_inverse=True)
+    return ascending, order
+
+
+_ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] = {
+    "frequencies": _frequencies,
+    "critical_speed": _critical_speed,
+    "crossings": _crossings,
+    "amplitude": _amplitude,
+    "peak": _peak,
 }
-
-
-def answer_designs(question: StudyQuestion, designs: Sequence[Mapping[str, float]]) -> list[DesignAnswer]:
-    """Answer a question of designs one by one; one that is refused has the reason as its warning."""
-    with unannounced():
-        return [_answer(question, design) for design in designs]
-
-
-def _answer(question: StudyQuestion, design: Mapping[str, float]) -> DesignAnswer:
-    analysis: Any = ANALYSES[question.what][1]
-    try:
-        return analysis(question, design)
-    except (ValueError, ArithmeticError) as error:
-        nothing = np.full(question.numbers, np.nan)
-        states = np.full(question.numbers, REFUSED)
-        return DesignAnswer(nothing, np.full(question.numbers, np.inf), states, (str(error),))

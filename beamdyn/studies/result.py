@@ -3,44 +3,57 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.designs import Designs, VariedInput
+from beamdyn.common.results import Provenance
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.inputs import VariedInput, scene_of, shape_of
+from beamdyn.studies.inputs import scene_of
+from beamdyn.studies.left_out_of_designs import join_effects, left_out_of_design
+from beamdyn.studies.questions import StudyQuestion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-WORDS = {"frequencies": "frequency", "critical_speed": "critical speed", "amplitude": "steady amplitude"}
+_JUDGED = 8  # designs at which the model error is computed, beside the extremes
+_MOST_AXES = 3  # inputs of which all extremes are combined
 
 
 @dataclass(frozen=True)
-class Study(Result):
+class Study(StatesModelError):
     """An answer over combinations of inputs; made by `study`.
 
     The shape (n1, ..., nd) has an axis for each input, in order, or one for all that are taken together.
+    `error` is that of the numbers; `model_error` (p, m) and `left_out`, computed when asked for, are what the
+    physics left out would change at the designs of `left_out_places` (p); `left_out_at` says it of any.
 
     Parameters
     ----------
     what : str
-        What was asked for: "frequencies", "critical_speed" or "amplitude".
+        What was asked for: "frequencies", "critical_speed", "crossings", "amplitude" or "peak".
     unit : str
         Unit of the answer.
     inputs : tuple of VariedInput
         Each with its `name`, `unit` and `values` in SI.
     combine : {"product", "zip"}
         Whether the inputs are combined each with each, or taken together.
+    labels : tuple of str, length m
+        What the m numbers of a design are: its modes, or modes and the lines that they meet; empty where it
+        has one number.
     value : ndarray, shape (n1, ..., nd, m) or (n1, ..., nd)
         Frequencies of m modes [Hz], nan where a mode does not vibrate; critical speeds [rad/s], inf where
-        the beam does not buckle; or steady amplitudes [m], nan where there is none.
+        the beam does not buckle; resonance speeds [rad/s], nan where a mode meets a line at none up to the
+        top speed; steady amplitudes or peaks [m], nan where there is none.
     error : ndarray, of the same shape
         Estimated relative error; inf where unresolved.
     status : ndarray of str, of the same shape
-        Of a mode as for `natural_modes`; "buckles", "does not buckle" or "not found"; of a response as for
-        `steady_response`; "refused" where there is no answer.
+        Of a mode as for `natural_modes`; "buckles", "does not buckle" or "not found"; "resonates", "none up
+        to the top speed" or "not excited"; of a response as for `steady_response`; of a peak "done" or
+        "failed"; "refused" where there is no answer.
     warnings : tuple of str
         What limits the answer, and of how many designs.
     provenance : Provenance
@@ -51,28 +64,86 @@ class Study(Result):
     unit: str
     inputs: tuple[VariedInput, ...]
     combine: str
+    labels: tuple[str, ...]
     value: np.ndarray
     error: np.ndarray
     status: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+    question: StudyQuestion = field(repr=False)
+
+    @property
+    def designs(self) -> Designs:
+        """The designs."""
+        return Designs(self.inputs, self.combine)
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape (n1, ..., nd) of the designs."""
-        return shape_of(self.inputs, self.combine)
+        return self.designs.shape
 
     def design(self, *place: int) -> dict[str, float]:
         """Inputs of the design at a place (i1, ..., id): values in SI, by name."""
-        if len(place) != len(self.shape):
-            raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
-        places = place * len(self.inputs) if self.combine == "zip" else place
-        return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
+        return self.designs.at(*place)
 
     def scene_at(self, *place: int) -> Scene:
         """The scene of the design at a place (i1, ..., id), for any other analysis of it."""
         return scene_of(self.scene, self.design(*place))
+
+    # Model error ------------------------------------------------------------------------------------
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change at the designs of `left_out_places`: changes (p, m)."""
+        return join_effects([self.left_out_at(*place) for place in self.left_out_places], self._numbers)
+
+    @cached_property
+    def left_out_places(self) -> tuple[tuple[int, ...], ...]:
+        """Places of the designs at which the model error is computed: (p) tuples (i1, ..., id).
+
+        The extremes of the inputs and others spread evenly; of amplitudes and peaks, which take long, the
+        largest.
+        """
+        if self.question.kind.needs_motion:
+            known = np.isfinite(self.value)
+            at = [np.nanargmax(self.value)] if known.any() else []
+        else:
+            ends = [np.array([0, n - 1]) for n in self.shape[:_MOST_AXES]]
+            corners = np.ravel_multi_index(
+                (*np.meshgrid(*ends), *(0,) * len(self.shape[_MOST_AXES:])), self.shape
+            )
+            spread = np.linspace(0, self.designs.count - 1, _JUDGED).round().astype(int)
+            at = np.unique([*corners.ravel(), *spread])
+        return tuple(tuple(map(int, np.unravel_index(i, self.shape))) for i in at)
+
+    def left_out_at(self, *place: int) -> LeftOutEffects | None:
+        """What the effects left out would change in the answer (m,) at a place; None if it has none."""
+        design = self.design(*place)
+        return left_out_of_design(self.question, scene_of(self.scene, design), design)
+
+    @property
+    def _numbers(self) -> int:
+        return len(self.labels) or 1
+
+    def model_warnings(self, tolerance: float | None = None) -> list[str]:
+        """Warnings of a model error past a tolerance, or 1 %, with the design where it is largest."""
+        return [*self.left_out_effects.warnings(tolerance, self.left_out_where)]
+
+    @property
+    def left_out_where(self) -> str:
+        """The design of `left_out_places` at which the model error is largest, in words."""
+        total = self.left_out_effects.total_of_known
+        if not total.size:
+            return ""
+        design = self.design(*self.left_out_places[int(total.max(axis=1).argmax())])
+        return "at " + ", ".join(_at(each, design[each.name]) for each in self.inputs)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        return super().to_dict() | {"left_out_places": [*map(list, self.left_out_places)]}
+
+    # Pictures ---------------------------------------------------------------------------------------
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the answer over the first input; of further inputs, one curve for each value of the second."""
@@ -84,21 +155,21 @@ class Study(Result):
 
     def _words(self) -> str:
         """The answer that a picture shows."""
-        one_mode = self.what == "frequencies" and len(self.shape) > 1
-        return "first frequency" if one_mode else WORDS[self.what]
+        word = self.question.kind.word
+        return f"{word}, {self.labels[0]}" if self.labels and len(self.shape) > 1 else word
 
     def _curves(self) -> np.ndarray:
         """Answers over the first input, one row a curve."""
         if len(self.shape) == 1:
             return np.atleast_2d(self.value.T)
-        first = self.value[..., 0] if self.what == "frequencies" else self.value
+        first = self.value[..., 0] if self.labels else self.value
         return first.reshape(*self.shape[:2], -1)[:, :, 0].T
 
     def _labels(self) -> list[str]:
         if len(self.shape) > 1:
             second = self.inputs[1]
             return [_at(second, value) for value in second.values.tolist()]
-        return [f"mode {i + 1}" for i in range(len(self._curves()))] if self.what == "frequencies" else [""]
+        return list(self.labels) or [""]
 
     def _rest(self) -> list[str]:
         """The inputs that a picture shows at their first value only."""

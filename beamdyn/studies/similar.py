@@ -1,68 +1,95 @@
-"""Designs that differ in numbers only: one beam with other tip bodies, radii, angles and speeds.
+"""Designs that differ in numbers only: one beam with other tip bodies, springs, radii, angles and speeds.
 
 Beams of one shape, whose mass per length, stiffness and length are s_m, s_k and s_L times a reference's,
 vibrate as the reference does with the tip body's mass over s_m s_L, its moments of inertia over s_m s_L^3,
-offset and radius over s_L, and the speed times
+offset and radius over s_L, springs at the root times s_L/s_k, and the speed times
 
     T = sqrt(s_m s_L^4 / s_k);
 
-its frequencies over T are theirs.  In one plane of bending the matrices of the reference are polynomials of
-few quantities: linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in r cos(phi) and in the
-squared cosine of the bending angle, quadratic in the offset.  They are interpolated between the extremes of
-all designs.
+its frequencies over T are theirs.  The matrices of the reference are polynomials of few quantities.  In one
+plane of bending they are linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in r cos(phi), in
+the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two planes they are
+linear in the moments of inertia, in the springs, and in the stiffness in the second direction over that in
+the first, and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the
+extremes of all designs.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modal.many_designs import PencilStack
+from beamdyn.modal.many_designs import Estimate, PencilStack
 from beamdyn.modal.model import Model
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.inputs import SCALE
 
-# Powers of an input in mass per length, bending stiffness and axial stiffness.
+# Powers of an input in mass per length, bending stiffness, axial stiffness and second bending stiffness.
 _POWERS = {
-    "beam.width": (1, 1, 1),
-    "beam.thickness": (1, 3, 1),
-    "beam.youngs_modulus": (0, 1, 1),
-    "beam.density": (1, 0, 0),
-    "beam.mass_per_length": (1, 0, 0),
-    "beam.bending_stiffness": (0, 1, 0),
-    "beam.axial_stiffness": (0, 0, 1),
-    "beam.length": (0, 0, 0),
+    "beam.width": (1, 1, 1, 3),
+    "beam.thickness": (1, 3, 1, 1),
+    "beam.youngs_modulus": (0, 1, 1, 1),
+    "beam.density": (1, 0, 0, 0),
+    "beam.mass_per_length": (1, 0, 0, 0),
+    "beam.bending_stiffness": (0, 1, 0, 0),
+    "beam.axial_stiffness": (0, 0, 1, 0),
+    "beam.second_bending_stiffness": (0, 0, 0, 1),
+    "beam.length": (0, 0, 0, 0),
+}
+_POWERS |= {
+    SCALE + name: _POWERS[f"beam.{name}"]
+    for name in (
+        *("width", "thickness", "mass_per_length", "bending_stiffness", "axial_stiffness"),
+        "second_bending_stiffness",
+    )
 }
 _OF_TIP = ("mass", "offset", "inertia", "transverse_inertia", "axial_inertia")
 _OF_MOUNT = ("radius", "setting_angle", "bending_angle")
-SIMILAR = {*_POWERS, *(f"beam.tip.{name}" for name in _OF_TIP), *(f"mount.{name}" for name in _OF_MOUNT)}
-# Quantities of which the matrices are polynomials, and their degrees in them.
-_DEGREES = {"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1}
+_SPRINGS = ("root_stiffness", "second_root_stiffness")
+_WITHOUT_EFFECT = {"model.gravity"}  # on modes at a steady speed
+SIMILAR = {
+    *_POWERS,
+    *(f"beam.tip.{name}" for name in _OF_TIP),
+    *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
+    *_WITHOUT_EFFECT,
+}
+# Quantities of which the matrices are polynomials, and their degrees in them; of the angle trigonometric.
+_DEGREES = {
+    **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
+    **{"transverse_inertia": 1, "axial_inertia": 1, "second_spring": 1, "second_stiffness": 1, "angle": 2},
+}
+_ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # between which trigonometric functions are interpolated
+_MOST_NODES = 512  # scenes that are assembled: some seconds
+_NODES_EACH = 8  # the same for each answer: beyond it single calls are as fast
+_ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0  # over that of one clamped plane, as of single scenes
 _RIGHT_ANGLE = 2e-16  # cosine of a rounded right angle, as in `beamdyn.scene.mount.exact_cos_sin`
 _PLACES = np.linspace(0, 1, 101)  # x/L at which the axial strain is computed
+
+Nodes = tuple[tuple[str, tuple[float, ...]], ...]
 
 
 def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
     """Whether the designs of a study over some inputs are similar to beams of one shape and basis."""
-    plain = scene.physics == Physics() and not scene.chooses_physics
-    clamped = scene.is_slender_beam_in_one_plane
-    points = scene.beam.point_masses or scene.beam.point_springs
-    beyond = scene.is_damped or scene.mount.precone or points
-    return plain and clamped and not beyond and names <= SIMILAR
+    plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
+    lumped = bool(scene.beam.point_masses) and bool(names & _POWERS.keys())
+    apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
+    beyond = scene.mount.precone or scene.beam.point_springs or scene.damping.damps
+    return plain and apart and not beyond and not lumped and names <= SIMILAR
 
 
 @dataclass(frozen=True)
 class SimilarDesigns(FieldsOnly):
-    """N designs as one beam with other tip bodies, radii, angles and speeds.
+    """N designs as one beam with other tip bodies, springs, radii, angles and speeds.
 
     Parameters
     ----------
@@ -72,29 +99,28 @@ class SimilarDesigns(FieldsOnly):
         Inputs of the reference.
     columns : mapping of str to ndarray, shape (N,)
         The same inputs of each design.
-    nodes : mapping of str to ndarray, optional
+    nodes : tuple of (str, tuple of float), optional
         Values of each quantity between which the matrices are interpolated, where designs are some of many.
     """
 
     reference: Scene
     first: Mapping[str, float]
     columns: Mapping[str, np.ndarray]
-    nodes: Mapping[str, np.ndarray] | None = None
-
-    def part(self, rows: slice) -> SimilarDesigns:
-        """Some of the designs, interpolated as all are."""
-        columns = {name: values[rows] for name, values in self.columns.items()}
-        return SimilarDesigns(self.reference, self.first, columns, self._nodes)
+    nodes: Nodes | None = None
 
     @property
     def count(self) -> int:
         """Number N of designs."""
         return len(next(iter(self.columns.values()))) if self.columns else 1
 
+    @property
+    def _planes(self) -> int:
+        return self.reference.physics.planes
+
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Mass per length (0), bending stiffness (1) or axial stiffness (2) over the reference's, (N,)."""
+        """Mass per length (0) or a stiffness (1, 2, 3) over the reference's, (N,): see `_POWERS`."""
         scale = np.ones(self.count)
         for name, powers in _POWERS.items():
             if name in self.columns:
@@ -122,8 +148,11 @@ class SimilarDesigns(FieldsOnly):
     def _given(self, name: str, reference: float) -> np.ndarray:
         return np.asarray(self.columns.get(name, np.full(self.count, reference)), dtype=float)
 
+    def _of_mount(self, name: str) -> np.ndarray:
+        return self._given(f"mount.{name}", getattr(self.reference.mount, name))
+
     @cached_property
-    def _tip(self) -> dict[str, np.ndarray]:
+    def tip(self) -> dict[str, np.ndarray]:
         """The tip body of the reference beam in each design."""
         tip, mass = self.reference.beam.tip or TipMass(0.0), self._scale(0) * self.length
         given = {name: self._given(f"beam.tip.{name}", getattr(tip, name) or 0.0) for name in _OF_TIP}
@@ -133,91 +162,112 @@ class SimilarDesigns(FieldsOnly):
         return {name: v / scales.get(name, mass * self.length**2) for name, v in given.items()}
 
     @cached_property
-    def _angles(self) -> dict[str, np.ndarray]:
-        return {
-            name: self._given(f"mount.{name}", getattr(self.reference.mount, name)) for name in _OF_MOUNT[1:]
-        }
+    def _springs(self) -> dict[str, np.ndarray]:
+        """Springs at the root of the reference beam in each design [N m/rad]; inf where it is clamped."""
+        stiffer = self.length / self._scale(1)
+        return {name: self._of_mount(name) * stiffer for name in _SPRINGS[: self._planes]}
 
     @cached_property
     def _radius(self) -> np.ndarray:
-        return self._given("mount.radius", self.reference.mount.radius) / self.length
+        return self._of_mount("radius") / self.length
+
+    @property
+    def axial(self) -> np.ndarray:
+        """Distance of the root from the axis of rotation against the direction of the beam [m], (N,)."""
+        return self._radius * _cos(self._of_mount("setting_angle"))
 
     @cached_property
     def quantities(self) -> dict[str, np.ndarray]:
         """Values (N,) of the quantities of the reference beam, by name."""
-        tip, inertia = self._tip, self._tip["inertia"]
-        difference = tip["transverse_inertia"] - tip["axial_inertia"]
-        return {
+        tip, springs = self.tip, self._springs
+        common = {
             "mass": tip["mass"],
             "offset": tip["offset"],
-            "inertia": inertia,
-            "tilt": np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia)),
-            "axial": self._radius * _cos(self._angles["setting_angle"]),
-            "in_plane": _cos(self._angles["bending_angle"]) ** 2,
+            "inertia": tip["inertia"],
+            "axial": self.axial,
         }
+        if np.isfinite(spring := springs["root_stiffness"]).all():
+            common["spring"] = spring
+        if self._planes == 1:
+            return common | {"tilt": self.tilt, "in_plane": self.in_plane}
+        if np.isfinite(spring := springs["second_root_stiffness"]).all():
+            common["second_spring"] = spring
+        common |= {name: tip[name] for name in ("transverse_inertia", "axial_inertia")}
+        second = self._scale(3) / self._scale(1)
+        return common | {"angle": self._of_mount("bending_angle"), "second_stiffness": second}
+
+    @property
+    def tilt(self) -> np.ndarray:
+        """(J_e - J_1)/J_n of the tip body, (N,)."""
+        inertia = self.tip["inertia"]
+        difference = self.tip["transverse_inertia"] - self.tip["axial_inertia"]
+        return np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia))
+
+    @property
+    def in_plane(self) -> np.ndarray:
+        """Squared cosine of the bending angle, (N,)."""
+        return _cos(self._of_mount("bending_angle")) ** 2
 
     @cached_property
     def across(self) -> np.ndarray:
-        """Acceleration of the root in the direction of bending per squared speed [m], its size, (N,)."""
-        sine = _cos(self._angles["setting_angle"] - math.pi / 2)
-        return np.abs(self._radius * sine * _cos(self._angles["bending_angle"]))
+        """Acceleration of the root across the beam per squared speed [m] along e1 and e2, (N, planes)."""
+        size = self._radius * _cos(self._of_mount("setting_angle") - math.pi / 2)
+        angle = self._of_mount("bending_angle")
+        each = (_cos(angle), -_cos(angle - math.pi / 2))[: self._planes]
+        return size[:, None] * np.stack(each, axis=1)
+
+    # Matrices -------------------------------------------------------------------------------------
 
     @cached_property
-    def _nodes(self) -> Mapping[str, np.ndarray]:
-        """Values of each quantity between which the matrices are interpolated."""
-        if self.nodes is not None:
-            return self.nodes
-        return {name: _nodes_of(values, _DEGREES[name]) for name, values in self.quantities.items()}
+    def _nodes(self) -> Nodes:
+        return nodes_of([self]) if self.nodes is None else self.nodes
 
-    @cached_property
-    def _node_scenes(self) -> list[Scene]:
-        """The reference beam with each combination of these values."""
-        grids = np.meshgrid(*self._nodes.values(), indexing="ij")
-        points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
-        return [self._scene_at(**dict(zip(self._nodes, point, strict=True))) for point in points]
+    def has_few_nodes(self, answers: int) -> bool:
+        """Whether few scenes are assembled for so many answers."""
+        most = min(_MOST_NODES, _NODES_EACH * answers)
+        return math.prod(len(values) for _, values in self._nodes) <= most
 
-    def _scene_at(
-        self, mass: float, offset: float, inertia: float, tilt: float, axial: float, in_plane: float
-    ) -> Scene:
-        tip = TipMass(mass, offset, inertia, (1 + tilt) * inertia, inertia)
-        mount = Mount(abs(axial), 0.0 if axial >= 0 else math.pi, math.acos(math.sqrt(in_plane)))
-        return Scene(replace(self.reference.beam, tip=tip), mount)
+    @property
+    def can_be_solved(self) -> bool:
+        """Whether roots are clamped in all designs, or on springs in all."""
+        return all(
+            (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()
+        )
 
     def family(self, discretization: Discretization) -> PencilFamily:
-        """The matrices of all designs in one basis."""
-        models = [Model(scene, discretization) for scene in self._node_scenes]
-        pencils = [model.equations.steady() for model in models]
-        coarse = models[0].equations.coarse
-        assert coarse is not None
-        return PencilFamily(
-            K0=pencils[0].K0,
-            M=np.array([pencil.M for pencil in pencils]),
-            K2=np.array([pencil.K2 for pencil in pencils]),
-            load=np.array([model.equations.P(0) for model in models]),
-            tip=models[0].equations.tip,
-            coarse=coarse,
-        )
+        """The matrices of all designs in one basis; kept for the next call, in each process."""
+        return _family(self.reference, self._nodes, discretization)
+
+    def estimate(self, discretization: Discretization) -> Estimate:
+        """How the errors of a basis are estimated."""
+        on_springs = np.isfinite(self.reference.mount.root_stiffness)
+        rounding = _ROUNDING_OF_PLANES if self._planes == 2 else _ROUNDING_ON_SPRINGS if on_springs else 1.0
+        return Estimate(rounding == 1.0, discretization.converges_regularly, rounding)
 
     def weights(self, designs: np.ndarray) -> np.ndarray:
         """Weights (R, T) of the T node scenes in the matrices of R designs."""
         weights = np.ones((len(designs), 1))
-        for name, nodes in self._nodes.items():
-            own = _lagrange(nodes, self.quantities[name][designs])
+        for name, nodes in self._nodes:
+            own = _weights_of(name, np.array(nodes), self.quantities[name][designs])
             weights = (weights[:, :, None] * own[:, None, :]).reshape(len(weights), -1)
         return weights
 
-    @cached_property
-    def _forces(self) -> np.ndarray:
-        """Axial force of the node scenes over their axial stiffness, per squared speed [s2], (T, points)."""
-        stiffness = self.reference.beam.axial_stiffness
-        if stiffness is None:
-            return np.full((len(self._node_scenes), 1), np.nan)
-        return np.array([_axial_force(scene) for scene in self._node_scenes]) / stiffness(_PLACES)
-
     def strains(self, speeds: np.ndarray) -> np.ndarray:
         """Largest axial strain of each design at its speeds (N, S) [rad/s]; nan if it is not known."""
-        per_square = np.abs(self.weights(np.arange(self.count)) @ self._forces).max(axis=1)
+        per_square = np.abs(self.weights(np.arange(self.count)) @ _forces(self.reference, self._nodes)).max(
+            axis=1
+        )
         return (per_square * self.strain * self.time**2)[:, None] * speeds**2
+
+
+def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
+    """Values of each quantity between which the matrices of designs in parts are interpolated."""
+    ends: dict[str, tuple[float, float]] = {}
+    for part in parts:
+        for name, values in part.quantities.items():
+            low, high = ends.get(name, (math.inf, -math.inf))
+            ends[name] = min(low, float(values.min())), max(high, float(values.max()))
+    return tuple((name, _nodes_between(name, *ends[name])) for name in ends)
 
 
 @dataclass(frozen=True)
@@ -226,34 +276,85 @@ class PencilFamily:
 
     Parameters
     ----------
-    K0 : ndarray, shape (n, n)
-        Stiffness at rest.
+    K0 : ndarray, shape (n, n) or (T, n, n)
+        Stiffness at rest of all, or of each.
     M, K2 : ndarray, shape (T, n, n)
         Mass, and stiffness per squared speed.
-    load : ndarray, shape (T, n)
-        Load under a unit acceleration of the root in the direction of bending.
-    tip : ndarray, shape (n,)
-        Tip deflection per coordinate.
-    coarse : ndarray of int
-        Coordinates of the coarser basis.
+    loads : ndarray, shape (T, d, n)
+        Loads under a unit acceleration of the root in the d directions of bending.
+    tips : ndarray, shape (d, n)
+        Tip deflections in these per coordinate.
+    coarse : ndarray of int, optional
+        Coordinates of the coarser basis; None where that has other functions.
     """
 
     K0: np.ndarray
     M: np.ndarray
     K2: np.ndarray
-    load: np.ndarray
-    tip: np.ndarray
-    coarse: np.ndarray
+    loads: np.ndarray
+    tips: np.ndarray
+    coarse: np.ndarray | None
 
     def stack(self, weights: np.ndarray) -> PencilStack:
         """The matrices of designs of some weights (R, T)."""
         M, K2 = (np.tensordot(weights, A, axes=1) for A in (self.M, self.K2))
-        return PencilStack(self.K0, M, K2)
+        K0 = self.K0 if self.K0.ndim == 2 else np.tensordot(weights, self.K0, axes=1)
+        return PencilStack(K0, M, K2)
 
 
-def _cos(angle: np.ndarray) -> np.ndarray:
-    c = np.cos(angle)
-    return np.where(np.abs(c) < _RIGHT_ANGLE, 0.0, c)
+# Scenes at the nodes, which each process assembles once ---------------------------------------------
+
+
+@lru_cache(maxsize=8)
+def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
+    """The reference beam with each combination of the values of the quantities."""
+    grids = np.meshgrid(*(values for _, values in nodes), indexing="ij")
+    points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
+    names = [name for name, _ in nodes]
+    return [_scene_at(reference, dict(zip(names, point, strict=True))) for point in points]
+
+
+def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
+    """The reference beam with some values of the quantities."""
+    beam, inertia, axial = reference.beam, at["inertia"], at["axial"]
+    if "tilt" in at:
+        others, angle = ((1 + at["tilt"]) * inertia, inertia), math.acos(math.sqrt(at["in_plane"]))
+    else:
+        others, angle = (at["transverse_inertia"], at["axial_inertia"]), at["angle"]
+        assert beam.second_bending_stiffness is not None
+        second = beam.second_bending_stiffness.scaled(at["second_stiffness"])
+        beam = replace(beam, second_bending_stiffness=second)
+    springs = at.get("spring", math.inf), at.get("second_spring", math.inf)
+    mount = Mount(
+        abs(axial), 0.0 if axial >= 0 else math.pi, angle, **dict(zip(_SPRINGS, springs, strict=True))
+    )
+    tip = TipMass(at["mass"], at["offset"], inertia, *others)
+    return Scene(replace(beam, tip=tip), mount, physics=reference.physics)
+
+
+@lru_cache(maxsize=16)
+def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> PencilFamily:
+    models = [Model(scene, discretization) for scene in _node_scenes(reference, nodes)]
+    pencils, equations = [model.equations.steady() for model in models], models[0].equations
+    same = all(np.array_equal(pencil.K0, pencils[0].K0) for pencil in pencils)
+    directions = range(reference.physics.planes)
+    return PencilFamily(
+        K0=pencils[0].K0 if same else np.array([pencil.K0 for pencil in pencils]),
+        M=np.array([pencil.M for pencil in pencils]),
+        K2=np.array([pencil.K2 for pencil in pencils]),
+        loads=np.array([[model.equations.P(i) for i in directions] for model in models]),
+        tips=equations.tips[: len(directions)],
+        coarse=equations.coarse,
+    )
+
+
+@lru_cache(maxsize=8)
+def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
+    """Axial force of the node scenes over their axial stiffness, per squared speed [s2], (T, points)."""
+    scenes, stiffness = _node_scenes(reference, nodes), reference.beam.axial_stiffness
+    if stiffness is None:
+        return np.full((len(scenes), 1), np.nan)
+    return np.array([_axial_force(scene) for scene in scenes]) / stiffness(_PLACES)
 
 
 def _axial_force(scene: Scene) -> np.ndarray:
@@ -262,14 +363,25 @@ def _axial_force(scene: Scene) -> np.ndarray:
     return n_b(_PLACES) - axial * n_a(_PLACES)
 
 
-def _nodes_of(values: np.ndarray, degree: int) -> np.ndarray:
-    """As many values between the extremes as a polynomial of a degree needs; one if all are the same."""
-    low, high = values.min(), values.max()
-    return np.linspace(low, high, degree + 1) if high > low else np.array([low])
+# Interpolation --------------------------------------------------------------------------------------
 
 
-def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Values (R, p) at x (R,) of the polynomials that are 1 at one of p nodes and 0 at the others."""
+def _cos(angle: np.ndarray) -> np.ndarray:
+    c = np.cos(angle)
+    return np.where(np.abs(c) < _RIGHT_ANGLE, 0.0, c)
+
+
+def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
+    """As many values between the extremes as a polynomial needs; one if all are the same."""
+    if high == low:
+        return (low,)
+    return tuple((_ANGLES if name == "angle" else np.linspace(low, high, _DEGREES[name] + 1)).tolist())
+
+
+def _weights_of(name: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Values (R, p) at x (R,) of the functions that are 1 at one of p nodes and 0 at the others."""
+    if name == "angle" and len(nodes) > 1:
+        return (1 + 2 * np.cos(2 * (x[:, None] - nodes))) / 3
     values = np.ones((len(x), len(nodes)))
     for i, node in enumerate(nodes):
         for other in np.delete(nodes, i):

@@ -1,54 +1,49 @@
-"""Frequencies, critical speeds and amplitudes over all combinations of inputs."""
+"""Answers over all combinations of inputs, or over designs that are given one by one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from os import PathLike
 from time import perf_counter
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
+import scipy
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
-from beamdyn.common.checks import InvalidValue, count, function, one_of, real, within
-from beamdyn.common.parallel.workers import Workers, one_blas_thread
+from beamdyn.common.checks import InvalidValue, as_floats, count, one_of, positive, real, within
+from beamdyn.common.designs import Designs, check_designs, rows_of
+from beamdyn.common.parallel.tasks import Task, TaskRunner
+from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
-from beamdyn.modal.choice import (
-    TOLERANCES,
-    DiscretizationChoice,
-    check_discretization,
-    warn_of_missed_tolerance,
-)
+from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, check_discretization
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import (
-    LARGE_DEFLECTION,
-    LARGE_STRAIN,
-    check_speeds,
-    warn_of_left_out,
-    warn_of_static_deflection,
-    warn_of_strain,
-)
-from beamdyn.studies.frequencies import SimilarFrequencies, SolvedDesigns, join
-from beamdyn.studies.inputs import (
-    SPEED,
-    VariedInput,
-    check_combination,
-    check_inputs,
-    columns_of,
-    corners,
-    scene_of,
-    shape_of,
-)
-from beamdyn.studies.one_by_one import ANALYSES, CHUNK, REFUSED, DesignAnswer, StudyQuestion, answer_designs
+from beamdyn.scene.validity import check_speeds, warn_of_left_out
+from beamdyn.studies.answers import REFUSED, AnswerArrays, DesignAnswers
+from beamdyn.studies.critical_speeds import SimilarCriticalSpeeds
+from beamdyn.studies.crossings import SimilarCrossings, list_resonances
+from beamdyn.studies.frequencies import SimilarFrequencies
+from beamdyn.studies.inputs import SPEED, check_inputs, scene_of
+from beamdyn.studies.one_by_one import SingleDesigns
+from beamdyn.studies.questions import KINDS, StudyQuestion
+from beamdyn.studies.refinement import Refinement
 from beamdyn.studies.result import Study
-from beamdyn.studies.similar import SimilarDesigns, differ_in_numbers_only
+from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
 
+_VERSIONS = (
+    __version__,
+    np.__version__,
+    scipy.__version__,
+)  # of the programs on which the stored bits depend
+_KIND = "beamdyn study"
+_BATCHED, _SINGLE = 1024, 16  # answers of a task
+_AT_ONCE = 100_000  # designs whose quantities are compared at once
 _MOST_CORNERS = 10  # inputs of which all combinations of smallest and largest values are checked first
-_LARGE_ERROR = 1e-6  # of a frequency, beyond which it is said to be unresolved
-Progress = Callable[[int, int], None]
+Progress = Callable[[int, int], object]
 
 
 @announced
@@ -56,47 +51,56 @@ Progress = Callable[[int, int], None]
 def study(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
-    what: Literal["frequencies", "critical_speed", "amplitude"] = "frequencies",
+    what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     modes: int = 3,
+    window: tuple[float, float] = (20.0, 30.0),
     combine: Literal["product", "zip"] = "product",
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
     workers: int = 1,
     executor: Executor | None = None,
+    store: str | PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Study:
-    """Answer a question of all combinations of inputs of a scene.
+    """Answer a question of many designs: all combinations of inputs of a scene, or designs one by one.
 
-    Frequencies of slender beams that are clamped, undamped and without precone, in one plane, are those of
-    one beam with other tip bodies, radii, angles and speeds: one basis and batched eigenproblems serve all
-    designs.  Everything else is solved design by design.  Either way the answers and their errors are those
-    of single calls, within their stated errors.
+    Frequencies, critical speeds and resonance speeds of slender beams are those of one beam with other tip
+    bodies, springs, radii, angles and speeds: one basis and batched eigenproblems serve all designs.  Steady
+    amplitudes and peaks are computed design by design, over all speeds at once, and so is everything else.
+    Either way the answers and their errors are those of single calls, within their stated errors.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is used for amplitudes alone.
+        The scene; its motion is used for crossings, amplitudes and peaks.
     vary : mapping of str to sequence of float
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
-        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; and "speed" [rad/s].
+        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; and
+        "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
         Sides and material are those of a rectangular section.
-    what : {"frequencies", "critical_speed", "amplitude"}
-        The answer: natural frequencies, the speed at which the beam buckles, or the steady amplitude of its
-        tip under its motion.
-    speed : float
-        Speed of frequencies and amplitudes [rad/s] where it is not varied.
+    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak"}
+        The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
+        meets each line of the excitation; the steady amplitude of the tip; or its largest deflection in a
+        window of time, of a run from rest.
+    speed : float, optional
+        Speed of frequencies, amplitudes and peaks where it is not varied, and top speed of crossings
+        [rad/s]; if not given, 0 for frequencies, else the final speed of the motion.
     modes : int
-        Number of frequencies.
+        Number of modes of frequencies and crossings.
+    window : tuple of float
+        Beginning and end of the window of peaks [s], whose end is that of each run.
     combine : {"product", "zip"}
         Combine each value with each of the other inputs, or take the first of all, the second of all, ...
     discretization, tolerance
-        As for `natural_modes`; the tolerance of amplitudes as for `steady_response`.
+        As for `natural_modes`; the tolerance of amplitudes and peaks as for `steady_response` and `sweep`.
     workers : int
         Number of processes; the answer is the same to the bit for any.
     executor : Executor, optional
         Any of `concurrent.futures`, in place of workers.
+    store : str or Path, optional
+        Folder in which finished parts are kept; those found there are not computed again.
     progress : callable, optional
         Called as progress(done, total) with the numbers of designs.
 
@@ -108,85 +112,141 @@ def study(
     ------
     ValueError
         If an argument is out of its range, or no design has an answer.
+    StudyInterrupted
+        If the executor breaks; finished parts are in the store.
     """
     start = perf_counter()
     check_scene(scene)
-    inputs = check_inputs(vary)
-    check_combination(combine, inputs)
-    one_of("what", what, tuple(ANALYSES))
+    designs = Designs(check_inputs(vary), combine)
+    check_designs(designs)
+    one_of("what", what, tuple(KINDS))
     check_discretization(discretization)
-    speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
-    workers = _check_means(workers, executor, progress)
-    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-    question = StudyQuestion(scene, what, speed, modes, discretization, tolerance)
-    request = _Request(question, inputs, combine)
+    modes, tolerance = count("modes", modes), _check_tolerance(tolerance)
+    run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
+    at = _check_speed(scene, what, speed, SPEED in {each.name for each in designs.inputs})
+    question = StudyQuestion(scene, what, at, modes, discretization, tolerance, _check_window(window))
+    request = _Request(question, designs)
     request.check()
-    run = _TaskRunner(workers, executor, progress or (lambda done, total: None))
-    answer = request.batched(run) or request.one_by_one(run)
-    shape = (*shape_of(inputs, combine), *((modes,) if what == "frequencies" else ()))
+    if what == "crossings":
+        request = replace(request, question=replace(question, resonances=request.resonances()))
+    found = request.solve(run)
+    several = bool(request.question.labels)
+    shape = (*designs.shape, request.question.numbers) if several else designs.shape
     return Study(
         what=what,
-        unit=ANALYSES[what][0],
-        inputs=inputs,
+        unit=KINDS[what].unit,
+        inputs=tuple(designs.inputs),
         combine=combine,
-        value=answer.value.reshape(shape),
-        error=answer.error.reshape(shape),
-        status=answer.status.reshape(shape),
-        warnings=tuple(dict.fromkeys(answer.warnings)),
-        provenance=Provenance(__version__, answer.method, answer.compared_with, perf_counter() - start),
+        labels=request.question.labels,
+        value=request.in_order(found.value).reshape(shape),
+        error=request.in_order(found.error).reshape(shape),
+        status=request.in_order(found.status).reshape(shape),
+        warnings=(*_warn(request, found), *run.warnings),
+        provenance=Provenance(__version__, found.method, request.compared_with, perf_counter() - start),
         scene=scene,
+        question=request.question,
     )
 
 
-def _check_means(workers: int, executor: Executor | None, progress: Progress | None) -> int:
-    if executor is not None and not hasattr(executor, "submit"):
-        raise InvalidValue("executor", executor, "give an Executor, as in concurrent.futures")
-    workers = count("workers", workers)
-    if executor is not None and workers > 1:
-        raise InvalidValue("workers", workers, "an executor is given too", "give one of them")
-    if progress is not None:
-        function("progress", progress, "it takes the numbers of finished designs and of all")
-    return workers
+# Arguments ----------------------------------------------------------------------------------------
+
+
+def _check_tolerance(tolerance: float | None) -> float | None:
+    return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+
+
+def _check_speed(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
+    """The speed of designs without one of their own [rad/s]."""
+    if speed is not None:
+        at = real("speed", speed, "rad/s")
+    else:
+        final = 0.0 if scene.motion is None or what == "frequencies" else scene.motion.final_speed
+        at = final if np.isfinite(final) else 0.0
+    check_speeds(at, SPEED)
+    kind = KINDS[what]
+    if kind.needs_motion and scene.motion is None:
+        raise InvalidValue("scene.motion", None, f"a study of {what} needs a motion", "such as RollingWheel")
+    if what == "crossings":
+        positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
+    if varied and not kind.has_speed:
+        raise InvalidValue("vary", SPEED, f"{what} belong to no speed", "vary other inputs")
+    return at
+
+
+def _check_window(window: tuple[float, float]) -> tuple[float, float]:
+    ends = as_floats(window)
+    if ends is None or ends.shape != (2,) or not (0 <= ends[0] < ends[1] < np.inf):
+        bound = "give its beginning and its end [s], two ascending numbers such as (20.0, 30.0)"
+        raise InvalidValue("window", window, bound)
+    return float(ends[0]), float(ends[1])
+
+
+def _check_scenes(scene: Scene, designs: Designs) -> None:
+    """Make the scenes of extreme values: bounds are monotone in each input, so that all designs keep them."""
+    few = len(designs.inputs) <= _MOST_CORNERS
+    try:
+        for design in designs.extremes() if few else ():
+            scene_of(scene, design)
+        if few:
+            return
+    except InvalidValue:
+        if designs.combine == "product":
+            raise
+    for rows in designs.chunks(_AT_ONCE):
+        for design in rows_of(designs.columns(rows)):
+            scene_of(scene, design)
+
+
+# The request --------------------------------------------------------------------------------------
+
+
+def _answer(task: SimilarTask | SingleDesigns) -> DesignAnswers:
+    """What workers and executors run."""
+    return task.answers()
 
 
 @dataclass(frozen=True)
-class _TaskRunner:
-    """Where tasks are run: in this process, in workers, or by an executor."""
+class SimilarTask:
+    """Similar designs of a study.
 
-    workers: int
-    executor: Executor | None
-    progress: Progress
+    Parameters
+    ----------
+    question : StudyQuestion
+        What is asked of them.
+    designs : SimilarDesigns
+        N designs.
+    columns : mapping of str to ndarray, shape (N,)
+        Their inputs, but for the speed.
+    speeds : ndarray, shape (N, S)
+        Speeds of each [rad/s].
+    """
 
-    def map(self, solve: Callable[[Any], Any], tasks: Sequence[Any], sizes: Sequence[int]) -> list[Any]:
-        """Results of the tasks, in their order; `sizes` are their numbers of designs."""
-        total, done, results = sum(sizes), 0, []
-        alone = self.executor is None and (self.workers == 1 or len(tasks) == 1)
-        pool = nullcontext(self.executor) if self.executor or alone else Workers(self.workers)
-        with pool as executor:
-            pairs = [(solve, task) for task in tasks]
-            found = map(_solve, pairs) if executor is None else executor.map(_solve, pairs)
-            for result, size in zip(found, sizes, strict=True):
-                results.append(result)
-                self.progress(done := done + size, total)
-        return results
+    question: StudyQuestion
+    designs: SimilarDesigns
+    columns: Mapping[str, np.ndarray]
+    speeds: np.ndarray
 
+    def answers(self) -> DesignAnswers:
+        """The answers of the designs."""
+        question, how = self.question, (self.question.discretization, self.question.tolerance)
+        if question.what == "frequencies":
+            ratio = self._damping
+            return SimilarFrequencies(self.designs, self.speeds, question.modes, *how, ratio).answers()
+        if question.what == "critical_speed":
+            return SimilarCriticalSpeeds(self.designs, *how, self._single).answers()
+        sought = question.resonances, question.speed, question.modes
+        return SimilarCrossings(self.designs, question.scene, *sought, *how).answers()
 
-def _solve(pair: tuple[Callable[[Any], Any], Any]) -> Any:
-    solve, task = pair
-    with one_blas_thread():
-        return solve(task)
+    @property
+    def _damping(self) -> np.ndarray | None:
+        """Damping ratio of each design; None where none is damped."""
+        own = np.full(self.designs.count, self.question.scene.damping_ratio)
+        ratio = self.columns.get("model.damping_ratio", own)
+        return ratio if ratio.any() else None
 
-
-@dataclass(frozen=True)
-class _AnswersOfAll:
-    """Answers (N, k) of all designs in the order of the product."""
-
-    value: np.ndarray
-    error: np.ndarray
-    status: np.ndarray
-    warnings: list[str]
-    method: str
-    compared_with: str
+    def _single(self, rows: np.ndarray) -> DesignAnswers:
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        return SingleDesigns(self.question, columns, self.speeds[rows]).answers()
 
 
 @dataclass(frozen=True)
@@ -194,161 +254,143 @@ class _Request:
     """A question of designs, whose arguments have been checked one by one."""
 
     question: StudyQuestion
-    inputs: tuple[VariedInput, ...]
-    combine: str
+    designs: Designs
+
+    @cached_property
+    def others(self) -> Designs:
+        """The designs without their speeds."""
+        return self.designs.without(SPEED)
+
+    @cached_property
+    def own_speeds(self) -> np.ndarray | None:
+        """Speeds that are varied [rad/s]."""
+        return next((each.values for each in self.designs.inputs if each.name == SPEED), None)
 
     @property
-    def names(self) -> set[str]:
-        """Names of the inputs."""
-        return {each.name for each in self.inputs}
+    def together(self) -> bool:
+        """Whether each design has a speed of its own."""
+        return self.designs.combine == "zip" and self.own_speeds is not None and bool(self.others.inputs)
+
+    @property
+    def speeds(self) -> int:
+        """Number S of speeds of each design."""
+        return 1 if self.together or self.own_speeds is None else len(self.own_speeds)
+
+    @property
+    def compared_with(self) -> str:
+        """By what the errors were estimated."""
+        return "the coarser basis of each" if self.is_similar else "that of each call"
 
     def check(self) -> None:
         """Refuse designs of which any is no scene, before anything is computed."""
-        question, columns = self.question, columns_of(self.inputs, self.combine)
-        if SPEED in columns:
-            if question.what == "critical_speed":
-                bound, remedy = f"{question.what} belongs to no speed", "vary other inputs"
-                raise InvalidValue("vary", SPEED, bound, remedy)
-            check_speeds(columns[SPEED], SPEED)
-        check_speeds(question.speed, SPEED)
-        of_scene = {name: values for name, values in columns.items() if name != SPEED}
-        if of_scene:
-            _check_scenes(question.scene, of_scene, self.combine)
+        if self.own_speeds is not None:
+            check_speeds(self.own_speeds, SPEED)
+        if self.others.inputs:
+            _check_scenes(self.question.scene, self.others)
 
-    # All at once ------------------------------------------------------------------------------------
-
-    def batched(self, run: _TaskRunner) -> _AnswersOfAll | None:
-        """The answer by batched eigenproblems; None where designs differ in more than numbers."""
+    def resonances(self):
+        """The resonances that may occur."""
         question = self.question
-        names = self.names - {SPEED}
-        if question.what != "frequencies" or not differ_in_numbers_only(question.scene, names):
-            return None
-        task = self._similar()
-        if not task.can_be_batched:
-            return None
-        parts = task.split()
-        found = join(run.map(SimilarFrequencies.solve, parts, [part.speeds.size for part in parts]))
-        squared, error = (self._in_order(values) for values in (found.squared, found.error))
-        cases = [squared > 0, squared < 0, squared == 0]
-        status = np.select(cases, ["stable", "divergence", "neutral"], REFUSED)
-        with np.errstate(invalid="ignore"):
-            frequency = np.where(squared >= 0, np.sqrt(np.abs(squared)) / (2 * np.pi), np.nan)
-        warnings = [*_warn_of_batch(task, found, question)]
-        basis = f"Ritz, at most {found.functions} functions, batched"
-        return _AnswersOfAll(frequency, error, status, warnings, basis, "the coarser basis of each")
+        return list_resonances(question.scene, self.others, question.speed, question.modes)
+
+    def solve(self, run: TaskRunner) -> AnswerArrays:
+        """The answers, of all designs in one basis where only numbers differ, else one by one."""
+        found = AnswerArrays((self.others.count, self.speeds, self.question.numbers))
+        tasks = self._similar_tasks() if self.is_similar else self._single_tasks()
+        run.run(_answer, tasks, found.put)
+        if (refused := found.count(REFUSED)) and refused == found.value.size:
+            raise ValueError(f"none of {self.designs.count} designs has an answer; {next(found.warnings())}")
+        return found
+
+    # Parts ------------------------------------------------------------------------------------------
+
+    def _parts(self, size: int, whole: bool) -> Iterator[tuple[slice, slice]]:
+        """Yield designs and speeds of each task, of a size that follows from the request alone."""
+        block = self.speeds if whole else min(self.speeds, size)
+        for rows in self.others.chunks(max(1, size // block)):
+            for first in range(0, self.speeds, block):
+                yield rows, slice(first, min(first + block, self.speeds))
+
+    def _task(self, make: Callable[..., object], rows: slice, at: slice) -> Task:
+        number = (rows.stop - rows.start) * (at.stop - at.start)
+        return Task(partial(make, rows, at), number, (rows, at))
+
+    def _columns(self, rows: slice) -> dict[str, np.ndarray]:
+        return self.others.columns(rows) if self.others.inputs else {}
+
+    def _speeds_of(self, rows: slice, at: slice) -> np.ndarray:
+        """Speeds of some designs (R, S) [rad/s]."""
+        if self.together:
+            assert self.own_speeds is not None
+            return self.own_speeds[rows, None]
+        own = np.array([self.question.speed]) if self.own_speeds is None else self.own_speeds
+        return np.tile(own[at], (rows.stop - rows.start, 1))
+
+    def _single_tasks(self) -> list[Task]:
+        whole = self.question.kind.needs_motion  # whose speeds are solved at once
+        return [self._task(self._single_task, *part) for part in self._parts(_SINGLE, whole)]
+
+    def _single_task(self, rows: slice, at: slice) -> SingleDesigns:
+        return SingleDesigns(self.question, self._columns(rows), self._speeds_of(rows, at))
+
+    # All in one basis -------------------------------------------------------------------------------
+
+    @cached_property
+    def is_similar(self) -> bool:
+        """Whether designs differ in numbers only, so that one basis serves all."""
+        question, names = self.question, {each.name for each in self.others.inputs}
+        scene = question.scene
+        ignored = {"model.damping_ratio"} if question.what in _BATCHED_KINDS else set[str]()
+        if question.what not in _BATCHED_KINDS or not differ_in_numbers_only(scene, names - ignored):
+            return False
+        if question.what == "crossings" and scene.physics.planes == 2:
+            return False  # each plane has lines of its own
+        refinement = Refinement(self._reference, question.modes, question.discretization, question.tolerance)
+        parts = (self._similar(rows) for rows in self.others.chunks(_AT_ONCE))
+        return refinement.can_be_batched and all(p.can_be_solved for p in parts) and self._few_nodes
 
     @property
-    def _others(self) -> list[VariedInput]:
-        return [each for each in self.inputs if each.name != SPEED]
+    def _few_nodes(self) -> bool:
+        return replace(self._similar(slice(0, 1)), nodes=self._nodes).has_few_nodes(self.designs.count)
 
-    def _similar(self) -> SimilarFrequencies:
-        """The designs without their speeds, and these (N, S)."""
-        question, others = self.question, self._others
-        columns = columns_of(others, self.combine) if others else {}
-        first = {name: float(values[0]) for name, values in columns.items()}
-        designs = SimilarDesigns(scene_of(question.scene, first), first, columns)
-        own = next((each.values for each in self.inputs if each.name == SPEED), np.array([question.speed]))
-        together = self.combine == "zip" and SPEED in self.names and bool(others)
-        speeds = own[:, None] if together else np.tile(own, (designs.count, 1))
-        numbers = question.modes, question.discretization, question.tolerance
-        return SimilarFrequencies(designs, speeds, *numbers)
+    @cached_property
+    def _first(self) -> dict[str, float]:
+        return {name: float(values[0]) for name, values in self._columns(slice(0, 1)).items()}
 
-    def _in_order(self, values: np.ndarray) -> np.ndarray:
-        """Answers (N, S, k) in the order of the inputs, (N S, k)."""
-        if self.combine == "zip" or SPEED not in self.names:
-            return values.reshape(-1, values.shape[-1])
-        place = [each.name for each in self.inputs].index(SPEED)
-        of_others = [len(each.values) for each in self._others]
-        grid = values.reshape(*of_others, *values.shape[1:])
-        return np.moveaxis(grid, -2, place).reshape(-1, values.shape[-1])
+    @cached_property
+    def _reference(self) -> Scene:
+        """The scene of the first design, without what matters only to its answer."""
+        return replace(scene_of(self.question.scene, self._first), motion=None, damping_ratio=0.0)
 
-    # One by one -------------------------------------------------------------------------------------
+    @cached_property
+    def _nodes(self) -> Nodes:
+        return nodes_of(self._similar(rows) for rows in self.others.chunks(_AT_ONCE))
 
-    def one_by_one(self, run: _TaskRunner) -> _AnswersOfAll:
-        """The answer by single calls."""
-        columns = columns_of(self.inputs, self.combine)
-        designs = [
-            dict(zip(columns, map(float, row), strict=True)) for row in zip(*columns.values(), strict=True)
-        ]
-        parts = [designs[start : start + CHUNK] for start in range(0, len(designs), CHUNK)]
-        solve = _Single(self.question)
-        of_parts = run.map(solve, parts, [*map(len, parts)])
-        found: list[DesignAnswer] = [answer for part in of_parts for answer in part]
-        refused = [answer.status[0] == REFUSED for answer in found]
-        if all(refused):
-            raise ValueError(f"none of {len(found)} designs has an answer; {found[0].warnings[0]}")
-        value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
-        warnings = [*_warn_of_singles(designs, found, self.inputs)]
-        return _AnswersOfAll(value, error, status, warnings, "single calls", "that of each call")
+    def _similar(self, rows: slice) -> SimilarDesigns:
+        return SimilarDesigns(self._reference, self._first, self._columns(rows))
+
+    def _similar_tasks(self) -> list[Task]:
+        return [self._task(self._similar_task, *part) for part in self._parts(_BATCHED, False)]
+
+    def _similar_task(self, rows: slice, at: slice) -> SimilarTask:
+        designs = replace(self._similar(rows), nodes=self._nodes)
+        return SimilarTask(self.question, designs, self._columns(rows), self._speeds_of(rows, at))
+
+    # Results ----------------------------------------------------------------------------------------
+
+    def in_order(self, values: np.ndarray) -> np.ndarray:
+        """Answers (N, S, k) in the order of the inputs."""
+        if self.together or self.own_speeds is None or self.designs.combine == "zip":
+            return values
+        place = [each.name for each in self.designs.inputs].index(SPEED)
+        return np.moveaxis(values.reshape(*self.others.shape, *values.shape[1:]), -2, place)
 
 
-@dataclass(frozen=True)
-class _Single:
-    """A task of designs that are solved one by one."""
-
-    question: StudyQuestion
-
-    def __call__(self, designs: Sequence[Mapping[str, float]]) -> list[DesignAnswer]:
-        return answer_designs(self.question, designs)
+_BATCHED_KINDS = {"frequencies", "critical_speed", "crossings"}
 
 
-def _check_scenes(scene: Scene, columns: Mapping[str, np.ndarray], combine: str) -> None:
-    """Make the scenes of extreme values: bounds are monotone in each input, so that all designs keep them."""
-    few = len(columns) <= _MOST_CORNERS
-    try:
-        for design in corners(columns) if few else ():
-            scene_of(scene, design)
-        if few:
-            return
-    except InvalidValue:
-        if combine == "product":
-            raise
-    for row in zip(*columns.values(), strict=True):
-        scene_of(scene, dict(zip(columns, map(float, row), strict=True)))
-
-
-# Warnings -----------------------------------------------------------------------------------------
-
-
-def _warn_of_batch(task: SimilarFrequencies, found: SolvedDesigns, question: StudyQuestion) -> Iterator[str]:
-    """Yield what `natural_modes` warns of, for the design where it is worst, with the number of such."""
-    yield from warn_of_left_out(question.scene)
-    speeds = task.speeds
-    unstable = np.any(found.squared < 0, axis=2)
-    if unstable.any():
-        yield f"{_of(unstable)}: the beam diverges; see status"
-    strain = task.designs.strains(speeds)
-    if (strain > LARGE_STRAIN).any():
-        yield f"{_of(strain > LARGE_STRAIN)}: {next(warn_of_strain(float(np.nanmax(strain))))}"
-    bent = found.deflection > LARGE_DEFLECTION
-    if bent.any():
-        worst = np.unravel_index(np.nanargmax(found.deflection), speeds.shape)
-        said = warn_of_static_deflection(found.deflection[worst][None], 1.0, speeds[worst][None])
-        yield f"{_of(bent)}: {next(said)}"
-    missing = np.any(np.isnan(found.squared), axis=2)
-    if missing.any():
-        yield f"{_of(missing)} there is no answer: rounding of the matrices leaves none"
-    largest = found.error.max(initial=0.0)
-    if question.tolerance is not None:
-        yield from warn_of_missed_tolerance(largest, question.tolerance)
-    elif largest > _LARGE_ERROR:
-        inexact = np.any(found.error > _LARGE_ERROR, axis=2)
-        yield f"{_of(inexact)} the estimated relative error is above {_LARGE_ERROR:g}: see error"
-
-
-def _of(which: np.ndarray) -> str:
-    return f"at {int(which.sum())} of {which.size} designs"
-
-
-def _warn_of_singles(
-    designs: Sequence[Mapping[str, float]], found: Sequence[DesignAnswer], inputs: Sequence[VariedInput]
-) -> Iterator[str]:
-    """Yield of how many designs the answers have warnings, and those of the first."""
-    refused = [answer.status[0] == REFUSED for answer in found]
-    warned = [bool(answer.warnings) and not no for answer, no in zip(found, refused, strict=True)]
-    for which, words in ((refused, "there is no answer"), (warned, "there are warnings")):
-        if any(which):
-            first = which.index(True)
-            at = ", ".join(f"{i.name} = {designs[first][i.name]:.6g} {i.unit}".strip() for i in inputs)
-            said = "; ".join(found[first].warnings)
-            yield f"at {sum(which)} of {len(found)} designs {words}; at {at}: {said}"
+def _warn(request: _Request, found: AnswerArrays) -> Iterator[str]:
+    """Yield what holds of all designs, and of how many which else."""
+    if request.is_similar:
+        yield from warn_of_left_out(request.question.scene)
+    yield from found.warnings()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -9,9 +10,9 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.common.digits import supported
+from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
-from beamdyn.studies.inputs import columns_of
-from beamdyn.studies.result import WORDS, Study
+from beamdyn.studies.result import Study
 
 _MOST_ROWS = 30  # of a table for reading
 _DIGITS = 10  # most digits of a number
@@ -37,13 +38,15 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
         (*(f"{column[k]:.6g}" for column in inputs), *_answers(value[i], error[i], status[i]))
         for k, i in enumerate(shown)
     )
-    own = [f"mode {m + 1} [{result.unit}]" for m in range(value.shape[1])]
-    own = own if result.what == "frequencies" else [f"{WORDS[result.what]} [{result.unit}]"]
+    own = [f"{label} [{result.unit}]" for label in result.labels]
+    own = own if result.labels else [f"{result.question.kind.word} [{result.unit}]"]
     number = len(value)
     title = f"{number} design{'s' * (number > 1)}, by {result.provenance.method}"
     made = table(title, (*heads, *own, "error"), rows, ())
-    note = f"{len(shown)} of {number} designs are shown; --csv has all." if len(shown) < number else ""
-    return Group(made, Text(note)) if note else made
+    notes = [f"{len(shown)} of {number} designs are shown; --csv has all."] if len(shown) < number else []
+    where = f"at the worst of {len(result.left_out_places)} designs"
+    left_out = as_in_files(result.left_out_effects.sentence("number" if len(own) > 1 else "", where))
+    return Group(made, *map(Text, (*notes, left_out)))
 
 
 def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterator[str]:
@@ -55,14 +58,19 @@ def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterat
 def study_csv(result: Study) -> Iterator[Sequence[object]]:
     """Inputs in SI, answers, relative errors and states, a row a design; the last input changes fastest."""
     columns, value, error, status = _flat(result)
-    numbers = [f"_{m + 1}" for m in range(value.shape[1])] if value.shape[1] > 1 else [""]
+    numbers = [f"_{_plain_name(label)}" for label in result.labels] or [""]
     units = {each.name: each.unit for each in result.inputs}
     heads = [_head(name.replace(".", "_"), units[name]) for name in columns]
-    answers = [_head(f"{WORDS[result.what].replace(' ', '_')}{n}", result.unit) for n in numbers]
+    answers = [_head(f"{result.question.kind.word.replace(' ', '_')}{n}", result.unit) for n in numbers]
     yield *heads, *answers, *(f"relative_error{n}" for n in numbers), *(f"status{n}" for n in numbers)
     inputs = np.array([*columns.values()]).T.tolist()
     for row in zip(inputs, value.tolist(), error.tolist(), status.tolist(), strict=True):
         yield [cell for cells in row for cell in cells]
+
+
+def _plain_name(label: str) -> str:
+    """A label as a part of a head: a mode by its number."""
+    return re.sub(r"[^0-9A-Za-z.]+", "_", label.removeprefix("mode ")).strip("_")
 
 
 def _head(name: str, unit: str) -> str:
@@ -75,7 +83,7 @@ def _flat(result: Study) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray,
     """Inputs (N,) by name, and answers, errors and states (N, k) of all designs."""
     number = int(np.prod(result.shape))
     value, error, status = (each.reshape(number, -1) for each in (result.value, result.error, result.status))
-    return columns_of(result.inputs, result.combine), value, error, status
+    return result.designs.columns(), value, error, status
 
 
 def _spread(count: int, most: int) -> np.ndarray:

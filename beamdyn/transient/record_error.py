@@ -30,8 +30,9 @@ _BATCH = 256  # pieces that are solved at once
 def estimate_record_error(system: ModalSystem, segment: RecordSegment, outputs: np.ndarray) -> TimeError:
     """Estimate the time-integration error of a quantity, as `estimate_time_error` does.
 
-    The checked steps are solved again from sample to sample, with two more stages.  Some are spread over the
-    run and stand for all; the others are the longest, and those in which the load is roughest.
+    The checked steps are solved again from sample to sample, with two more stages, or where a step has many
+    samples with as many as these need.  Some are spread over the run and stand for all; the others are the
+    longest, and those in which the load is roughest.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def _check_batch(
     """Local error of each chosen step, largest phase error and error between ends, against their pieces."""
     steps, state = segment.steps.select(chosen), segment.state[chosen]
     step = maps_of_record(system, steps, STAGES).step
-    pieces = maps_of_record(system, steps.pieces(), STAGES + 2)
+    pieces = maps_of_record(system, steps.pieces(), steps.nodes_in_piece(STAGES + 2))
     fine, at_pieces = _compose(steps, pieces, state)
     a = (pieces.acceleration @ at_pieces[:, None, :, None])[..., 0]
     q, _ = interpolate(steps.piece_width[:, None, None], at_pieces, a, _POINTS)

@@ -37,6 +37,7 @@ _FEWEST_PIECES = 16  # between samples: fewer are integrated one after the other
 _MOST_STEPS_IN_PIECE = 16  # on average: with more, the pieces are better integrated one after the other
 _PIECES_AT_ONCE = 4096  # in the steps of a block, whose matrices fit into memory
 _SLACK = 1e-6  # of a step, by which rounding may exceed it
+_MANY_PIECES, _IN_EACH = 4, 5  # in a step, and nodes or stages in each, with which a quarter is as exact
 
 
 class StepCounter(Protocol):
@@ -117,20 +118,25 @@ class RecordSteps:
 
     def root(self, system: ModalSystem, table: Tableau) -> RootMotion:
         """Motion of the root at the nodes of the steps, each quantity by its nearest polynomial: (N, s)."""
-        root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * table.c)
+        within = tableau(self.nodes_in_piece(len(table.c)))
+        root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
             return root  # without a sample inside, a polynomial through the nodes is the nearest
-        weights, values = self._projection(table), (getattr(root, f.name) for f in fields(RootMotion))
+        weights, values = self._projection(within, table), (getattr(root, f.name) for f in fields(RootMotion))
         return RootMotion(*(np.add.reduceat((v[:, None] @ weights)[:, 0], self.first) for v in values))
 
-    def _projection(self, table: Tableau) -> np.ndarray:
-        """Weights of the values at the nodes of a piece in those of the polynomial of its step: (P, s, s)."""
+    def nodes_in_piece(self, count: int) -> int:
+        """Number of nodes or stages in each piece that are as exact as `count` of them in a step."""
+        return min(count, _IN_EACH) if self.counts.min() >= _MANY_PIECES else count
+
+    def _projection(self, within: Tableau, table: Tableau) -> np.ndarray:
+        """Weights of the values at the r nodes of a piece in those of its step's polynomial: (P, r, s)."""
         s, owner = len(table.c), np.repeat(np.arange(len(self)), self.counts)
         share = self.piece_width / self.h[owner]
         offset = (self.piece_start - self.start[owner]) / self.h[owner]
-        inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * table.c) - 1, s - 1)
+        inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
         at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
-        return share[:, None, None] * table.b[:, None] * (inside @ at_nodes.T)
+        return share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)
 
 
 def _divide(ends: np.ndarray, parts: np.ndarray) -> np.ndarray:

@@ -15,21 +15,26 @@ from rich.console import RenderableType
 
 from beamdyn._version import __version__
 from beamdyn.common.app.screens import Handle, Slider
-from beamdyn.common.edge import input_sweep
+from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.common.edge.config import parse, read, validated
 from beamdyn.common.edge.input_sweep import (
     MOST_AT_ONCE,
     MOST_ONE_BY_ONE,
     Axis,
+    CaseTask,
     InputSweep,
     Output,
-    check_cases,
+    SolvedCases,
     chosen,
+    designs_of,
     one_by_one,
     parse_axis,
+    solve_cases,
+    swept,
 )
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results import Provenance, Result, plain
 from brakes.config.sweeps import numeric_inputs, with_arrays
 
@@ -105,14 +110,14 @@ class Answer(Result, ABC):
 
 @dataclass(frozen=True)
 class BrakeSweep(InputSweep):
-    """A sweep of a brake's inputs.
+    """Results of a brake over its inputs.
 
     Attributes
     ----------
     design : dict
         The design that is varied, as plain numbers, lists and strings in SI.
-    error : ndarray, shape (n,) or (m, n)
-        As `Answer.error`, of each case.
+    error : ndarray, shape (n1, ..., nd)
+        As `Answer.error`, of each design.
     provenance : Provenance, optional
         As in `Answer`.
     """
@@ -120,6 +125,31 @@ class BrakeSweep(InputSweep):
     design: dict[str, Any] = field(default_factory=dict)
     error: np.ndarray = field(default_factory=lambda: np.array([]))
     provenance: Provenance | None = None
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """Designs that are asked for.
+
+    Parameters
+    ----------
+    design : BaseModel
+        The design whose inputs are varied.
+    tables : mapping
+        Tables of its file.
+    axes : sequence of Axis
+        The inputs.
+    combine : {"product", "zip"}
+        How they are combined.
+    run : TaskRunner, optional
+        Where designs are solved one by one.
+    """
+
+    design: Any
+    tables: Mapping[str, Any]
+    axes: Sequence[Axis]
+    combine: str
+    run: TaskRunner | None
 
 
 class BrakeType(ABC, Generic[FileModel]):
@@ -208,10 +238,8 @@ class BrakeType(ABC, Generic[FileModel]):
         """Numbers of a design that can be swept."""
 
     @abstractmethod
-    def sweep_cases(
-        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
-    ) -> tuple[InputSweep, Sequence[str]]:
-        """Results over one or two inputs, and warnings."""
+    def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
+        """Results over inputs, and warnings."""
 
     def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
         """Answer to the design of tables, with its provenance; raises what `read` and `solve` raise."""
@@ -237,9 +265,11 @@ class BrakeType(ABC, Generic[FileModel]):
         source: str,
         texts: Sequence[str],
         results: str | None = None,
-        options: tuple[str, str] = ("--sweep", "--result"),
+        options: tuple[str, str] = ("--vary", "--what"),
+        combine: str = "product",
+        run: TaskRunner | None = None,
     ) -> tuple[BrakeSweep, Sequence[str]]:
-        """Sweep one or two inputs.
+        """Answer all designs that inputs make.
 
         Parameters
         ----------
@@ -253,6 +283,10 @@ class BrakeType(ABC, Generic[FileModel]):
             Names of outputs, separated by commas.
         options : pair of str
             What inputs and results are called in messages.
+        combine : {"product", "zip"}
+            Whether the inputs are combined each with each, or taken together.
+        run : TaskRunner, optional
+            Where designs are solved that take no arrays; in this process if not given.
 
         Returns
         -------
@@ -264,7 +298,7 @@ class BrakeType(ABC, Generic[FileModel]):
         Raises
         ------
         ValueError
-            If an input or a result is not known, or more than two inputs are given.
+            If an input or a result is not known, an input is given twice, or there are too many designs.
         NoAnswer
             If there is an answer nowhere.
         """
@@ -274,12 +308,9 @@ class BrakeType(ABC, Generic[FileModel]):
         )
         inputs = self.sweep_inputs(design, tables)
         axes = [parse_axis(inputs, text, options[0]) for text in texts]
-        if len(axes) > 2 or len({axis.input.path for axis in axes}) < len(axes):
-            raise ValueError(
-                f"{options[0]} is given {len(axes)} times: give it once, or twice for two inputs"
-            )
-        check_cases(axes, self.most_cases, options[0])
-        made, warnings = self.sweep_cases(design, tables, axes, [*wanted, _ERROR])
+        check_designs(designs_of(axes, combine), self.most_cases, options[0])
+        asked = SweepRequest(design, tables, axes, combine, run)
+        made, warnings = self.sweep_cases(asked, [*wanted, _ERROR])
         return self._without_error(made, plain(design.model_dump()), start), warnings
 
     def _without_error(self, made: InputSweep, design: dict[str, Any], start: float) -> BrakeSweep:
@@ -317,25 +348,27 @@ class ArrayBrakeType(BrakeType[FileModel]):
         """Numbers in the tables that the design has."""
         return numeric_inputs(design)
 
-    def sweep_cases(
-        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
-    ) -> tuple[InputSweep, Sequence[str]]:
+    def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
         """Results from one answer whose numbers are arrays."""
-        answer = self.solve(with_arrays(design, axes))
+        designs = designs_of(asked.axes, asked.combine)
+        in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
+        answer = self.solve(with_arrays(asked.design, in_si.columns()))
         values = [output.shown(answer) for output in outputs]
-        made = input_sweep.sweep(axes, outputs, values, answer.refusals)
-        return made, (*answer.warnings, *answer.refusals)
+        return swept(designs, outputs, values, answer.refusals), (*answer.warnings, *answer.refusals)
 
 
 class TableBrakeType(BrakeType[FileModel]):
     """A type of brake whose mechanics takes one design: a sweep is solved case by case."""
 
-    def sweep_cases(
-        self, design: FileModel, tables: Mapping[str, Any], axes: Sequence[Axis], outputs: Sequence[Output]
-    ) -> tuple[InputSweep, Sequence[str]]:
+    def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
         """Results case by case; not a number where there is no answer."""
-        made = one_by_one(tables, axes, outputs, self._solve_determined)
+        made = one_by_one(asked.tables, asked.axes, outputs, self.solve_task, asked.combine, asked.run)
         return made, made.warnings
+
+    def solve_task(self, task: CaseTask) -> SolvedCases:
+        """Solve the cases of a task, here or in a worker."""
+        outputs = self.outputs(self.read(task.tables, self.name))
+        return solve_cases(task, [*outputs, _ERROR], self._solve_determined)
 
     def _solve_determined(self, tables: Mapping[str, Any]) -> Answer:
         answer = self.solve(self.read(tables, self.name))

@@ -1,4 +1,4 @@
-"""The body of every command on a brake: read, solve or sweep, write files, print, warn."""
+"""The body of every command on a brake: read, solve one design or many, write files, print, warn."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from cyclopts import App, Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.varying import NOTHING_VARIED, Varying
 from brakes.cli.program import warn
 
 if TYPE_CHECKING:
@@ -19,11 +20,7 @@ if TYPE_CHECKING:
     from brakes.answers.base import Answer, BrakeType
 
 BrakeFile = Annotated[Path, Parameter(name="BRAKE.toml")]
-SweptInputs = Annotated[
-    tuple[str, ...],
-    Parameter(name="--sweep", negative="", consume_multiple=False, show_default=False),
-]
-SweepResults = Annotated[str | None, Parameter(name="--result")]
+What = Annotated[str | None, Parameter(name="--what")]
 Files = Mapping[str, tuple[Path | None, Callable[["Answer", Path], object]]]
 
 
@@ -45,8 +42,8 @@ def add_command(app: App, name: str, help: str) -> None:
         file: BrakeFile,
         /,
         *,
-        sweep: SweptInputs = (),
-        result: SweepResults = None,
+        varying: Varying = NOTHING_VARIED,
+        what: What = None,
         outputs: Outputs = NO_FILES,
     ) -> None:
         """Answer a file.
@@ -55,25 +52,24 @@ def add_command(app: App, name: str, help: str) -> None:
         ----------
         file
             The TOML file that describes the brake.
-        sweep
-            An input and its values: KEY=start:stop:count unit, e.g. "friction=0.1:0.6:11" or
-            "shoe.lining_end=50:120:15 deg"; twice for two inputs.
-        result
-            Results of a sweep, separated by commas, such as "torque,pin_1"; the file of --csv without a
-            sweep lists all names.
+        varying
+            Inputs that are varied, e.g. --vary "friction=0.1:0.6:11" --vary "shoe.lining_end=50:120:15 deg".
+        what
+            Results with --vary, separated by commas, such as "torque,pin_1"; the file of --csv without it
+            lists all names.
         outputs
             Files to write.
         """
         brake = import_module(f"brakes.answers.{name}").BRAKE
-        run_command(brake, name, str(file), sweep, result, outputs)
+        run_command(brake, name, str(file), varying, what, outputs)
 
 
 def run_command(
     brake: BrakeType[Any],
     command: str,
     file: str,
-    sweep: tuple[str, ...],
-    result: str | None,
+    varying: Varying,
+    what: str | None,
     outputs: Outputs,
     further: Files | None = None,
     **options: object,
@@ -88,8 +84,10 @@ def run_command(
         Name of the command.
     file : str
         The file.
-    sweep, result
-        Inputs to sweep with their values, and names of the results.
+    varying : Varying
+        Inputs that are varied.
+    what : str, optional
+        Names of the results of these.
     outputs : Outputs
         Files to write.
     further : mapping, optional
@@ -110,12 +108,13 @@ def run_command(
     written = {option: path for option, (path, _) in (further or {}).items()}
     outputs.check(file, **written)
     tables, text = brake.open(file)
-    question = Question.of(f"brakes {command}", file, text, **options, sweep=sweep, result=result)
-    if sweep:
-        _answer_sweep(brake, tables, question, (file, sweep, result), outputs)
+    question = Question.of(f"brakes {command}", file, text, **options, **varying.options, what=what)
+    varying.check()
+    if varying.vary:
+        _answer_many(brake, tables, question, (file, varying, what), outputs)
         return
-    if result is not None:
-        raise ValueError("--result goes with --sweep: without one, all results are shown")
+    if what is not None:
+        raise ValueError("--what goes with --vary: without it, all results are shown")
     answer = brake.answer(tables, file)
     shown = answer.tables()
     more = [(title, partial(draw, answer)) for title, draw in brake.more]
@@ -130,20 +129,26 @@ def run_command(
         raise NoAnswer("; ".join(answer.refusals))
 
 
-def _answer_sweep(
+def _answer_many(
     brake: BrakeType[Any],
     tables: Mapping[str, Any],
     question: Question,
-    request: tuple[str, tuple[str, ...], str | None],
+    request: tuple[str, Varying, str | None],
     outputs: Outputs,
 ) -> None:
+    import numpy as np
+
+    from beamdyn._version import __version__
     from beamdyn.common.curves import sweep_figure
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.input_sweep import sweep_csv
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.tables import progress_bar, show
     from brakes.answers.tables import sweep_table
 
-    made, warnings = brake.sweep(tables, *request)
+    file, varying, what = request
+    with progress_bar("designs") as progress:
+        run = varying.runner("brakes study", (__version__, np.__version__), progress)
+        made, warnings = brake.sweep(tables, file, varying.vary, what, combine=varying.combine, run=run)
     shown = [sweep_table(made)]
     report = Report(question, shown, warnings)
     write(made, outputs, sweep_csv(made), lambda: sweep_figure(made), report)

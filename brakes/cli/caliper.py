@@ -8,7 +8,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
-from brakes.cli.answering import SweepResults, SweptInputs, run_command
+from beamdyn.common.edge.varying import NOTHING_VARIED, Varying
+from brakes.cli.answering import What, run_command
 from brakes.cli.program import app
 
 
@@ -19,8 +20,8 @@ def caliper(
     *,
     free_bodies: Path | None = None,
     animation: Path | None = None,
-    sweep: SweptInputs = (),
-    result: SweepResults = None,
+    varying: Varying = NOTHING_VARIED,
+    what: What = None,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -38,12 +39,11 @@ def caliper(
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
         Write an animation of the stroke: .gif.
-    sweep
-        An input and its values: KEY=start:stop:count unit, e.g. "clearance=1:2:11 mm" or
-        "dimensions.pad.y=-55:-45:11 mm"; twice for two inputs.
-    result
-        Results of a sweep, separated by commas, such as "finger_travel,right_advantage"; a wrong name
-        lists all.
+    varying
+        Inputs that are varied, e.g. --vary "clearance=1:2:11 mm" --vary "dimensions.pad.y=-55:-45:11 mm".
+    what
+        Results with --vary, separated by commas, such as "finger_travel,right_advantage"; a wrong
+        name lists all.
     list_
         List the named calipers and their dimensions; needs no MECHANISM.
     outputs
@@ -61,4 +61,4 @@ def caliper(
         "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
         "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
     }
-    run_command(MECHANISM, "caliper", mechanism, sweep, result, outputs, further)
+    run_command(MECHANISM, "caliper", mechanism, varying, what, outputs, further)

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
-from brakes.cli.answering import SweepResults, SweptInputs, run_command
+from beamdyn.common.edge.varying import NOTHING_VARIED, Varying
+from brakes.cli.answering import What, run_command
 from brakes.cli.program import app
 
 ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
@@ -21,8 +22,8 @@ def forklift(
     /,
     *,
     stage: StageChoice = "all",
-    sweep: SweptInputs = (),
-    result: SweepResults = None,
+    varying: Varying = NOTHING_VARIED,
+    what: What = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part.
@@ -33,16 +34,15 @@ def forklift(
         The truck, the stop, and one of its brakes.
     stage
         What to show; what comes before it is computed where it is needed.
-    sweep
-        An input and its values: KEY=start:stop:count unit, e.g. "stop.speed=10:30:9 km/h"; twice for
-        two inputs.
-    result
-        Results of a sweep, separated by commas, such as "distance,A"; the file of --csv without a
-        sweep lists all names.
+    varying
+        Inputs that are varied, e.g. --vary "stop.speed=10:30:9 km/h".
+    what
+        Results with --vary, separated by commas, such as "distance,A"; the file of --csv without it lists
+        all names.
     outputs
         Files to write.
     """
     from brakes.answers.forklift import FORKLIFT, TYPES
 
     brake = FORKLIFT if stage == "all" else TYPES[stage]
-    run_command(brake, "forklift", str(file), sweep, result, outputs, stage=stage)
+    run_command(brake, "forklift", str(file), varying, what, outputs, stage=stage)

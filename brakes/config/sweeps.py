@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import BaseModel
 
-from beamdyn.common.edge.input_sweep import Axis
 from beamdyn.common.edge.inputs import Input, describe
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
@@ -20,24 +19,23 @@ def numeric_inputs(design: BaseModel) -> list[Input]:
     return [entry for entry in there if entry.quantity.unit or entry.quantity.symbol]  # others are choices
 
 
-def with_arrays(design: FileModel, axes: Sequence[Axis]) -> FileModel:
+def with_arrays(design: FileModel, columns: Mapping[str, np.ndarray]) -> FileModel:
     """A design with arrays in place of its inputs.
 
     Parameters
     ----------
     design : FileModel
         A validated design.
-    axes : sequence of Axis
-        One or two inputs; the values of the second become a column, shape (m, 1).
+    columns : mapping of str to ndarray, shape (N,)
+        Values in SI of each input, by its path.
 
     Returns
     -------
     FileModel
         A copy that is not validated: the core checks the values.
     """
-    for place, axis in enumerate(axes):
-        values = axis.values if place == 0 else axis.values[:, None]
-        design = _replace_input(design, axis.input.path, values)
+    for path, values in columns.items():
+        design = _replace_input(design, path, values)
     return design
 
 

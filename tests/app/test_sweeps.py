@@ -276,9 +276,9 @@ def test_sweep_of_another_design_is_greyed_and_offers_are_those_of_the_design(si
 def test_command_sweeps_a_caliper_as_the_screen_does(tmp_path, capsys):
     path = tmp_path / "sweep.csv"
     options = [
-        "--sweep",
+        "--vary",
         "clearance=1:2:3 mm",
-        "--result",
+        "--what",
         "finger_travel,largest_roller",
         "--csv",
         str(path),
@@ -294,20 +294,20 @@ def test_command_sweeps_a_caliper_as_the_screen_does(tmp_path, capsys):
 
 def test_two_sweeps_of_a_caliper_have_a_row_a_case(tmp_path, capsys):
     path = tmp_path / "sweep.csv"
-    sweeps = ["--sweep", "finger=10:30:3 N", "--sweep", "lever_ratio=3:4:2"]
-    assert main(["caliper", "dual-pivot", *sweeps, "--result", "right_pad_force", "--csv", str(path)]) == DONE
+    sweeps = ["--vary", "finger=10:30:3 N", "--vary", "lever_ratio=3:4:2"]
+    assert main(["caliper", "dual-pivot", *sweeps, "--what", "right_pad_force", "--csv", str(path)]) == DONE
     rows = [[float(v) for v in row] for row in [*csv.reader(path.read_text().splitlines())][1:]]
-    assert [row[:2] for row in rows] == [[10, 3], [20, 3], [30, 3], [10, 4], [20, 4], [30, 4]]
+    assert [row[:2] for row in rows] == [[10, 3], [10, 4], [20, 3], [20, 4], [30, 3], [30, 4]]
     assert rows[5][2] == pytest.approx(4 * rows[0][2], rel=1e-6)  # 3 times the finger, 4/3 the lever
 
 
 @pytest.mark.parametrize(
     "options, code, sentence",
     [
-        (["--result", "finger_travel"], BAD_INPUT, "--result goes with --sweep"),
-        (["--sweep", "clearanc=1:2:3 mm"], BAD_INPUT, "did you mean clearance"),
-        (["--sweep", "finger=1:2:3 N", "--sweep", "run.finger=1:2:3 N"], BAD_INPUT, "two inputs"),
-        (["--sweep", "travel=40:60:3 mm"], NO_ANSWER, "at none of 3 values"),
+        (["--what", "finger_travel"], BAD_INPUT, "--what goes with --vary"),
+        (["--vary", "clearanc=1:2:3 mm"], BAD_INPUT, "did you mean clearance"),
+        (["--vary", "finger=1:2:3 N", "--vary", "run.finger=1:2:3 N"], BAD_INPUT, "given twice"),
+        (["--vary", "travel=40:60:3 mm"], NO_ANSWER, "at none of 3 values"),
     ],
 )
 def test_command_says_what_is_wrong_with_a_sweep(options, code, sentence, capsys):

@@ -65,19 +65,19 @@ TWO = ["face_width=10:20:1000 mm", "force=1:2:1000 kN"]
 
 def test_cases_of_two_inputs_at_once():
     tables = tomllib.loads((ROOT / "examples/drum.toml").read_text())
-    with pytest.raises(ValueError, match="--sweep: 1000 x 1000 values; at most 100000 cases are solved"):
+    with pytest.raises(ValueError, match=r"--vary = .1000 x 1000 values.: at most 100000 designs are solved"):
         DRUM.sweep(tables, "file", TWO)
 
 
 def test_cases_one_by_one():
-    with pytest.raises(ValueError, match="--sweep: 2001 values; at most 2000 cases are solved"):
+    with pytest.raises(ValueError, match=r"--vary = .2001 values.: at most 2000 designs are solved"):
         CALIPER.sweep({"caliper": "eebrake"}, "file", ["clearance=1:2:2001 mm"])
 
 
 @pytest.mark.parametrize("screen", SCENE.screens, ids=lambda screen: screen.name)
 def test_cases_of_a_screen(screen):
     tables = {"options": {"top_speed": "150 rad/s", "modes": 2}, **tomllib.loads(SCENE.base)}
-    with pytest.raises(ValueError, match="sweep: 2001 values; at most 2000 cases are solved"):
+    with pytest.raises(ValueError, match=r"sweep = .2001 values.: at most 2000 designs are solved"):
         screen.sweeps.run(tables, "mount.radius=1:2:2001 m", screen.sweeps.results)
 
 
@@ -108,6 +108,6 @@ def test_options_of_commands(command, refused, capsys, monkeypatch):
 
 def test_sweep_of_a_command_on_brakes(capsys, monkeypatch):
     monkeypatch.chdir(ROOT)
-    options = ["--sweep", TWO[0], "--sweep", TWO[1]]
+    options = ["--vary", TWO[0], "--vary", TWO[1]]
     assert brakes.cli.main(["drum", "examples/drum.toml", *options]) == 2
-    assert "at most 100000 cases" in capsys.readouterr().err
+    assert "at most 100000 designs" in capsys.readouterr().err

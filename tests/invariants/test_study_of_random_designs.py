@@ -82,15 +82,18 @@ def test_fast_designs_take_finer_bases():
     )
 
 
-@pytest.mark.parametrize("damping", [0.0, 0.01])
-def test_to_the_bit_on_any_number_of_workers(damping, monkeypatch):
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"damping_ratio": 0.01}, {"physics": bd.Physics(stretch=True)}],
+    ids=["", "damped", "alone"],
+)
+def test_to_the_bit_on_any_number_of_workers(options, monkeypatch):
     """The tasks follow from the request; small ones here, so that there are several."""
-    from beamdyn.studies import frequencies
     from beamdyn.studies import study as module
 
-    monkeypatch.setattr(frequencies, "CHUNK", 3)
-    monkeypatch.setattr(module, "CHUNK", 3)
-    scene = bd.Scene(BEAMS["uniform"], bd.Mount(0.1), damping_ratio=damping)
+    monkeypatch.setattr(module, "_BATCHED", 3)
+    monkeypatch.setattr(module, "_SINGLE", 3)
+    scene = bd.Scene(BEAMS["uniform"], bd.Mount(0.1), **options)
     vary = {"beam.tip.mass": np.linspace(0, 1e-3, 4), "mount.radius": [0.0, 0.1], "speed": [0.0, 50.0]}
     one, two = (bd.study(scene, vary, workers=workers) for workers in (1, 2))
     for name in ("value", "error", "status"):

@@ -119,7 +119,7 @@ def test_a_picture_of_a_locked_brake(run, edited, tmp_path: Path) -> None:
 
 def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
     path, plot = tmp_path / "s.csv", tmp_path / "s.png"
-    options = ("--sweep", "friction=0.35:1.2:2", "--result", "torque,pin_1", "--csv", path, "--plot", plot)
+    options = ("--vary", "friction=0.35:1.2:2", "--what", "torque,pin_1", "--csv", path, "--plot", plot)
     code, out, err = run("drum", DRUM, *options)
     assert code == DONE and "locked in 1 of 2 cases" in err
     rows = table(path)
@@ -131,11 +131,15 @@ def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "options, part",
     [
-        (("--result", "torque"), "--result goes with --sweep"),
-        (("--sweep", "friction=0.1:0.5:3", "--result", "trque"), "did you mean torque"),
-        (("--sweep", "friction=0.1:0.5:3", "--sweep", "brake.friction=0.1:0.5:3"), "two inputs"),
-        (("--sweep", "lining_end=20:80:4 deg"), "lining_end = 20 deg"),
+        (("--what", "torque"), "--what goes with --vary"),
+        (("--vary", "friction=0.1:0.5:3", "--what", "trque"), "did you mean torque"),
+        (("--vary", "friction=0.1:0.5:3", "--vary", "brake.friction=0.1:0.5:3"), "given twice"),
+        (("--vary", "lining_end=20:80:4 deg"), "lining_end = 20 deg"),
         (("--swep", "x"), "--help"),
+        (("--sweep", "friction=0.1:0.5:3"), "Did you mean --vary?"),
+        (("--vary", "friction=0.1:0.5:3", "--result", "torque"), "Did you mean --what?"),
+        (("--together",), "--together goes with --vary"),
+        (("--vary", "friction=0.1:0.5:3", "--vary", "load.force=1:2:2 kN", "--together"), "3 and 2 values"),
     ],
 )
 def test_bad_options(run, options: tuple[str, ...], part: str) -> None:
@@ -145,11 +149,30 @@ def test_bad_options(run, options: tuple[str, ...], part: str) -> None:
 
 def test_two_sweeps_have_a_row_a_case(run, tmp_path: Path) -> None:
     path = tmp_path / "s.csv"
-    sweeps = ("--sweep", "friction=0.2:0.4:3", "--sweep", "load.force=1:2:2 kN")
+    sweeps = ("--vary", "friction=0.2:0.4:3", "--vary", "load.force=1:2:2 kN")
     assert run("drum", DRUM, *sweeps, "--csv", path)[0] == DONE
     rows = [[float(x) for x in row[:3]] for row in table(path)[1:]]
-    assert [row[:2] for row in rows] == [[mu, P] for P in (1.0, 2.0) for mu in (0.2, pytest.approx(0.3), 0.4)]
-    assert rows[4][2] == pytest.approx(2 * rows[1][2], rel=1e-13)  # torque grows with the force
+    assert [row[:2] for row in rows] == [[mu, P] for mu in (0.2, pytest.approx(0.3), 0.4) for P in (1.0, 2.0)]
+    assert rows[3][2] == pytest.approx(2 * rows[2][2], rel=1e-13)  # torque grows with the force
+
+
+def test_workers_and_a_store_change_no_bit(run, tmp_path: Path) -> None:
+    asked = ("caliper", "dual-pivot", "--vary", "finger=10:40:20 N", "--what", "right_pad_force")
+    alone, shared, resumed = (tmp_path / f"{name}.csv" for name in ("alone", "shared", "resumed"))
+    store = ("--store", tmp_path / "store")
+    assert run(*asked, "--csv", alone)[0] == DONE
+    assert run(*asked, "--csv", shared, "--workers", "2", *store)[0] == DONE
+    assert run(*asked, "--csv", resumed, *store)[0] == DONE
+    assert len([*(tmp_path / "store").iterdir()]) == 3  # two parts, and what tells that it is a store
+    assert alone.read_text() == shared.read_text() == resumed.read_text()
+
+
+def test_values_taken_together(run, tmp_path: Path) -> None:
+    path = tmp_path / "s.csv"
+    inputs = ("--vary", "friction=0.2:0.4:3", "--vary", "load.force=1:3:3 kN", "--together")
+    assert run("drum", DRUM, *inputs, "--csv", path)[0] == DONE
+    rows = [[float(x) for x in row[:2]] for row in table(path)[1:]]
+    assert rows == [[0.2, 1.0], [pytest.approx(0.3), 2.0], [0.4, 3.0]]
 
 
 # Forklift -----------------------------------------------------------------------------------------------
@@ -229,7 +252,7 @@ def test_files_of_a_forklift(run, tmp_path: Path) -> None:
 
 def test_sweep_of_a_forklift(run, tmp_path: Path) -> None:
     path = tmp_path / "s.csv"
-    options = ("--sweep", "load_mass=0:3500:3 kg", "--result", "distance", "--csv", path)
+    options = ("--vary", "load_mass=0:3500:3 kg", "--what", "distance", "--csv", path)
     code, out, err = run("forklift", FORKLIFT, "--stage", "vehicle", *options)
     assert code == DONE and "1 of 3 cases do not stop" in err and "never" in out
     distances = [float(row[1]) for row in table(path)[1:]]

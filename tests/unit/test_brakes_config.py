@@ -329,7 +329,7 @@ def test_short_keys_mean_the_input_that_must_be_given(key: str, path: str) -> No
 def test_mistakes_in_a_sweep(text: str, parts: list[str]) -> None:
     with pytest.raises(ValueError) as refusal:
         parse_axis(drum_from_dict(DRUM), text)
-    assert [part for part in ["--sweep", *parts] if part not in str(refusal.value)] == []
+    assert [part for part in ["--vary", *parts] if part not in str(refusal.value)] == []
 
 
 def test_an_ambiguous_key_names_its_candidates() -> None:
@@ -347,19 +347,22 @@ def test_an_ambiguous_key_names_its_candidates() -> None:
 def test_a_sweep_is_its_cases_one_by_one() -> None:
     design = drum_from_dict(DRUM)
     axes = [parse_axis(design, text) for text in ("lining_end=60:110:3 deg", "friction=0.2:0.5:2")]
-    found = TORQUE.shown(with_arrays(design, axes).solve())
-    assert found.shape == (2, 3)
+    columns = dict(
+        zip((axis.input.path for axis in axes), np.meshgrid(*(a.values for a in axes)), strict=True)
+    )
+    found = TORQUE.shown(with_arrays(design, {path: grid.ravel() for path, grid in columns.items()}).solve())
+    assert found.shape == (6,)
     for j, mu in enumerate((0.2, 0.5)):
         for i, end in enumerate((60, 85, 110)):
             one = drum_from_dict(changed(DRUM, shoe__lining_end=f"{end} deg", brake__friction=mu)).solve()
-            assert found[j, i] == pytest.approx(one.torque, rel=1e-13)
+            assert found[3 * j + i] == pytest.approx(one.torque, rel=1e-13)
 
 
 def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
-    answer = solve_stages(with_arrays(design, axes))
-    found = input_sweep.sweep(axes, [DISTANCE], [DISTANCE.shown(answer)])
+    answer = solve_stages(with_arrays(design, {axes[0].input.path: axes[0].values}))
+    found = input_sweep.swept(input_sweep.designs_of(axes), [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)
     assert found.to_dict()["inputs"] == ["truck.load_mass"]

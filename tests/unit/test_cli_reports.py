@@ -48,12 +48,12 @@ COMMANDS = {
     "tradeoff": (beamdyn.cli, BLADE, ["--budget", "0.5 s"], 1),
     "equilibrium": (beamdyn.cli, LEANING, ["--speed", "50 rad/s"], 1),
     "drum": (brakes.cli, DRUM, [], 1),
-    "drum --sweep": (brakes.cli, DRUM, ["--sweep", "friction=0.1:0.5:3"], 1),
+    "drum --vary": (brakes.cli, DRUM, ["--vary", "friction=0.1:0.5:3"], 1),
     "forklift": (brakes.cli, FORKLIFT, [], 1),
-    "forklift --sweep": (brakes.cli, FORKLIFT, ["--sweep", "stop.speed=10:20:3 km/h"], 1),
+    "forklift --vary": (brakes.cli, FORKLIFT, ["--vary", "stop.speed=10:20:3 km/h"], 1),
     "caliper": (brakes.cli, OWN, [], 2),
     "caliper of parts": (brakes.cli, CLAMP, [], 2),
-    "caliper --sweep": (brakes.cli, OWN, ["--sweep", "points.right_pad.y=-50:-46:3 mm"], 1),
+    "caliper --vary": (brakes.cli, OWN, ["--vary", "points.right_pad.y=-50:-46:3 mm"], 1),
 }
 
 
@@ -213,9 +213,9 @@ def test_markup_of_a_file_stays_text(tmp_path, capsys):
 
 
 def test_options_cannot_leave_their_comment():
-    asked = Question.of("brakes drum", "a.toml", "x = 1\n", sweep=("a\nx = 2", "b\r\nx = 3"), none=None)
+    asked = Question.of("brakes drum", "a.toml", "x = 1\n", vary=("a\nx = 2", "b\r\nx = 3"), none=None)
     assert tomllib.loads(asked.inputs) == {"x": 1}
-    assert asked.inputs.splitlines()[0].count("--sweep") == 2 and "none" not in asked.inputs
+    assert asked.inputs.splitlines()[0].count("--vary") == 2 and "none" not in asked.inputs
 
 
 def test_commands_load_nothing_for_a_report_that_is_not_asked_for():

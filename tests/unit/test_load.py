@@ -188,7 +188,7 @@ def test_what_a_command_on_brakes_wrote_is_loaded(tmp_path, capsys):
     result = bd.load(path)
     assert isinstance(result, BrakeResult)
     assert float(result.torque) == json.loads(path.read_text())["torque"]
-    sweep = ("drum", drum, "--sweep", "brake.friction=0.2:0.4:3", "--json", str(path), "--force")
+    sweep = ("drum", drum, "--vary", "brake.friction=0.2:0.4:3", "--json", str(path), "--force")
     assert brakes.main([*sweep]) == beams.DONE
     assert isinstance(bd.load(path), InputSweep)
     assert brakes.main(["caliper", "dual-pivot", "--json", str(path), "--force"]) == beams.DONE

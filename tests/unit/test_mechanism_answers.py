@@ -306,8 +306,8 @@ COMMANDS = {
     "forklift": ["forklift", "examples/forklift.toml"],
     "vehicle": ["forklift", "examples/forklift.toml", "--stage", "vehicle"],
     "kinematics": ["forklift", "examples/forklift.toml", "--stage", "kinematics"],
-    "sweep": ["drum", "examples/drum.toml", "--sweep", "friction=0.1:0.3:3"],
-    "sweep of a caliper": ["caliper", "v-brake", "--sweep", "dimensions.lever_ratio=2:3:2"],
+    "sweep": ["drum", "examples/drum.toml", "--vary", "friction=0.1:0.3:3"],
+    "sweep of a caliper": ["caliper", "v-brake", "--vary", "dimensions.lever_ratio=2:3:2"],
 }
 
 

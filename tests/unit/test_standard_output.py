@@ -122,7 +122,7 @@ def test_the_files_are_written_though_the_reader_has_left(run_into, tmp_path):
 WRITING = {
     **{name: (*COMMANDS[name], "--json") for name in ("modes", "critical", "limits", "terms", "drum")},
     "animation": (*COMMANDS["simulate"], "--animation"),
-    "sweep of a brake": (*COMMANDS["drum"], "--sweep", "brake.friction=0.2:0.4:3", "--csv"),
+    "sweep of a brake": (*COMMANDS["drum"], "--vary", "brake.friction=0.2:0.4:3", "--csv"),
     "free bodies": (*COMMANDS["caliper"], "--free-bodies"),
 }
 SUFFIXES = {"animation": ".gif", "free bodies": ".png"}

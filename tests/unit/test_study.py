@@ -2,6 +2,7 @@
 
 import csv
 import pickle
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -9,12 +10,14 @@ import pytest
 import beamdyn as bd
 from beamdyn.cli import main
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.modal.eigen import solve_diagonal
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.studies.inputs import NAMES, scene_of
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-10)), bd.Mount(0.2))
+TOO_MANY = dict.fromkeys(("beam.width", "mount.radius"), np.linspace(1e-3, 2e-2, 4000))
 ROUNDING = 1e-12  # a few ulp of the inputs, times what frequencies amplify them
 TOML = """
 [beam]
@@ -126,10 +129,9 @@ def test_saved_and_pickled(tmp_path):
 
 def test_critical_speeds():
     study = bd.study(SCENE, {"mount.setting_angle": [0.0, np.pi]}, "critical_speed")
-    assert study.value[0] == bd.critical_speed(SCENE) and study.status.tolist() == [
-        "buckles",
-        "does not buckle",
-    ]
+    single = bd.critical_point(SCENE)
+    assert abs(study.value[0] / single.speed - 1) <= study.error[0] + single.error
+    assert study.status.tolist() == ["buckles", "does not buckle"]
     assert np.isinf(study.value[1]) and study.error[1] == 0
 
 
@@ -139,8 +141,8 @@ def test_amplitudes():
     wheel = bd.RollingWheel(rolling_radius=0.3, speed=bd.SteadyRotation(50.0), road=road)
     scene = bd.Scene(SCENE.beam, SCENE.mount, wheel, damping_ratio=0.02)
     study = bd.study(scene, {"model.damping_ratio": [0.02, 0.05], "speed": [20.0, 30.0]}, "amplitude")
-    single = bd.steady_response(study.scene_at(1, 0), [20.0])
-    assert study.value[1, 0] == single.amplitude[0] and study.status[1, 0] == single.status[0]
+    single = bd.steady_response(study.scene_at(1, 0), [20.0, 30.0])  # as the study does: all speeds at once
+    assert np.array_equal(study.value[1], single.amplitude) and study.status[1, 0] == single.status[0]
     assert study.unit == "m" and study.value.shape == (2, 2)
     of_bound = study.error[1, 0] * study.value[1, 0] / single.bound[0]
     np.testing.assert_allclose(of_bound, single.error[0] + single.mode_error[0], rtol=ROUNDING)
@@ -160,6 +162,14 @@ def test_amplitudes():
         ({"beam.thickness": [2e-4], "beam.bending_stiffness": [1.0]}, {}, "bending_stiffness"),
         ({"speed": [1.0]}, {"what": "critical_speed"}, "speed"),
         ({"speed": [1e60]}, {}, "speed"),
+        ({"speed": [1.0]}, {"what": "crossings", "speed": 5.0}, "speed"),
+        ({"mount.radius": [0.1]}, {"what": "crossings"}, "^speed = 0"),
+        ({"mount.radius": [0.1]}, {"what": "peak"}, "scene.motion"),
+        ({"mount.radius": [0.1]}, {"what": "amplitude"}, "scene.motion"),
+        ({"mount.radius": [0.1]}, {"window": (3.0, 2.0)}, "window"),
+        ({"beam.scale.thickness": [1.0, -1.0]}, {}, "^beam.scale.thickness = -1"),
+        ({"beam.scale.second_rotary_inertia": [0.0]}, {}, "^beam.scale.second_rotary_inertia = 0"),
+        (TOO_MANY, {}, "4000 x 4000 values"),
     ],
 )
 def test_refusals_name_the_input(vary, options, named):
@@ -212,10 +222,145 @@ def test_a_tolerance_takes_the_basis_of_a_single_call():
     assert study.error.max() <= 1e-4
 
 
+def test_an_input_given_twice_is_refused():
+    twice = [VariedInput("speed", "rad/s", np.array([1.0, 2.0]))] * 2
+    with pytest.raises(InvalidValue, match=r"speed.: the input is given twice"):
+        check_designs(Designs(twice))
+
+
+def test_designs_are_rows_and_places():
+    inputs = [VariedInput("a", "", np.array([1.0, 2.0])), VariedInput("b", "m", np.array([3.0, 4.0, 5.0]))]
+    designs = Designs(inputs)
+    assert designs.shape == (2, 3) and designs.count == 6
+    columns = designs.columns(slice(2, 5))
+    assert columns["a"].tolist() == [1, 2, 2] and columns["b"].tolist() == [5, 3, 4]
+    assert designs.at(1, 0) == {"a": 2.0, "b": 3.0}
+    assert [*Designs(inputs[:1], "zip").extremes()] == [{"a": 1.0}, {"a": 2.0}]
+    with pytest.raises(ValueError, match="give 2 indices"):
+        designs.at(1)
+
+
+ROAD = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
+
+
+def rolling(duration=0.5, **options):
+    wheel = bd.RollingWheel(0.3, bd.SpinUp(40.0, duration), ROAD)
+    return bd.Scene(SCENE.beam, SCENE.mount, wheel, **options)
+
+
+def test_peaks_are_those_of_sweeps():
+    scene = rolling(damping_ratio=0.02)
+    vary = {"speed": [30.0, 20.0], "beam.thickness": [2e-4, 3e-4]}
+    study = bd.study(scene, vary, "peak", window=(0.5, 0.6))
+    assert study.value.shape == (2, 2) and study.unit == "m"
+    single = bd.sweep(study.scene_at(0, 1), [20.0, 30.0], (0.5, 0.6))
+    assert np.array_equal(study.value[:, 1], single.peaks[::-1])
+    stated = (single.time_error + single.mode_error * single.largest) / single.peaks
+    np.testing.assert_allclose(study.error[:, 1], stated[::-1], rtol=ROUNDING)
+    assert (study.status == "done").all()
+
+
+def test_a_speed_past_the_critical_one_refuses_its_peak_alone():
+    critical = bd.critical_speed(SCENE)
+    study = bd.study(rolling(), {"speed": [20.0, 1.5 * critical]}, "peak", window=(0.5, 0.6))
+    assert study.status.tolist() == ["done", "refused"] and np.isnan(study.value[1])
+    assert any(said.startswith("at 1 of 2 designs there is no answer") for said in study.warnings)
+
+
+def test_where_there_is_no_gravity_there_is_no_line_of_it():
+    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.SteadyRotation(50.0))
+    study = bd.study(scene, {"model.gravity": [0.0, 9.81]}, "crossings", speed=135.0, modes=2)
+    forced = [i for i, label in enumerate(study.labels) if "forced" in label]
+    assert study.labels[forced[0]] == "mode 1, rotation (forced)"
+    assert (study.status[0] == "not excited").all() and np.isnan(study.value[0]).all()
+    found = bd.resonance_speeds(study.scene_at(1), 135.0, 2)
+    assert len(found) == np.isfinite(study.value[1]).sum() > 0
+
+
+def test_model_error_is_that_of_single_calls():
+    study = bd.study(SCENE, {"beam.thickness": [2e-4, 3e-4], "speed": [0.0, 30.0, 60.0]}, modes=2)
+    for place, error in zip(study.left_out_places, study.model_error, strict=True):
+        modes = bd.natural_modes(study.scene_at(*place), study.design(*place)["speed"], 2)
+        # Of frequencies from other bases, within rounding of changes that are differences of them.
+        np.testing.assert_allclose(error, modes.model_error, rtol=1e-6, atol=1e-9)
+    assert {(0, 0), (0, 2), (1, 0), (1, 2)} <= {*study.left_out_places}
+    assert study.to_dict()["model_error"] == study.model_error.tolist()
+
+
+def test_model_error_says_where_it_is_large():
+    bent = bd.study(SCENE, {"mount.setting_angle": [0.0, 0.8], "speed": [0.0, 60.0]})
+    (said,) = bent.model_warnings()
+    assert "at mount.setting_angle = 0.8 rad, speed = 60 rad/s the model error" in said
+
+
+# Where parts are computed and kept --------------------------------------------------------------------
+
+
+def test_a_store_resumes_where_the_executor_broke(tmp_path):
+    vary = {"mount.radius": np.linspace(0.0, 0.3, 3000)}
+    store, whole = tmp_path / "store", bd.study(SCENE, vary)
+
+    class Breaking(ThreadPoolExecutor):
+        left = 2
+
+        def submit(self, *task, **options):
+            self.left -= 1
+            if self.left < 0:
+                raise BrokenExecutor("it broke")
+            return super().submit(*task, **options)
+
+    with Breaking(1) as pool, pytest.raises(bd.StudyInterrupted, match="stored; the same call"):
+        bd.study(SCENE, vary, executor=pool, store=store)
+    kept, calls = {file.name for file in store.iterdir()}, []
+    resumed = bd.study(SCENE, vary, store=store, progress=lambda *done: calls.append(done))
+    assert np.array_equal(resumed.value, whole.value) and np.array_equal(resumed.error, whole.error)
+    assert len({file.name for file in store.iterdir()}) == 4  # three parts and the marker
+    assert kept <= {file.name for file in store.iterdir()} and calls[-1] == (3000, 3000)
+    again = bd.study(SCENE, vary, store=store)
+    assert np.array_equal(again.value, whole.value) and again.warnings == whole.warnings
+
+
+def test_a_damaged_part_is_computed_again(tmp_path):
+    vary = {"mount.radius": [0.1, 0.2]}
+    whole = bd.study(SCENE, vary, store=tmp_path / "store")
+    (part,) = (file for file in (tmp_path / "store").iterdir() if file.name != "store.json")
+    part.write_text(part.read_text()[:-20])
+    again = bd.study(SCENE, vary, store=tmp_path / "store")
+    assert np.array_equal(again.value, whole.value)
+    assert any("its designs were computed again" in said for said in again.warnings)
+
+
+def test_other_requests_find_no_answer_in_the_store(tmp_path):
+    store = tmp_path / "store"
+    bd.study(SCENE, {"mount.radius": [0.1, 0.2]}, store=store)
+    bd.study(SCENE, {"mount.radius": [0.1, 0.2]}, modes=2, store=store)
+    bd.study(SCENE, {"mount.radius": [0.1, 0.25]}, store=store)
+    assert len([*store.iterdir()]) == 4
+
+
+def test_executors_have_few_parts_at_a_time(monkeypatch):
+    """So that a million designs do not stand in memory as tasks."""
+    monkeypatch.setattr("beamdyn.common.parallel.tasks._IN_FLIGHT", 2)
+    most, flying = [0], [0]
+
+    class Counting(ThreadPoolExecutor):
+        def submit(self, *task, **options):
+            flying[0] += 1
+            most[0] = max(most[0], flying[0])
+            future = super().submit(*task, **options)
+            future.add_done_callback(lambda _: flying.__setitem__(0, flying[0] - 1))
+            return future
+
+    with Counting(1) as pool:
+        found = bd.study(SCENE, {"mount.radius": np.linspace(0, 0.3, 5000)}, executor=pool)
+    assert most[0] <= 2 and np.isfinite(found.value).all()
+
+
 @pytest.mark.parametrize("scene", [
-    bd.Scene(SCENE.beam, SCENE.mount, damping_ratio=0.02),
-    bd.Scene(SCENE.beam, bd.Mount(0.2, root_stiffness=0.1)),
-    bd.Scene(SCENE.beam, SCENE.mount, physics=bd.Physics(planes=2)),
+    bd.Scene(SCENE.beam, SCENE.mount, physics=bd.Physics(stretch=True)),
+    bd.Scene(SCENE.beam, bd.Mount(0.2, np.pi, precone=0.1)),
+    bd.Scene(SCENE.beam, bd.Mount(0.2, np.pi, root_stiffness=0.0)),
+    bd.Scene(SCENE.beam, bd.Mount(0.2, np.pi), physics=bd.Physics(planes=2, rotary_inertia=True)),
 ])  # fmt: skip
 def test_what_is_not_batched_is_solved_one_by_one(scene):
     study = bd.study(scene, {"speed": [0.0, 30.0]}, modes=2)
@@ -275,6 +420,26 @@ def test_the_command_writes_what_it_shows(tmp_path, capsys):
     assert head[:3] == ["beam_thickness_m", "speed_rad_per_s", "frequency_1_Hz"]
     assert len(rows) == 4 and float(rows[3][2]) == study.value[1, 1, 0]
     assert files["png"].stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--vary", "beam.thickness=0.1:0.2:3 kg"], "mass"),
+        (["--vary", "beam.thickness=0.1:0.2:3"], "give a unit"),
+        (["--vary", "thickness=0.1:0.2:3 mm", "--vary", "beam.thickness=0.1:0.2:3 mm"], "given twice"),
+        (["--vary", "beam.thickness=:3 mm"], "start:stop:count"),
+        (["--vary", "thickness=0.1:0.2:3 mm", "--vary", "speed=0:1:2 rad/s", "--together"], "3 and 2 values"),
+        (["--vary", "thickness=0.1:0.2:2000 mm", "--vary", "radius=0:1:2000 m"], "at most 1000000 designs"),
+        (["--sweep", "thickness=0.1:0.2:3 mm"], "Did you mean --vary?"),
+        ([], "give --vary"),
+    ],
+)
+def test_the_command_refuses_in_a_sentence(options, said, tmp_path, capsys):
+    (tmp_path / "scene.toml").write_text(TOML)
+    assert main(["study", str(tmp_path / "scene.toml"), *options]) == 2
+    error = capsys.readouterr().err
+    assert said in error and error.count("\n") == 1
 
 
 def test_the_command_refuses_an_unknown_input(tmp_path, capsys):

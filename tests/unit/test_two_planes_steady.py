@@ -23,7 +23,7 @@ from beamdyn.modal.choice import choose_model
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.steady.excitation_phases import periodic_system
-from beamdyn.steady.harmonic_balance import largest_over_phases
+from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.stability import growth_rate
 from beamdyn.tables.results import crossings_table, steady_table, sweep_table
 from beamdyn.tables.rows import crossings_csv, steady_csv, sweep_csv, transient_csv

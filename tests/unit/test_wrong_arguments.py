@@ -180,7 +180,7 @@ CALLS = {
         bd.study,
         {"scene": SCENE, "vary": {"mount.radius": [0.1]}, "what": "frequencies", "speed": 5.0, "modes": 2}
         | {"combine": "product", "discretization": "ritz", "tolerance": 0.1}
-        | {"workers": 1, "executor": None, "progress": None},
+        | {"workers": 1, "executor": None, "progress": None, "store": None, "window": (0.0, 0.02)},
     ),
     "BaseMotion": (bd.BaseMotion, {"direction": "n3"}),
     "PointForce": (bd.PointForce, {"position": 0.02, "direction": "bending"}),
@@ -229,6 +229,7 @@ SAID_AS = {"driver": "load"}  # in messages
 ALLOWED = {
     **{f"Physics.{name}": {"truth", "numpy's truth"} for name in SWITCHES},
     "sweep.store": {"text"},
+    "study.store": {"text"},
     "campbell.bounds": {"truth", "numpy's truth"},
     "sweep.progress": {"class"},
     "tradeoff.progress": {"class"},

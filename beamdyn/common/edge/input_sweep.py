@@ -1,25 +1,28 @@
-"""Sweeps of any input of a file, such as "stop.speed=10:30:9 km/h", against any result."""
+"""Any input of a file that is varied, such as "stop.speed=10:30:9 km/h", against any result."""
 
 from __future__ import annotations
 
 import difflib
-import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, get_args, get_origin
 
 import numpy as np
 
+from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results import Result
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(.*?)\s*")
 MOST_AT_ONCE = 100_000  # cases at once, of arrays
 MOST_ONE_BY_ONE = 2000  # cases, each solved by itself: minutes
+_CHUNK = 16  # cases of a task, each solved by itself
 
 
 @dataclass(frozen=True)
@@ -83,20 +86,24 @@ class Output:
 
 @dataclass(frozen=True)
 class InputSweep(Result):
-    """Results over one or two inputs.
+    """Results over inputs.
+
+    The shape (n1, ..., nd) has an axis for each input, in order, or one for all that are taken together.
 
     Attributes
     ----------
     inputs, units : tuple of str
         Keys of the inputs, and the units in which their values are given.
-    values : tuple of ndarray
-        Their values, n of the first and, if there is a second, m of it.
+    values : tuple of ndarray, shape (n,)
+        Their values.
     results, result_units : tuple of str
         Names of the results and their units.
-    found : tuple of ndarray, shape (n,) or (m, n)
+    found : tuple of ndarray, shape (n1, ..., nd)
         The results as arrays; nan or inf where there is none.
     warnings : tuple of str
         Where there is no answer, and why.
+    combine : {"product", "zip"}
+        Whether the inputs are combined each with each, or taken together.
     """
 
     inputs: tuple[str, ...]
@@ -106,6 +113,13 @@ class InputSweep(Result):
     result_units: tuple[str, ...]
     found: tuple[np.ndarray, ...]
     warnings: tuple[str, ...] = ()
+    combine: str = "product"
+
+    @property
+    def designs(self) -> Designs:
+        """The designs, with values as they are given."""
+        each = zip(self.inputs, self.units, self.values, strict=True)
+        return Designs([VariedInput(*one) for one in each], self.combine)
 
 
 # Inputs and their values --------------------------------------------------------------------------------
@@ -143,7 +157,7 @@ def _numbers(entry: Input) -> Iterator[Input]:
         yield entry
 
 
-def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> Axis:
+def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most: int = MOST_AT_ONCE) -> Axis:
     """An input and its values.
 
     Parameters
@@ -155,6 +169,8 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> A
         among the inputs that must be given.
     option : str
         Its name, for messages.
+    most : int
+        Largest count.
 
     Raises
     ------
@@ -169,20 +185,10 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--sweep") -> A
         form = f"{entry.path}=1:2:11 {entry.quantity.unit}".strip()
         raise ValueError(f'{words}: give KEY=start:stop:count unit, e.g. "{form}"')
     start, stop, count = float(match[1]), float(match[2]), int(match[3])
-    if not 2 <= count <= MOST_AT_ONCE or start == stop:
-        raise ValueError(f"{words}: give two different ends, and a count from 2 to {MOST_AT_ONCE}")
+    if not 2 <= count <= most or start == stop:
+        raise ValueError(f"{words}: give two different ends, and a count from 2 to {most}")
     low, high = (_in_si(entry, number, match[4], words) for number in (match[1], match[2]))
     return Axis(entry, match[4], np.linspace(start, stop, count), np.linspace(low, high, count))
-
-
-def check_cases(axes: Sequence[Axis], most: int = MOST_AT_ONCE, option: str = "--sweep") -> None:
-    """Refuse a sweep of more cases than `most`; `option` is its name in the message."""
-    counts = [len(axis.values) for axis in axes]
-    if math.prod(counts) > most:
-        raise ValueError(
-            f"{option}: {' x '.join(map(str, counts))} values; at most {most} cases are solved: "
-            "give a smaller count"
-        )
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
@@ -214,7 +220,7 @@ def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
     return f"unknown name {key!r}; {advice}"
 
 
-def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> list[Output]:
+def chosen(outputs: Sequence[Output], names: str, option: str = "--what") -> list[Output]:
     """The outputs with these names, separated by commas.
 
     Raises
@@ -232,77 +238,155 @@ def chosen(outputs: Sequence[Output], names: str, option: str = "--result") -> l
     return [known[name] for name in dict.fromkeys(wanted)]
 
 
-# The sweep ----------------------------------------------------------------------------------------------
+# The cases ----------------------------------------------------------------------------------------------
 
 
-def sweep(
-    axes: Sequence[Axis], outputs: Sequence[Output], found: Sequence[Any], warnings: Sequence[str] = ()
+def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
+    """The designs of inputs, with values as they are given."""
+    return Designs([VariedInput(axis.input.path, axis.unit, axis.given) for axis in axes], combine)
+
+
+def swept(
+    designs: Designs, outputs: Sequence[Output], found: Sequence[Any], warnings: Sequence[str] = ()
 ) -> InputSweep:
     """Results over inputs.
 
     Parameters
     ----------
-    axes : sequence of Axis
-        One or two inputs.
+    designs : Designs
+        The designs.
     outputs : sequence of Output
         What is wanted.
-    found : sequence of array
-        The values of each output, as shown; they broadcast to shape (n,), or (m, n) with two axes.
+    found : sequence of array, shape (N,) or ()
+        The values of each output in all designs, as shown.
     warnings : sequence of str
         Where there is no answer, and why.
     """
-    shape = tuple(len(axis.values) for axis in reversed(axes))
+    of_all = (np.broadcast_to(values, (designs.count,)).reshape(designs.shape) for values in found)
     return InputSweep(
-        inputs=tuple(axis.input.path for axis in axes),
-        units=tuple(axis.unit for axis in axes),
-        values=tuple(axis.given for axis in axes),
+        inputs=tuple(each.name for each in designs.inputs),
+        units=tuple(each.unit for each in designs.inputs),
+        values=tuple(each.values for each in designs.inputs),
         results=tuple(output.name for output in outputs),
         result_units=tuple(output.unit for output in outputs),
-        found=tuple(np.broadcast_to(values, shape) for values in found),
+        found=tuple(of_all),
         warnings=tuple(warnings),
+        combine=designs.combine,
     )
 
 
-def one_by_one(
-    tables: Mapping[str, Any],
-    axes: Sequence[Axis],
-    outputs: Sequence[Output],
-    solve: Callable[[Mapping[str, Any]], Any],
-) -> InputSweep:
-    """Sweep case by case, for designs that take no arrays.
+@dataclass(frozen=True)
+class SolvedCases:
+    """Results of some cases.
+
+    Parameters
+    ----------
+    values : ndarray, shape (r, R)
+        Each result of each case, as shown; nan where there is none.
+    refused : tuple of int
+        Cases without an answer.
+    why : tuple of str
+        Why there is none.
+    """
+
+    values: np.ndarray
+    refused: tuple[int, ...]
+    why: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CaseTask:
+    """Cases that are solved one by one.
 
     Parameters
     ----------
     tables : mapping
         The design as the parser of files gives it.
     axes : sequence of Axis
-        One or two inputs.
+        The inputs.
+    given : ndarray, shape (R, d)
+        Their values in each case [the axes' units].
+    outputs : tuple of str
+        Names of the results that are wanted.
+    """
+
+    tables: Mapping[str, Any]
+    axes: Sequence[Axis]
+    given: np.ndarray
+    outputs: tuple[str, ...]
+
+
+Solve = Callable[[Mapping[str, Any]], Any]
+
+
+def one_by_one(
+    tables: Mapping[str, Any],
+    axes: Sequence[Axis],
+    outputs: Sequence[Output],
+    solve: Callable[[CaseTask], SolvedCases],
+    combine: str = "product",
+    run: TaskRunner | None = None,
+) -> InputSweep:
+    """Solve the designs of inputs one by one, where they take no arrays.
+
+    Parameters
+    ----------
+    tables : mapping
+        The design as the parser of files gives it.
+    axes : sequence of Axis
+        The inputs.
     outputs : sequence of Output
         What is wanted.
     solve : callable
-        Tables in, answer out.
+        Solves the cases of a task, as `solve_cases` does.
+    combine : {"product", "zip"}
+        How the inputs are combined.
+    run : TaskRunner, optional
+        Where they are solved; in this process if not given.
 
     Raises
     ------
     NoAnswer
-        If there is no answer at any value; the message says why there is none at the first.
+        If there is an answer of no design; the message says why there is none of the first.
     """
-    shape = tuple(len(axis.values) for axis in reversed(axes))
-    results, refusals = np.full((len(outputs), *shape), np.nan), []
-    for place in np.ndindex(shape):
-        given = [float(axis.given[i]) for axis, i in zip(axes, reversed(place), strict=True)]
-        design = tables
-        for axis, value in zip(axes, given, strict=True):
+    designs, run = designs_of(axes, combine), run or TaskRunner()
+    results, refusals = np.full((len(outputs), designs.count), np.nan), dict[int, str]()
+    names = tuple(output.name for output in outputs)
+
+    def make(rows: slice) -> CaseTask:
+        return CaseTask(tables, tuple(axes), np.stack([*designs.columns(rows).values()], axis=1), names)
+
+    def keep(rows: slice, found: SolvedCases) -> None:
+        results[:, rows] = found.values
+        refusals.update(zip((rows.start + i for i in found.refused), found.why, strict=True))
+
+    tasks = [Task(partial(make, rows), rows.stop - rows.start, rows) for rows in designs.chunks(_CHUNK)]
+    run.run(solve, tasks, keep)
+    if not refusals:
+        return swept(designs, outputs, [*results], run.warnings)
+    first = min(refusals)
+    where = designs.at(*map(int, np.unravel_index(first, designs.shape)))
+    said = f"{_at(axes, [*where.values()])}: {refusals[first]}"
+    if len(refusals) == designs.count:
+        raise NoAnswer(f"at none of {len(refusals)} values is there an answer; {said}")
+    none = f"at {len(refusals)} of {designs.count} values there is no answer; {said}"
+    return swept(designs, outputs, [*results], [none, *run.warnings])
+
+
+def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> SolvedCases:
+    """Solve the cases of a task: tables go into `solve`, and an answer comes out."""
+    wanted = {output.name: output for output in outputs}
+    values, refused = np.full((len(task.outputs), len(task.given)), np.nan), dict[int, str]()
+    for case, given in enumerate(task.given.tolist()):
+        design = task.tables
+        for axis, value in zip(task.axes, given, strict=True):
             design = placed(design, axis, value)
         try:
             answer = solve(design)
-            results[(slice(None), *place)] = [float(output.shown(answer)) for output in outputs]
+            values[:, case] = [float(wanted[name].shown(answer)) for name in task.outputs]
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            refusals.append(f"{_at(axes, given)}: {error}")
-    if len(refusals) == results[0].size:
-        raise NoAnswer(f"at none of {len(refusals)} values is there an answer; {refusals[0]}")
-    none = f"at {len(refusals)} of {results[0].size} values there is no answer; " if refusals else ""
-    return sweep(axes, outputs, [*results], [none + refusals[0]] if refusals else [])
+            refused[case] = str(error)
+    return SolvedCases(values, tuple(refused), tuple(refused.values()))
 
 
 def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
@@ -346,9 +430,8 @@ def sweep_csv(swept: InputSweep) -> Iterator[Sequence[object]]:
 
 
 def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:
-    """Inputs and results, one row a case; the first input changes fastest."""
-    grids = np.meshgrid(*swept.values, indexing="xy") if len(swept.values) > 1 else swept.values
-    cells = [np.ravel(values) for values in (*grids, *swept.found)]
+    """Inputs and results, one row a case; the last input changes fastest."""
+    cells = [*swept.designs.columns().values(), *(np.ravel(values) for values in swept.found)]
     for row in zip(*(column.tolist() for column in cells), strict=True):
         yield [*row]
 

@@ -16,6 +16,8 @@ from beamdyn.common.edge.file_words import as_in_files
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
+_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # under which options are looked for
+
 EXIT_CODES = (
     "Exit codes: 0 done; 1 the model has no answer (the message says why and where); "
     "2 bad input; 130 interrupted."
@@ -80,8 +82,10 @@ def _call(app: App, arguments: Sequence[str]) -> None:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """The message, with the option that takes the word after the unknown one: "ritz" is a discretization."""
+    """The message, with the option that is meant: under another name, or as it takes the word given."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
+    if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
+        return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
     words = [word for text in given for word in text.split("=", 1)]
     value = "".join(words[words.index(option) + 1 :][:1]) if option in words else ""
     for argument in error.argument_collection:

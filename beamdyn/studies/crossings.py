@@ -1,0 +1,186 @@
+"""Resonance speeds: of designs that differ in numbers only by batched eigenproblems, without a search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from beamdyn.common.designs import Designs, rows_of
+from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.ritz import Ritz
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.modal.many_designs import speeds_of_meeting
+from beamdyn.modal.model import Model
+from beamdyn.scene.motion import Line
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
+from beamdyn.studies.answers import Caution, DesignAnswers, caution_where
+from beamdyn.studies.frequencies import cautions_of_error, coarser_stack
+from beamdyn.studies.inputs import scene_of
+from beamdyn.studies.refinement import Found, Refinement
+from beamdyn.studies.similar import SimilarDesigns
+
+RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
+_FEW = Ritz(6)  # in which the lines of a scene are found: they do not depend on the functions
+_PROBED = 16  # designs whose lines are looked for, beside the extremes
+_MOST_EXTREMES = 4  # inputs of which all extremes are looked at
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """A mode and a line that it may meet.
+
+    Parameters
+    ----------
+    kind : {"forced", "parametric"}
+        As of `Crossing`.
+    line : Line
+        The line.
+    mode : int
+        Number of the mode, from 1.
+    """
+
+    kind: str
+    line: Line
+    mode: int
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return f"mode {self.mode}, {self.line.name} ({self.kind})"
+
+    @property
+    def key(self) -> tuple[str, float, int]:
+        """What tells it from others."""
+        return self.kind, round(self.line.multiple, 9), self.mode
+
+    @property
+    def multiple(self) -> float:
+        """The frequency of the mode over the speed, where it resonates."""
+        return self.line.multiple / (2 if self.kind == "parametric" else 1)
+
+
+@lru_cache(maxsize=64)
+def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
+    """Kinds and lines of first order that excite the beam of a scene."""
+    system = periodic_system(Model(scene, _FEW).equations, scene.motion, np.array([top]))
+    kinds = zip(("forced", "parametric"), excitation_lines(system, scene.motion, 1), strict=True)
+    return tuple((kind, line) for kind, lines in kinds for line in lines)
+
+
+def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[Resonance, ...]:
+    """The resonances that may occur in the designs: those of the extremes, and of others spread evenly."""
+    rows = np.unique(np.linspace(0, designs.count - 1, min(designs.count, _PROBED)).round().astype(int))
+    probed = rows_of(designs.columns(rows)) if designs.inputs else [{}]
+    if designs.combine == "product" and len(designs.inputs) <= _MOST_EXTREMES:
+        probed += [*designs.extremes()]
+    found: dict[tuple[str, float], tuple[str, Line]] = {}
+    for design in probed:
+        for kind, line in lines_of(scene_of(scene, design), top):
+            found.setdefault((kind, round(line.multiple, 9)), (kind, line))
+    each = (found[key] for key in sorted(found))
+    return tuple(Resonance(kind, line, mode) for kind, line in each for mode in range(1, modes + 1))
+
+
+@dataclass(frozen=True)
+class SimilarCrossings(FieldsOnly):
+    """The resonance speeds of similar designs.
+
+    Parameters
+    ----------
+    designs : SimilarDesigns
+        N designs.
+    scene : Scene
+        The scene that is varied: its motion and gravity excite the beam.
+    resonances : tuple of Resonance
+        Those that are sought, c in all.
+    top : float
+        Top speed [rad/s].
+    modes : int
+        Number of modes.
+    discretization, tolerance
+        As for `natural_modes`.
+    """
+
+    designs: SimilarDesigns
+    scene: Scene
+    resonances: Sequence[Resonance]
+    top: float
+    modes: int
+    discretization: DiscretizationChoice
+    tolerance: float | None
+
+    def answers(self) -> DesignAnswers:
+        """The answers (N, 1, c) of the designs, with what limits them."""
+        refinement = Refinement(self.designs.reference, self.modes, self.discretization, self.tolerance)
+        multiples = np.unique([each.multiple for each in self.resonances])
+
+        def solve(rows: np.ndarray, basis: Discretization) -> Found:
+            return self._solve_batch(rows, basis, refinement.target_of(basis), multiples)
+
+        found, functions = refinement.solve(self.designs.count, len(multiples), solve)
+        places = [(int(np.searchsorted(multiples, r.multiple)), r.mode - 1) for r in self.resonances]
+        speed, error = (np.stack([values[:, i, j] for i, j in places], axis=1)[:, None] for values in found)
+        resonates = np.isfinite(speed)
+        status = np.where(resonates, RESONATES, NO_RESONANCE)
+        excited = self._excited()[:, None]
+        status = np.where(excited, status, NO_LINE)
+        speed = np.where(resonates & excited, speed, np.nan)
+        error = np.where(resonates & excited, error, 0.0)
+        method = f"Ritz, at most {functions} functions, batched"
+        return DesignAnswers(speed, error, status, (*self._cautions(error, excited),), method)
+
+    def _solve_batch(
+        self, rows: np.ndarray, basis: Discretization, target: float, multiples: np.ndarray
+    ) -> Found:
+        designs = self.designs
+        family, weights, time = designs.family(basis), designs.weights(rows), designs.time[rows]
+        stack = family.stack(weights)
+        coarse, estimate = coarser_stack(designs, basis, family, stack, weights), designs.estimate(basis)
+        top = self.top * time
+        speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, self.modes, top, estimate)
+        critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, estimate)[0]
+        speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
+        met = np.isinf(speed) | (error <= np.maximum(target, 3 * rounding))
+        return Found((speed / time[:, None, None], error), _of_each(met))
+
+    def _excited(self) -> np.ndarray:
+        """Which of the resonances (N, c) have a line in each design.
+
+        The lines depend on whether the load has a component in the direction of bending, and on gravity.
+        """
+        columns = {
+            n: v for n, v in self.designs.columns.items() if n in ("mount.bending_angle", "model.gravity")
+        }
+        if not columns:
+            return np.broadcast_to(self._has_line({}), (self.designs.count, len(self.resonances)))
+        kinds = np.stack([_kind_of(name, values) for name, values in columns.items()], axis=1)
+        _, first, kind = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
+        designs = [{name: float(values[i]) for name, values in columns.items()} for i in first]
+        return np.array([self._has_line(design) for design in designs])[kind.ravel()]
+
+    def _has_line(self, design: Mapping[str, float]) -> np.ndarray:
+        there = {
+            (kind, round(line.multiple, 9)) for kind, line in lines_of(scene_of(self.scene, design), self.top)
+        }
+        return np.array([resonance.key[:2] in there for resonance in self.resonances])
+
+    def _cautions(self, error: np.ndarray, excited: np.ndarray) -> Iterator[Caution]:
+        yield from cautions_of_error(error, self.tolerance)
+        yield from caution_where(np.logical_not(excited).all(axis=2), "g", 0.0, " nothing excites the beam")
+
+
+def _of_each(met: np.ndarray) -> np.ndarray:
+    """Whether all of a design (N, L, k) are met, (N,)."""
+    return np.asarray(np.all(met, axis=(1, 2)))
+
+
+def _kind_of(name: str, values: np.ndarray) -> np.ndarray:
+    """Classes (N,) of values that differ in whether a component vanishes."""
+    if name == "model.gravity":
+        return values != 0
+    return (np.abs(np.cos(values)) > 1e-15) * 2 + (np.abs(np.sin(values)) > 1e-15)

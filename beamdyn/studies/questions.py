@@ -1,0 +1,92 @@
+"""What a study can be asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.crossings import Resonance
+
+OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of answer.
+
+    Parameters
+    ----------
+    word : str
+        What one number is.
+    unit : str
+        Its unit.
+    has_speed : bool
+        Whether it belongs to a speed, which may be varied.
+    needs_motion : bool
+        Whether it is one of the scene's motion.
+    """
+
+    word: str
+    unit: str
+    has_speed: bool
+    needs_motion: bool = False
+
+
+KINDS = {
+    "frequencies": Kind("frequency", "Hz", True),
+    "critical_speed": Kind("critical speed", "rad/s", False),
+    "crossings": Kind("resonance speed", "rad/s", False),
+    "amplitude": Kind("steady amplitude", "m", True, needs_motion=True),
+    "peak": Kind("peak", "m", True, needs_motion=True),
+}
+
+
+@dataclass(frozen=True)
+class StudyQuestion:
+    """What is asked of every design.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, of which inputs are replaced.
+    what : str
+        Name of the answer in `KINDS`.
+    speed : float
+        Speed of designs without one of their own, top speed of crossings [rad/s].
+    modes : int
+        Number of modes.
+    discretization, tolerance
+        As for `natural_modes`; the tolerance of responses and peaks as for `steady_response` and `sweep`.
+    window : tuple of float
+        Window of time of a peak [s].
+    resonances : sequence of Resonance
+        Those that crossings are sorted by.
+    """
+
+    scene: Scene
+    what: str
+    speed: float
+    modes: int
+    discretization: DiscretizationChoice
+    tolerance: float | None
+    window: tuple[float, float] = (20.0, 30.0)
+    resonances: Sequence[Resonance] = ()
+
+    @property
+    def kind(self) -> Kind:
+        """The kind of its answer."""
+        return KINDS[self.what]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the numbers of a design, where it has several."""
+        if self.what == "crossings":
+            return tuple(each.label for each in self.resonances)
+        return tuple(f"mode {i + 1}" for i in range(self.modes)) if self.what == "frequencies" else ()
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers the answer of a design has."""
+        return len(self.labels) if self.what in ("frequencies", "crossings") else 1

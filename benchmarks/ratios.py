@@ -1,0 +1,109 @@
+"""What transients, sweeps and steady responses cost over one stock integrator's run.
+
+Run: python -m benchmarks.ratios            (two minutes)
+
+The stock run is Table 3's transient by solve_ivp's Radau, with right-hand side and Jacobian by hand, as in
+`benchmarks.transient`; all is measured in one run of this program.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from functools import cache
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks import motions
+from benchmarks.cases.scenes import ROLLING, STEADY_ROLLING
+from benchmarks.rows import Row, best_time, show
+from benchmarks.sweep import run_sweep
+from benchmarks.transient import MODES, STOCK, T_END, solve_stock
+
+TOLERANCE, RUNS = 1e-5, 5
+IMPORTS = {
+    "import and first natural_modes": (
+        "import beamdyn as bd; "
+        "beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0); "
+        "bd.natural_modes(bd.Scene(beam, bd.Mount(0.215)), 50.0, 3)"
+    ),
+    "import scipy.linalg": "import scipy.linalg",
+}
+
+
+@cache
+def time_radau() -> float:
+    """Time of the stock run [s]."""
+    return solve_stock(*STOCK[0])[1]
+
+
+def compare_transients() -> Iterator[Row]:
+    """The stock run over ours, and ours with modes by the tolerance over ours with the basis it chose."""
+    chosen = bd.simulate(ROLLING, T_END, tolerance=TOLERANCE).request
+    runs = [
+        (
+            time_once(lambda: bd.simulate(ROLLING, T_END, MODES, TOLERANCE)),
+            time_once(lambda: bd.simulate(ROLLING, T_END, tolerance=TOLERANCE)),
+            time_once(chosen.run),
+        )
+        for _ in range(RUNS)
+    ]
+    ours, by_tolerance, plain = (median(times) for times in zip(*runs, strict=True))
+    radau = time_radau()
+    yield "Table 3's transient by solve_ivp Radau, rtol 1e-6 [s]", f"{radau:.1f}", ""
+    yield f"... over ours, {MODES} modes, tolerance 1e-5, median of {RUNS}", f"{radau / ours:.0f}", "800"
+    ratio = f"{by_tolerance / plain:.2f}"
+    yield "modes by the tolerance, over the plain run of what they chose, medians", ratio, "1.5"
+
+
+def compare_sweeps() -> Iterator[Row]:
+    """Sweeps of 151 speeds on two workers, over the stock run."""
+    for modes, name, bound in ((MODES, f"{MODES} modes", "0.10"), ("auto", "modes by the tolerance", "0.12")):
+        ratio = f"{run_sweep(modes)[1] / time_radau():.3f}"
+        yield f"sweep of 151 speeds, 1e-5, two workers, {name}, over the Radau run", ratio, bound
+
+
+def compare_steady() -> Iterator[Row]:
+    """The steady response at 1000 speeds, over the stock run."""
+    speeds = np.linspace(1, 150, 1000)
+    time = best_time(lambda: bd.steady_response(STEADY_ROLLING, speeds, 3))
+    ratio = f"{time / time_radau():.4f}"
+    yield "steady response at 1000 speeds, 3 modes, over the Radau run", ratio, "0.006"
+
+
+def compare_record() -> Iterator[Row]:
+    """A minute of a record at 1 kHz, over Table 3's transient."""
+    runs = [motions.time_beside_table_3(motions.record(), 60.0, 1e-3) for _ in range(3)]
+    record, table_3 = np.min(runs, axis=0)
+    name = "a minute of a 1 kHz record, 1e-3, modes by the tolerance, over Table 3's transient"
+    yield name, f"{record / table_3:.0f}", "20"
+
+
+def compare_import() -> Iterator[Row]:
+    """Import and a first answer, over the import of scipy.linalg, each in fresh processes."""
+    programs = [[sys.executable, "-c", program] for program in IMPORTS.values()]
+    runs = [[time_once(lambda p=p: subprocess.run(p, check=True)) for p in programs] for _ in range(RUNS)]
+    first, scipy_linalg = np.min(runs, axis=0)
+    yield f"{' over '.join(IMPORTS)}, least of {RUNS}", f"{first / scipy_linalg:.2f}", "1.5"
+
+
+def time_once(action: Callable[[], object]) -> float:
+    """Wall time of a call [s]."""
+    start = perf_counter()
+    action()
+    return perf_counter() - start
+
+
+PARTS = compare_transients, compare_sweeps, compare_steady, compare_record, compare_import
+
+
+def main() -> None:
+    show("ratios", *PARTS)
+
+
+if __name__ == "__main__":
+    main()
