@@ -59,13 +59,7 @@ _NAMES = {
     "scene.scene": ("Scene",),
     "spectrum.backbone": ("Backbone", "backbone"),
     "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
-    "spectrum.critical": (
-        "CriticalPoint",
-        "SettingAngleLimits",
-        "critical_point",
-        "critical_speed",
-        "setting_angle_limits",
-    ),
+    "spectrum.critical": ("CriticalPoint", "critical_point", "critical_speed"),
     "spectrum.equilibria": (
         "Equilibrium",
         "EquilibriumBranch",
@@ -73,7 +67,9 @@ _NAMES = {
         "equilibrium",
         "equilibrium_branches",
     ),
-    "spectrum.modes": ("Locus", "Modes", "frequency_locus", "natural_modes"),
+    "spectrum.locus": ("Locus", "frequency_locus"),
+    "spectrum.modes": ("Modes", "natural_modes"),
+    "spectrum.setting_angles": ("SettingAngleLimits", "setting_angle_limits"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
     "common.designs": ("VariedInput",),
@@ -83,8 +79,9 @@ _NAMES = {
     "tradeoffs": ("Tradeoff", "tradeoff"),
     "transient.chunk_collector": ("SweepInterrupted",),
     "transient.gauss": ("GaussCollocation",),
-    "transient.simulate": ("Transient", "simulate"),
+    "transient.simulate": ("simulate",),
     "transient.sweep": ("Sweep", "sweep"),
+    "transient.transient": ("Transient",),
 }
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
 __all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
@@ -142,13 +139,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
-    from beamdyn.spectrum.critical import (
-        CriticalPoint,
-        SettingAngleLimits,
-        critical_point,
-        critical_speed,
-        setting_angle_limits,
-    )
+    from beamdyn.spectrum.critical import CriticalPoint, critical_point, critical_speed
     from beamdyn.spectrum.equilibria import (
         Equilibrium,
         EquilibriumBranch,
@@ -156,7 +147,9 @@ if TYPE_CHECKING:
         equilibrium,
         equilibrium_branches,
     )
-    from beamdyn.spectrum.modes import Locus, Modes, frequency_locus, natural_modes
+    from beamdyn.spectrum.locus import Locus, frequency_locus
+    from beamdyn.spectrum.modes import Modes, natural_modes
+    from beamdyn.spectrum.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.studies.result import Study
@@ -164,8 +157,9 @@ if TYPE_CHECKING:
     from beamdyn.tradeoffs import Tradeoff, tradeoff
     from beamdyn.transient.chunk_collector import SweepInterrupted
     from beamdyn.transient.gauss import GaussCollocation
-    from beamdyn.transient.simulate import Transient, simulate
+    from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, sweep
+    from beamdyn.transient.transient import Transient
 
 
 def __getattr__(name: str) -> Any:

@@ -5,16 +5,29 @@ Held against the power series, published tables and the published harvester.
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from time import process_time
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 import beamdyn as bd
 from benchmarks.cases.scenes import HARVESTER, generated_cases, of_case, published_cases
 from benchmarks.cases.uniform_blade import computed_eigenvalues, exact_eigenvalues
-from benchmarks.rows import Row, best_time, show
+from benchmarks.peers import pybmodes
+from benchmarks.peers.ours import BLADE_SCENE
+from benchmarks.rows import Row, best_time, show, time_text
+
+_CALLS = 50  # of milliseconds, of which the shortest counts
+_FIRST_CALL = """
+import beamdyn as bd
+bd.natural_modes(bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0)), 1.0)
+"""
 
 
 def compare_with_tables() -> Iterator[Row]:
@@ -86,7 +99,36 @@ def time_locus() -> Iterator[Row]:
     yield "beamdyn --help [s]", f"{help_time:.2f}", "0.5"
 
 
-PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus
+def time_one_call() -> Iterator[Row]:
+    """Times of one call for a uniform blade, beside a peer with 5 elements, and of the first call."""
+    scenes = (
+        replace(BLADE_SCENE, beam=replace(BLADE_SCENE.beam, length=1 + 1e-13 * k)) for k in range(_CALLS)
+    )
+    built, speed = iter([*scenes]), 6.0
+    with threadpool_limits(1):
+        call = partial(bd.natural_modes, speed=speed, modes=1, tolerance=1e-3)
+        ours = best_time(lambda: call(next(built)), _CALLS, process_time)
+    said, what = "not installed", f"one call, tolerance 1e-3, over {pybmodes.NAME} with 5 elements"
+    if pybmodes.version() is not None:
+        with threadpool_limits(1), pybmodes.model(pybmodes.deck(5, speed), pybmodes.SECTIONS) as blade:
+            theirs = best_time(lambda: blade.run(n_modes=1, check_model=False), _CALLS, process_time)
+        said = f"{ours / theirs:.2f}"
+    yield f"uniform blade: {what}", f"{said} ({time_text(ours)})", "0.5"
+    ratio = time_process(_FIRST_CALL) / time_process("import scipy.linalg")
+    yield "import and first call over `import scipy.linalg`", f"{ratio:.2f}", "1.5"
+
+
+def time_process(script: str) -> float:
+    """Shortest time of the processor [s] of fresh processes that run a script."""
+
+    def taken() -> float:
+        usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return usage.ru_utime + usage.ru_stime
+
+    return best_time(lambda: subprocess.run([sys.executable, "-c", script], check=True), 5, taken)
+
+
+PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus, time_one_call
 
 
 def main() -> None:

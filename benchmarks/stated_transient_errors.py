@@ -23,7 +23,7 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.transient.elastica_system import ElasticaSystem
-from beamdyn.transient.simulate import Transient
+from beamdyn.transient.transient import Transient
 from benchmarks.cases.random_physics import random_still_scene
 from benchmarks.cases.random_scenes import random_beam
 from benchmarks.resumable import Cases, add_options

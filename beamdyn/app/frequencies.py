@@ -19,7 +19,7 @@ from beamdyn.output.campbell import Curves, plot_campbell
 from beamdyn.output.notes import note_below
 from beamdyn.output.plots import mark_critical
 from beamdyn.spectrum.critical import CriticalPoint
-from beamdyn.spectrum.modes import Locus
+from beamdyn.spectrum.locus import Locus
 from beamdyn.steady.resonance import Crossings
 from beamdyn.tables.results import crossings_table, locus_table
 from beamdyn.tables.rows import locus_csv

@@ -11,7 +11,7 @@ from beamdyn.modal.error_estimate import solve_with_error
 from beamdyn.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modal.plane_share import plane_share
 from beamdyn.scene.motion import Line
-from beamdyn.spectrum.modes import Locus
+from beamdyn.spectrum.locus import Locus
 
 
 @dataclass(frozen=True)

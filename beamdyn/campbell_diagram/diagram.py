@@ -22,7 +22,7 @@ from beamdyn.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
-from beamdyn.spectrum.modes import Locus, frequency_locus
+from beamdyn.spectrum.locus import Locus, frequency_locus
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
 from beamdyn.steady.left_out_of_resonances import left_out_of_crossings
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamdyn.campbell_diagram.crossings import LineCrossing
 from beamdyn.scene.motion import Line
-from beamdyn.spectrum.modes import Locus
+from beamdyn.spectrum.locus import Locus
 
 AT_RATED, IN_RANGE = "rated speed", "operating range"
 

@@ -25,7 +25,8 @@ from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from beamdyn.spectrum.modes import Locus, Modes
+    from beamdyn.spectrum.locus import Locus
+    from beamdyn.spectrum.modes import Modes
 
 
 @app.command

@@ -30,7 +30,7 @@ from beamdyn.common.edge.program import Interrupted
 if TYPE_CHECKING:
     import numpy as np
 
-    from beamdyn.transient.simulate import Transient
+    from beamdyn.transient.transient import Transient
 
 Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 

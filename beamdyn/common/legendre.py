@@ -41,6 +41,18 @@ def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return total
 
 
+def integrate_series(series: np.ndarray) -> np.ndarray:
+    """Integrate Legendre series in columns (m, c) from 1: shape (m + 1, c).
+
+    The derivative of P_{k+1} - P_{k-1} is (2k + 1) P_k.
+    """
+    parts = series / (2 * np.arange(len(series))[:, None] + 1)
+    integral = np.concatenate([np.zeros_like(series[:1]), parts])
+    integral[: len(series) - 1] -= parts[1:]
+    integral[0] -= integral.sum(axis=0)
+    return integral
+
+
 def _times_argument(series: np.ndarray) -> np.ndarray:
     """Multiply series in columns by t, without the term of highest degree, which is to be 0."""
     k = np.arange(len(series))[:, None]

@@ -61,13 +61,18 @@ class ArcQuadrature:
 
     def integrate(self, values: np.ndarray) -> np.ndarray:
         """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
-        p, of_functions = self.cells.points, values.shape[:-1]
-        of_cells = (values.reshape(-1, p) @ _to_points_and_end(p)).reshape(*of_functions, self._count, p + 1)
-        of_cells *= self._half_lengths
-        ends = np.cumsum(of_cells[..., p], axis=-1)
-        of_cells[..., 1:, :p] += ends[..., :-1, None]
-        inside = of_cells[..., :p].reshape(*of_functions, self._count * p)
-        return np.concatenate([inside, ends[..., -1:]], axis=-1)
+        p, N = self.cells.points, len(self.xi)
+        of_cells = values.reshape(-1, p)
+        shape = *values.shape[:-1], self._count, p
+        ends = np.cumsum(
+            (of_cells @ gauss_rule(p)[1]).reshape(shape[:-1]) * self._half_lengths[:, 0], axis=-1
+        )
+        integrals = np.empty((*values.shape[:-1], N + 1))  # new memory costs more than the arithmetic
+        inside = integrals[..., :N].reshape(shape)
+        np.multiply((of_cells @ _cumulative(p).T).reshape(shape), self._half_lengths, out=inside)
+        inside[..., 1:, :] += ends[..., :-1, None]
+        integrals[..., N] = ends[..., -1]
+        return integrals
 
     def transposed(self, forces: np.ndarray) -> np.ndarray:
         """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
@@ -100,12 +105,6 @@ class ArcQuadrature:
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
         return cell, t, cell[:, None] * p + np.arange(p)
-
-
-@cache
-def _to_points_and_end(points: int) -> np.ndarray:
-    """Weights (p, p + 1), in columns, of the integrals from -1 to each of p Gauss points, and to 1."""
-    return np.column_stack([_cumulative(points).T, gauss_rule(points)[1]])
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class RootConditions(NamedTuple):
 
     def against(self, stiffness: str, direction: int = 0) -> RootConditions:
         """The same conditions, of a displacement that a stiffness resists."""
-        return self._replace(stiffness=stiffness, direction=direction)
+        return RootConditions(self.held, self.derivatives, stiffness, direction)
 
     @property
     def at_root(self) -> RootConditions:
@@ -94,6 +94,10 @@ class Spaces(Protocol):
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate over xi the weight times derivatives of function i of `rows` and j of `columns`."""
+        ...
+
+    def shares_functions(self, other: Self) -> bool:
+        """Whether the functions are those of other spaces of the same kind, but for the quadrature."""
         ...
 
 

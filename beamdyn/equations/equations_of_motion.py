@@ -57,7 +57,7 @@ class SteadyPencil:
     def part(self, coordinates: np.ndarray) -> SteadyPencil:
         """Extract the equations of some coordinates, which others do not affect."""
         M, C, G, K0, K2 = (
-            A[np.ix_(coordinates, coordinates)] for A in (self.M, self.C, self.G, self.K0, self.K2)
+            A[coordinates[:, None], coordinates] for A in (self.M, self.C, self.G, self.K0, self.K2)
         )
         return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
 
@@ -65,7 +65,7 @@ class SteadyPencil:
         """The same without damping and gyroscopic coupling."""
         return replace(self, C=np.zeros_like(self.C), G=np.zeros_like(self.G))
 
-    @property
+    @cached_property
     def conservative(self) -> bool:
         """Whether there is neither damping nor gyroscopic coupling."""
         return not (self.C.any() or self.G.any())
@@ -125,7 +125,7 @@ class Equations:
     shift: float = 0.0
     coarse: np.ndarray | None = None
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number n of coordinates."""
         return max(place.stop for place in self.blocks.values())
@@ -135,7 +135,7 @@ class Equations:
         """Largest number of coordinates of a block."""
         return max(place.stop - place.start for place in self.blocks.values())
 
-    @property
+    @cached_property
     def planes(self) -> int:
         """Number of directions in which the beam is deflected: 1 or 2."""
         return 1 + max(deflection.direction for deflection in self.deflections.values())
@@ -223,22 +223,20 @@ class Equations:
 
     def steady(self) -> SteadyPencil:
         """Equations at steady speed, as polynomials of it; about a fixed centre and without gravity."""
-        rest, rotating = (root_motion(self.mount, MotionSample.steady(speed)) for speed in (0.0, 1.0))
-        C = self.matrix(1, rest)
-        # The difference from the far larger stiffness at rest would lose digits.
-        varying: dict[Quantity, np.ndarray] = {
-            name: K for name, K in self.matrices[0].items() if name != "unity"
-        }
-        return SteadyPencil(
-            M=self.matrix(2, rest),
-            C=C,
-            G=self.matrix(1, rotating) - C,
-            K0=self.matrix(0, rest),
-            K2=_sum_over_quantities(varying, rotating, (self.size, self.size)),
-            f2=self.load(rotating),
-            shift=self.shift,
-            planes=self.planes,
-        )
+        return self._steady
+
+    @cached_property
+    def _steady(self) -> SteadyPencil:
+        rotating = root_motion(self.mount, MotionSample.steady(1.0))
+        (K0, K2), (C, G), (M, _) = (self._at_rest_and_turning(order, rotating) for order in range(3))
+        return SteadyPencil(M, C, G, K0, K2, self.load(rotating), self.shift, self.planes)
+
+    def _at_rest_and_turning(self, order: int, root: RootMotion) -> tuple[np.ndarray, np.ndarray]:
+        """The constant part of a matrix, and what motion of the root adds to it."""
+        moving: dict[Quantity, np.ndarray] = dict(self.matrices[order])
+        constant = moving.pop("unity", None)
+        shape = self.size, self.size
+        return np.zeros(shape) if constant is None else constant, _sum_over_quantities(moving, root, shape)
 
     @cached_property
     def coupled(self) -> tuple[tuple[str, ...], ...]:

@@ -159,6 +159,10 @@ class FemSpaces(FieldsOnly):
         matrix = _PRODUCTS[orders].assemble(second.basis, first.basis, weight=first.weights(weight))
         return matrix.toarray()[np.ix_(first.free, second.free)]
 
+    def shares_functions(self, other: FemSpaces) -> bool:
+        """Whether the nodes are the same."""
+        return np.array_equal(self.nodes, other.nodes)
+
 
 @dataclass(frozen=True)
 class FemSpace(FieldsOnly):

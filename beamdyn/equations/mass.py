@@ -36,7 +36,7 @@ def load_by_mass(beam: Beam, space: Space) -> np.ndarray:
 def first_moment_by_mass(beam: Beam, space: Space) -> np.ndarray:
     """Integrate functions times the distance from the root over the mass [kg m], shape (n,)."""
     (xi, mass), length = beam.lumps, beam.length
-    of_sections = space.load(beam.mass_per_length * FRACTION) * length**2
+    of_sections = space.load(_moment_per_length(beam)) * length**2
     return of_sections + space.evaluate(xi) @ (mass * xi * length) if mass.size else of_sections
 
 
@@ -58,9 +58,15 @@ def moments_about_root(beam: Beam) -> tuple[float, float, float]:
 
 
 @lru_cache(maxsize=64)
+def _moment_per_length(beam: Beam) -> Profile:
+    """Mass per length times x/L [kg/m]."""
+    return beam.mass_per_length * FRACTION
+
+
+@lru_cache(maxsize=64)
 def outboard_moments(beam: Beam) -> tuple[Profile, Profile]:
     """Mass [kg] outboard of each section, and its first moment about the root [kg m], over x/L."""
     (xi, mass), length, of_sections = beam.lumps, beam.length, beam.mass_per_length
     outboard = of_sections.scaled(length).outboard_integral()
-    moment = (of_sections * FRACTION).scaled(length**2).outboard_integral()
+    moment = _moment_per_length(beam).scaled(length**2).outboard_integral()
     return outboard.stepped(xi, mass), moment.stepped(xi, mass * xi * length)

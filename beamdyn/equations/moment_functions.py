@@ -29,8 +29,8 @@ from functools import cache, cached_property, lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
-import scipy.linalg
 from numpy.polynomial import legendre
+from scipy.linalg.lapack import dgeqp3, dorgqr
 
 from beamdyn.common.legendre import gauss_rule, legendre_series
 from beamdyn.common.pickling import FieldsOnly
@@ -48,6 +48,7 @@ _RESOLVED = 1e-7  # last coefficients of an interpolant over the largest; eigenv
 _ROUNDING = 10 * float(np.finfo(float).eps)  # of a sum of polynomials
 _PHASE = 7.0  # largest change of phase of the highest polynomial within a cell [rad]
 _SHORTEST = 1e-10  # cell that is halved, as x/L
+_BLOCK = 32  # columns that LAPACK treats at once
 _DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
 
 Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, by directions
@@ -90,6 +91,10 @@ class MomentSpaces(FieldsOnly):
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
+    def shares_functions(self, other: MomentSpaces) -> bool:
+        """Whether beam and numbers are the same: cells and forces follow every stiffness."""
+        return self == other
+
     @cached_property
     def polynomials(self) -> PiecewisePolynomials:
         """Polynomials on the parts of the beam between point masses."""
@@ -110,10 +115,9 @@ class MomentSpaces(FieldsOnly):
     def _are_coarse(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
         """Whether each cell, of these ends, is to be halved."""
         coarse = self.polynomials.phases(left, right, self.forces) > _PHASE
-        half = (right - left)[:, None] / 2
-        xi = left[:, None] + half * (1 + gauss_rule(NODES)[0])
         for name, tensor in self._stiffnesses.items():
-            values = {entry: profile(xi) for entry, profile in tensor.items()}
+            at_nodes = {profile: profile.within(left, right, NODES) for profile in set(tensor.values())}
+            values = {entry: at_nodes[profile] for entry, profile in tensor.items()}
             for (i, _), entry in invert(values).items():
                 rounding = _ROUNDING * self._largest[name, i] / np.abs(values[i, i]).min(axis=1)
                 coarse |= ~_are_resolved(entry, rounding)
@@ -143,7 +147,7 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def at_nodes(self) -> Sampler:
         """Values of properties at the nodes."""
-        return Sampler(self.nodes.xi)
+        return Sampler(self.nodes.cells)
 
     @cached_property
     def compliance(self) -> dict[str, Values]:
@@ -156,12 +160,12 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule that integrates products of the functions with properties exactly."""
-        return ArcQuadrature(Cells(self.cells, NODES + 3 + weight_degree(self.beam) // 2))
+        return ArcQuadrature(Cells(self.cells, NODES + 2 + weight_degree(self.beam) // 2))
 
     @cached_property
     def at_points(self) -> Sampler:
         """Values of properties at the points of that rule."""
-        return Sampler(self.quadrature.xi)
+        return Sampler(self.quadrature.cells)
 
 
 @lru_cache(maxsize=16)  # fields of a scene, and pairs of them, ask for the same functions
@@ -222,13 +226,16 @@ def _build_forces(
     first, others = _share(counts, len(causes))
     fewer, lower = _share(parts.counts(spaces.coarse), len(causes))
     polynomials = partial(parts, spaces.nodes.xi, continuous=derivatives == 2)
-    P, causing = polynomials(others), polynomials(first)
-    displaced = {name: _displace(spaces, causing, name, direction) for name, _, _ in causes}
+    contained = partial(parts.contained, continuous=derivatives == 2)
+    P = polynomials(others)
+    causing = P[contained(others, first)]
+    displaced = {
+        name: _displace(spaces, causing, name, direction) for name in {name for name, _, _ in causes}
+    }
     caused = [
         _integrate_from_tip(spaces.nodes, weight * displaced[name][order], derivatives - order)
         for name, order, weight in causes
     ]
-    contained = partial(parts.contained, continuous=derivatives == 2)
     if not all(m <= n for m, n in zip([*fewer, *lower], [*first, *others], strict=True)):
         return np.concatenate([P, *caused]), None
     of_coarse = [contained(others, lower), *[contained(first, fewer)] * len(causes)]
@@ -397,5 +404,7 @@ def _unit(columns: np.ndarray) -> np.ndarray:
 
 def _span(columns: np.ndarray) -> np.ndarray:
     """Orthonormal basis (k, m) of the span of columns (k, n) of norm 1 or less, but for rounding."""
-    Q, R, _ = scipy.linalg.qr(columns, mode="economic", pivoting=True)
-    return Q[:, np.abs(np.diag(R)) > _DEPENDENT]
+    n = columns.shape[1]
+    reflectors, _, tau, _, _ = dgeqp3(columns, lwork=_BLOCK * (n + 1) + 2 * n)
+    rank = int((np.abs(np.diag(reflectors)) > _DEPENDENT).sum())
+    return dorgqr(reflectors[:, :rank], tau[:rank], lwork=_BLOCK * max(rank, 1))[0]

@@ -21,7 +21,7 @@ from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
-_POINTS_OF_TURNS = 12  # Gauss points on each segment beyond those that integrate small deflections exactly
+_POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
 _FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}  # the slower, the larger
@@ -76,24 +76,28 @@ class Ritz:
     def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.coarser().functions)
+            return MomentSpaces(beam, self.functions, self.fewer)
         return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
 
     def _points(self, beam: Beam) -> int:
         """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return degree + 2 + weight_degree(beam) // 2 + 1
+        return degree + 2 + weight_degree(beam) // 2
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
         if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.coarser().functions).quadrature.cells
+            return MomentSpaces(beam, self.functions, self.fewer).quadrature.cells
         return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""
-        ratio = _COARSER[self.basis]
-        return replace(self, functions=max(1, min(int(ratio * self.functions), self.functions - 2)))
+        return replace(self, functions=self.fewer)
+
+    @property
+    def fewer(self) -> int:
+        """Number of functions of the coarser basis."""
+        return max(1, min(int(_COARSER[self.basis] * self.functions), self.functions - 2))
 
     def finer(self) -> Ritz | None:
         """The next larger basis; None at the largest."""
@@ -103,7 +107,7 @@ class Ritz:
 
     def fits(self, modes: int) -> bool:
         """Whether the coarser basis has functions enough for a number of modes."""
-        return self.coarser().functions >= modes
+        return self.fewer >= modes
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,10 @@ class RitzSpaces:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
+    def shares_functions(self, other: RitzSpaces) -> bool:
+        """Whether the basis and the segments are the same."""
+        return (self.ritz, self.breakpoints) == (other.ritz, other.breakpoints)
+
 
 @dataclass(frozen=True)
 class RitzSpace(SampledSpace):
@@ -159,7 +167,11 @@ class RitzSpace(SampledSpace):
     @property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
-        functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.coarser().functions
+        return self._coarse
+
+    @cached_property
+    def _coarse(self) -> np.ndarray:
+        functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
         return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))

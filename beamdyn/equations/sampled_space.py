@@ -8,26 +8,28 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.scene.profile import Profile
 
 
 class Sampler:
-    """Values of properties at given points, each computed once.
+    """Values of properties at the Gauss points of cells, each computed once.
 
     Parameters
     ----------
-    points : ndarray, shape (k,)
-        The points on [0, 1].
+    cells : Cells
+        The cells and the number of points on each; properties are smooth within them.
     """
 
-    def __init__(self, points: np.ndarray) -> None:
-        self.points = points
+    def __init__(self, cells: Cells) -> None:
+        self._cells = cells
         self._known: dict[Profile, np.ndarray] = {}
 
     def __call__(self, profile: Profile) -> np.ndarray:
         """Values (k,) of a property."""
         if profile not in self._known:
-            self._known[profile] = profile(self.points)
+            ends, points = self._cells.ends, self._cells.points
+            self._known[profile] = profile.within(ends[:-1], ends[1:], points).ravel()
         return self._known[profile]
 
 

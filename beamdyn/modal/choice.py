@@ -25,7 +25,7 @@ _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem 
 _FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
 # Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
 # sections bend under the forces in both directions.
-_IN_STRAIGHT, _IN_TWISTED = (13, 2.7), (-4, 3.6)
+_IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
 _MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
@@ -200,7 +200,8 @@ def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Disc
     if segments > _FEW_SEGMENTS:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
-        return Ritz(max(modes, int(least + modes - per_digit * np.log10(target))), "moments")
+        digits = -np.log10(max(target, MOMENTS_TARGET))
+        return Ritz(max(modes, int(least + modes + per_digit * digits)), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
     total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))

@@ -24,6 +24,7 @@ from beamdyn.modal.springs import (
     find_free_turns,
     insert_free_turns,
     leave_out_slowest,
+    part_free_turns,
     remove_shift,
     softening_of_graded,
     softening_on_springs,
@@ -132,11 +133,13 @@ class Solver(Eigensolver):
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         squared, z, rounding = solve_diagonal(self.mass, stiffness, count, self.lowest_at_rest)
         rounding += self._estimate_rounding(speeds, squared, z)
+        vector = self.basis @ z
         if self.pencil.shift:
-            squared, rounding = remove_shift(self.pencil, speeds, squared, self.basis @ z, rounding)
+            squared, rounding = remove_shift(self.pencil, speeds, squared, vector, rounding)
+            vector = part_free_turns(self.pencil, squared, vector)
         root = np.sqrt(np.abs(squared))
         eigenvalue = np.where(squared > 0, 1j * root, root)
-        return Eigen(eigenvalue, self.basis @ z, np.where(squared == 0, np.inf, rounding))
+        return Eigen(eigenvalue, vector, np.where(squared == 0, np.inf, rounding))
 
     def _estimate_rounding(self, speeds: np.ndarray, squared: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Estimate the relative error (S, k) of squared frequencies due to rounding of the matrices."""
@@ -291,10 +294,11 @@ def solve_diagonal(
     rounding : ndarray, shape (S, k)
         Relative error of w by the eigensolver.
     """
+    stiff, lowest = stiffness.min(axis=1) >= LEAST_STIFFNESS, lowest_at_rest * np.ones(len(stiffness))
+    if stiff.all():
+        return _solve_scaled(mass, stiffness, count, lowest)
     S, n = stiffness.shape
     squared, z, rounding = np.empty((S, count)), np.empty((S, n, count)), np.empty((S, count))
-    stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
-    lowest = np.broadcast_to(lowest_at_rest, (S,))
     for mask, solve in ((stiff, _solve_scaled), (~stiff, _solve_shifted)):
         if mask.any():
             M = mass[mask] if mass.ndim == 3 else mass

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.elastica import Elastica, assemble_elastica
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
-from beamdyn.modal.deflected import DeflectedSolver
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modal.uncoupled import solver_of, solver_over
 from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from beamdyn.equations.elastica import Elastica
+    from beamdyn.modal.deflected import DeflectedSolver
 
 
 @dataclass(frozen=True)
@@ -41,8 +44,14 @@ class Model(FieldsOnly):
     @cached_property
     def solver(self) -> Eigensolver:
         """Solver of the eigenproblem at steady speeds."""
-        if self.elastica is None:
-            return solver_of(self.equations)
+        return solver_of(self.equations) if self.elastica is None else self._deflected
+
+    @cached_property
+    def _deflected(self) -> DeflectedSolver:
+        """That of equations for deflections of any size."""
+        from beamdyn.modal.deflected import DeflectedSolver  # here, for the time that it takes to import
+
+        assert self.elastica is not None
         return DeflectedSolver(self.elastica, self.scene.physics.branch)
 
     @cached_property
@@ -50,6 +59,8 @@ class Model(FieldsOnly):
         """Equations of motion for deflections of any size; None where they are linear."""
         if not self.scene.physics.large_deflection:
             return None
+        from beamdyn.equations.elastica import assemble_elastica  # here, for the time that it takes to import
+
         return assemble_elastica(self.scene, self.discretization, self.equations)
 
     @cached_property
@@ -68,20 +79,21 @@ class Model(FieldsOnly):
         coarse = self.equations.coarse
         if coarse is None:
             return self.coarser.equations.size < self.equations.size
-        added = np.delete(np.arange(self.equations.size), coarse)
-        return all(((added >= b.start) & (added < b.stop)).any() for b in self.equations.blocks.values())
+        added = np.ones(self.equations.size, dtype=bool)
+        added[coarse] = False
+        return all(added[block].any() for block in self.equations.blocks.values())
 
     def equations_at(self, speed: float) -> Equations:
         """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
-        if isinstance(self.solver, DeflectedSolver):
-            return self.solver.equations(np.array([speed]))[0]
-        return self.equations
+        if self.elastica is None:
+            return self.equations
+        return self._deflected.equations(np.array([speed]))[0]
 
     def static_tips(self, speeds: np.ndarray) -> np.ndarray:
         """Static deflections of the tip at steady speeds [rad/s] in each direction [m], shape (S, planes)."""
-        if isinstance(self.solver, DeflectedSolver):
-            return self.solver.tips(speeds)
-        return self.solver.solve_static(speeds, self.equations.tips)
+        if self.elastica is None:
+            return self.solver.solve_static(speeds, self.equations.tips)
+        return self._deflected.tips(speeds)
 
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
         """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""

@@ -13,7 +13,7 @@ def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
     The energy of other fields, such as the stretch, is not counted: the two add up to 1, or to 0 without any.
     """
     if equations.planes == 1:
-        return np.tile([1.0, 0.0], (len(vectors), vectors.shape[2], 1))
+        return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
     energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
     by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
     total = by_plane[0] + by_plane[1]

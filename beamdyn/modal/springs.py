@@ -62,6 +62,27 @@ def remove_shift(
     return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
 
 
+def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Part modes of frequency 0 by the stiffness that rotation adds to them, the softest first.
+
+    At rest any two combinations of two such turns are modes, of which rounding would choose.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Conservative equations.
+    squared : ndarray, shape (S, k)
+        Squared frequencies.
+    v : ndarray, shape (S, n, k)
+        Mass-normalised modes; so is the result.
+    """
+    parted = v.copy()
+    for s in np.flatnonzero((squared == 0).sum(axis=1) > 1):
+        turns = v[s][:, squared[s] == 0]
+        parted[s][:, squared[s] == 0] = turns @ np.linalg.eigh(turns.T @ pencil.K2 @ turns)[1]
+    return parted
+
+
 def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Select the modes (n, r) without stiffness on which damping does not act either.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamdyn.common.assignment import assign
 
-_NORMALIZED = 1e-6  # distance of a norm from 1 that is rounding
+_NORMALIZED = 2e-6  # distance of a squared norm from 1 that is rounding
 
 
 def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -28,8 +28,10 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
         MAC with the same mode at the speed before, minus the largest MAC of that mode with any other: 1
         is certain, 0 or less a guess.
     """
-    vectors = _normalized(vectors, mass)
-    mac = np.abs(np.swapaxes(vectors[:-1].conj(), 1, 2) @ (mass @ vectors[1:])) ** 2
+    weighted = mass @ vectors
+    squares = _squared_norms(vectors, weighted)
+    mac = np.abs(np.swapaxes(vectors[:-1].conj(), 1, 2) @ weighted[1:]) ** 2
+    mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
     successor = _assign(mac)
@@ -43,10 +45,10 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return order, confidence
 
 
-def _normalized(vectors: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """Normalise vectors that are not mass-normalised to rounding."""
-    norm = np.sqrt(np.einsum("snk,snk->sk", vectors.conj(), mass @ vectors).real)
-    return vectors / np.where(np.abs(norm - 1) < _NORMALIZED, 1.0, norm)[:, None, :]
+def _squared_norms(vectors: np.ndarray, weighted: np.ndarray) -> np.ndarray:
+    """Squared norms (S, k) by the mass of vectors that are not mass-normalised to rounding; else 1."""
+    squares = np.einsum("snk,snk->sk", vectors.conj(), weighted).real
+    return np.where(np.abs(squares - 1) < _NORMALIZED, 1.0, squares)
 
 
 def _assign(mac: np.ndarray) -> np.ndarray:

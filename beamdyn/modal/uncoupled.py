@@ -21,7 +21,9 @@ def solver_of(equations: Equations) -> Eigensolver:
 
 def solver_over(equations: Equations, coordinates: np.ndarray) -> Eigensolver:
     """Eigensolver of the same equations over some, ascending, of their coordinates: the others are 0."""
-    remaining = [np.flatnonzero(np.isin(coordinates, part)) for part in _parts(equations)]
+    place = np.full(equations.size, -1)
+    place[coordinates] = np.arange(len(coordinates))
+    remaining = [places[places >= 0] for places in (place[part] for part in _parts(equations))]
     return _solver_of_parts(equations.steady().part(coordinates), remaining)
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from beamdyn.common.assignment import assign
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
-from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.modal.eigen import Eigen
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.model import Model
@@ -50,12 +49,7 @@ class Simple:
             discretization = discretization.coarser()
             model = Model(model.scene, discretization)
         spaces = discretization.spaces(model.scene.beam)
-        beam, modelled = model.scene.beam, model.scene.modelled_beam
-        if isinstance(spaces, MomentSpaces):  # cells and forces follow every stiffness, of stretch, too
-            same = beam == modelled
-        else:
-            same = beam.breakpoints == modelled.breakpoints
-        if same:
+        if spaces.shares_functions(discretization.spaces(model.scene.modelled_beam)):
             return cls(model.scene, spaces, model.equations)
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 

@@ -17,8 +17,10 @@ from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
 from beamdyn.reproduce.large_deflection import draw_first_frequencies
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.critical import critical_point, setting_angle_limits
-from beamdyn.spectrum.modes import frequency_locus, natural_modes
+from beamdyn.spectrum.critical import critical_point
+from beamdyn.spectrum.locus import frequency_locus
+from beamdyn.spectrum.modes import natural_modes
+from beamdyn.spectrum.setting_angles import setting_angle_limits
 
 _ANSYS = "ANSYS (4)"
 _ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly

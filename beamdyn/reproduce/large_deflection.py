@@ -18,7 +18,8 @@ from beamdyn.published import load
 from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, published_scene
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.modes import frequency_locus, natural_modes
+from beamdyn.spectrum.locus import frequency_locus
+from beamdyn.spectrum.modes import natural_modes
 
 _LINEAR = "paper's model"
 _SPEEDS = (100.0, 400.0)  # at which the figures are judged [rad/s]: that of Table 2, and one beyond

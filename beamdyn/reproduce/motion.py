@@ -20,8 +20,9 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.resonance import Crossings, resonance_speeds
 from beamdyn.steady.response import steady_response
 from beamdyn.tables.results import sweep_peaks
-from beamdyn.transient.simulate import Transient, simulate
+from beamdyn.transient.simulate import simulate
 from beamdyn.transient.sweep import Sweep, sweep
+from beamdyn.transient.transient import Transient
 
 _MODES = 5  # of the published run
 _TOLERANCE = 1e-6  # of the time integration

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +19,7 @@ from beamdyn.common.checks import (
     several,
     size,
 )
+from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.direction import direction_of
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.points import PointMass, PointSpring, TipMass
@@ -35,7 +36,7 @@ _ROUNDING = 1e-12  # of a position, relative to the length: the distance at whic
 
 
 @dataclass(frozen=True)
-class Beam:
+class Beam(FieldsOnly):
     """A straight beam, held at its root.  Build it by `rectangular` or `from_stiffness`.
 
     Which of its properties a model reads is said by `Physics`.
@@ -294,7 +295,14 @@ class Beam:
         warn_of_twist(beam.twist)
         return beam
 
-    @property
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:  # of many properties, for each look into a cache
+        return hash(tuple(getattr(self, f.name) for f in fields(self)))
+
+    @cached_property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions x/L where a property may jump or have a kink, or a mass stands, with the ends 0 and 1."""
         names = (name for name in OPTIONAL_PROPERTIES if name != "outer_fibre")
@@ -302,7 +310,7 @@ class Beam:
         ends = np.array([b for p in profiles if p is not None for b in p.breakpoints])
         return merge_breakpoints(np.concatenate([ends, self.points]))
 
-    @property
+    @cached_property
     def lumps(self) -> tuple[np.ndarray, np.ndarray]:
         """Positions x/L (k,) of the point masses that are not 0, and the masses (k,) [kg]."""
         heavy = [(lump.position, lump.mass) for lump in self.point_masses if lump.mass]

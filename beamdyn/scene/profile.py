@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import TypeAlias
 
 import numpy as np
@@ -20,6 +20,7 @@ from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
 from beamdyn.common.legendre import (
     gauss_points_on,
     gauss_rule,
+    integrate_series,
     legendre_series,
     multiply_series,
 )
@@ -28,6 +29,7 @@ from beamdyn.common.pickling import FieldsOnly
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
 _FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
+_NOISE = 8 * float(np.finfo(float).eps)  # of the coefficients of a fit, relative to the largest
 _SPACING = 2.5e-5  # in x/L, of the samples of a user's function: no wider feature is missed
 _FEW = 513  # samples denser towards the ends of a segment, where a fit is compared first
 _AT_ONCE = 4096  # samples compared at once, which fit into the processor's cache
@@ -77,26 +79,35 @@ class Profile(FieldsOnly):
     def __call__(self, xi: np.ndarray) -> np.ndarray:
         """Evaluate at fractions `xi` of the length, of any shape; at a jump, the value on its right."""
         xi = np.asarray(xi, dtype=float)
-        segment = np.searchsorted(self.breakpoints, xi, side="right") - 1
-        segment = np.clip(segment, 0, len(self.coefficients) - 1)
-        ends = np.array(self.breakpoints)
-        a, b = ends[segment], ends[segment + 1]
+        segment = np.searchsorted(self._ends[1:-1], xi, side="right")
+        if not self.degree:
+            return self.series[0, segment]
+        a, b = self._ends[segment], self._ends[segment + 1]
         t = ((xi - a) - (b - xi)) / (b - a)
-        of_points = self.series[:, segment] if len(self.coefficients) > 1 else self.series[:, 0]
-        return legendre.legval(t, of_points, tensor=False)
+        return legendre.legval(t, self.series[:, segment], tensor=False)
+
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        return np.array(self.breakpoints)
+
+    def within(self, left: np.ndarray, right: np.ndarray, points: int) -> np.ndarray:
+        """Values at Gauss points of intervals (c,), each within one segment: shape (c, points)."""
+        segment = np.searchsorted(self._ends[1:-1], (left + right) / 2, side="right")
+        if not self.degree:
+            return np.repeat(self.series[0, segment, None], points, axis=1)
+        a, b = self._ends[segment, None], self._ends[segment + 1, None]
+        xi = left[:, None] + (right - left)[:, None] * (1 + gauss_rule(points)[0]) / 2
+        return legendre.legval(((xi - a) - (b - xi)) / (b - a), self.series[:, segment, None], tensor=False)
 
     @cached_property
     def series(self) -> np.ndarray:
         """Legendre coefficients of each segment in columns, those of high degree 0 where there are none."""
-        series = np.zeros((self.degree + 1, len(self.coefficients)))
-        for k, row in enumerate(self.coefficients):
-            series[: len(row), k] = row
-        return series
+        return np.array(list(zip_longest(*self.coefficients, fillvalue=0.0)))
 
     @cached_property
     def degree(self) -> int:
         """Largest polynomial degree of a segment."""
-        return max(len(c) for c in self.coefficients) - 1
+        return max(map(len, self.coefficients)) - 1
 
     def end_values(self) -> tuple[np.ndarray, np.ndarray]:
         """Values at the left and at the right end of each segment: two arrays, which differ at jumps."""
@@ -105,7 +116,9 @@ class Profile(FieldsOnly):
 
     def split(self, breakpoints: Sequence[float]) -> Profile:
         """Represent the same property on segments that also end at the given breakpoints."""
-        ends = merge_breakpoints(np.union1d(self.breakpoints, breakpoints))
+        if breakpoints == self.breakpoints:
+            return self
+        ends = merge_breakpoints(np.concatenate([self.breakpoints, breakpoints]))
         if ends == self.breakpoints:
             return self
         values = self(gauss_points_on(np.array(ends), self.degree + 1))
@@ -128,20 +141,15 @@ class Profile(FieldsOnly):
         """Values at Gauss points of each segment, shape (segments, points)."""
         return (legendre.legvander(gauss_rule(points)[0], self.degree) @ self.series).T
 
-    def map(self, function: Callable[[np.ndarray], np.ndarray]) -> Profile:
-        """Apply an analytic function, such as the cosine, to the property; exact to rounding."""
-        rows = _map_series(function, self)
-        return Profile(self.breakpoints, tuple(map(tuple, rows)))
-
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
-        return Profile(self.breakpoints, tuple(tuple(factor * c for c in row) for row in self.coefficients))
+        rows = [tuple([factor * c for c in row]) for row in self.coefficients]
+        return Profile(self.breakpoints, tuple(rows))
 
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
-        half = np.diff(self.breakpoints) / 2
-        inner = np.asarray(legendre.legint(-half * self.series, lbnd=1.0))
-        of_segments = np.asarray(legendre.legval(-1.0, inner))
+        inner = integrate_series(-np.diff(self._ends) / 2 * self.series)
+        of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)  # values at the left ends
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 
@@ -162,25 +170,37 @@ def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
     return profile
 
 
-def _map_series(function: Callable[[np.ndarray], np.ndarray], profile: Profile) -> list[list[float]]:
-    """Legendre coefficients of a function of a property: as many on each segment as do not vanish."""
-    rows: list[list[float]] = [[]] * len(profile.coefficients)
-    varying = np.array([len(row) > 1 for row in profile.coefficients])
-    for k in np.flatnonzero(~varying):
-        rows[k] = [float(function(np.array(profile.coefficients[k]))[0])]
-    left = np.flatnonzero(varying)
-    for nodes in _FIT_NODES:
-        values = function(profile.at_points(nodes)[left])
-        series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values.T)
-        largest = np.abs(series).max(axis=0)
-        resolved = (np.abs(series[-3:]) <= _FIT_TOLERANCE * largest).all(axis=0)
-        kept = np.abs(series) > 1e-17 * largest
-        length = np.maximum(nodes - kept[::-1].argmax(axis=0), 1)
-        for k, row, n in zip(left[resolved], series.T[resolved].tolist(), length[resolved], strict=True):
-            rows[k] = row[:n]
-        if not (left := left[~resolved]).size:
-            return rows
-    a, b = profile.breakpoints[left[0] : left[0] + 2]
+def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Profile]:
+    """Apply an analytic function of some properties that gives others; exact to rounding.
+
+    Parameters
+    ----------
+    function : callable
+        Takes the values (c, n) of each property and returns those of the k others: shape (k, c, n).
+    *profiles : Profile
+        The properties.
+
+    Raises
+    ------
+    ValueError
+        If the others vary too quickly between breakpoints.
+    """
+    ends = merge_breakpoints(np.concatenate([profile.breakpoints for profile in profiles]))
+    parts, unresolved = [profile.split(ends) for profile in profiles], np.array([0])
+    for nodes in _FIT_NODES if any(part.degree for part in parts) else (1,):
+        values = np.swapaxes(function(*(part.at_points(nodes) for part in parts)), 1, 2)
+        series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values)
+        largest = np.abs(series).max(axis=1, keepdims=True)
+        unresolved = np.flatnonzero(
+            (np.abs(series[:, 1:][:, -3:]) > _FIT_TOLERANCE * largest).any(axis=(0, 1))
+        )
+        if not unresolved.size:
+            kept = (np.abs(series) > _NOISE * largest).any(axis=2)
+            return [
+                _of_series(ends, s[: max(np.flatnonzero(k), default=0) + 1])
+                for s, k in zip(series, kept, strict=True)
+            ]
+    a, b = ends[unresolved[0] : unresolved[0] + 2]
     raise ValueError(
         f"the property varies too quickly between x/L = {a:.4g} and {b:.4g}: give breakpoints between them"
     )
@@ -275,8 +295,8 @@ def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
 
 def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
     """Sort breakpoints and merge those that differ by rounding."""
-    ends = np.unique(breakpoints)
-    inner = ends[1:-1][np.diff(ends)[:-1] > _SHORTEST_SEGMENT]
+    ends = np.sort(breakpoints)
+    inner = ends[1:][np.diff(ends) > _SHORTEST_SEGMENT]
     inner = inner[ends[-1] - inner > _SHORTEST_SEGMENT]
     return (float(ends[0]), *inner.tolist(), float(ends[-1]))
 
@@ -382,10 +402,10 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
 def check_positive(name: str, profile: Profile) -> None:
     """Raise a ValueError with the name and the place if a property is not positive and finite everywhere."""
     ends = np.array(profile.breakpoints)
-    inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1].ravel()
-    left, right = profile.end_values()
-    where = np.concatenate([inner, ends[:-1], ends[1:]])
-    values = np.concatenate([profile(inner), left, right])
+    where, values = np.concatenate([ends[:-1], ends[1:]]), np.concatenate(profile.end_values())
+    if profile.degree > 1:  # else the least value is at an end
+        inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1].ravel()
+        where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
     k = int(values.argmin()) if np.isfinite(values).all() else int(np.argmin(np.isfinite(values)))
     if not (np.isfinite(values[k]) and values[k] > 0):
         place = f" at x/L = {where[k]:.3f}"

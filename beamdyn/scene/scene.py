@@ -17,6 +17,8 @@ from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics
 from beamdyn.scene.physics_choice import PhysicsChoice
 from beamdyn.scene.profile import mean
 
+_SLENDER = Physics(), Physics(stretch=True)  # in one plane
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -119,8 +121,9 @@ class Scene:
     @property
     def is_slender_beam_in_one_plane(self) -> bool:
         """Whether the model is a clamped Euler-Bernoulli beam in one plane, to which some theorems apply."""
-        plain = replace(self.physics, stretch=False) == Physics()
-        return plain and self.mount.root_stiffness == math.inf and not self.beam.point_springs
+        return (
+            self.physics in _SLENDER and self.mount.root_stiffness == math.inf and not self.beam.point_springs
+        )
 
 
 def check_scene(scene: object) -> None:

@@ -8,7 +8,6 @@ that is turned by beta has, along the directions e1, e2 at the root,
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -16,7 +15,10 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.profile import Profile
+from beamdyn.scene.profile import Profile, combine
+
+# Orders of the derivatives of a deflection whose products a property of the sections multiplies.
+_ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "rotary_inertia": 1}
 
 Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; those that vanish are missing
 
@@ -49,26 +51,24 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
 
 
 def _turn(first: Profile, second: Profile, twist: Profile) -> Tensor:
-    """Turn the values in the axes of the sections by the twist."""
-    cos2, sin2 = (_map_twist(twist, lambda beta, f=f: f(beta) ** 2) for f in (np.cos, np.sin))
-    oblique = (first + second.scaled(-1.0)) * _map_twist(twist, lambda beta: np.cos(beta) * np.sin(beta))
-    return {
-        (0, 0): first * cos2 + second * sin2,
-        (0, 1): oblique,
-        (1, 0): oblique,
-        (1, 1): first * sin2 + second * cos2,
-    }
-
-
-def _map_twist(twist: Profile, function: Callable[[np.ndarray], np.ndarray]) -> Profile:
-    """Apply a function to the twist; refuse by name one that is not resolved."""
+    """Turn the values in the axes of the sections by the twist; refuse by name one that is not resolved."""
+    excess = first + second.scaled(-1.0)  # of the series: its values may lose digits
     try:
-        return twist.map(function)
+        along, oblique, across = combine(_turned_values, first, second, excess, twist)
     except ValueError as error:
         remedy = "is it in degrees? give math.radians(...)"
         raise InvalidValue(
             "twist", float(twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
         ) from None
+    return {(0, 0): along, (0, 1): oblique, (1, 0): oblique, (1, 1): across}
+
+
+def _turned_values(
+    first: np.ndarray, second: np.ndarray, excess: np.ndarray, twist: np.ndarray
+) -> np.ndarray:
+    """Entries 11, 12 and 22 of the tensor."""
+    c, s = np.cos(twist), np.sin(twist)
+    return np.stack([first * c**2 + second * s**2, excess * (c * s), first * s**2 + second * c**2])
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:
@@ -87,12 +87,19 @@ def centrifugal_inertia(tip: TipMass, twist: float) -> np.ndarray:
 
 
 def _turned(first: float, second: float, angle: float) -> np.ndarray:
+    if not angle:
+        return np.array([[first, 0.0], [0.0, second]])
     R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return R @ np.diag([first, second]) @ R.T if angle else np.diag([first, second])
+    return R @ np.diag([first, second]) @ R.T
 
 
 def weight_degree(beam: Beam) -> int:
-    """Largest polynomial degree of what multiplies trial functions in integrals over a segment."""
-    names = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
-    degrees = [p.degree for name in names for p in section_tensor(beam, name).values()]
-    return max(beam.mass_per_length.degree + 2, *degrees)
+    """Largest polynomial degree, in integrals over a segment, beyond that of products of deflections.
+
+    That is the degree of a property less the order of the derivatives that it multiplies; tension is of the
+    degree of the mass and two more.
+    """
+    degrees = [beam.mass_per_length.degree + 1]
+    for name, order in _ORDERS.items():
+        degrees += [p.degree - 2 * order for p in section_tensor(beam, name).values()]
+    return max(degrees)

@@ -1,4 +1,4 @@
-"""Natural modes at a steady speed, and their loci over speeds."""
+"""Natural modes at a steady speed."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import OUTSIDE, announced
-from beamdyn.common.checks import ascending, count, real, within
-from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.checks import count, real, within
 from beamdyn.common.results import Provenance
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.directions import first_drawn, name_directions
@@ -27,11 +26,7 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
-from beamdyn.modal.tracking import track
-from beamdyn.model_error.choice import choose_physics
-from beamdyn.model_error.large_deflection import bends
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -44,12 +39,6 @@ from beamdyn.scene.validity import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_MOST_JUDGED = 16  # speeds of a locus at which its model error is computed
-_EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones
-
-
-# Modes at one speed -------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -117,6 +106,10 @@ class Modes(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects that the model leaves out would change in each frequency (m,)."""
+        from beamdyn.model_error.of_modes import (
+            left_out_of_modes,
+        )  # here, for the time that it takes to import
+
         return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -137,7 +130,7 @@ class Modes(StatesModelError):
 
         x = np.linspace(0, self.scene.beam.length, 201)
         if self.scene.physics.planes == 2:
-            order, words = _drawn_order(self.scene)
+            order, words = drawn_order(self.scene)
             shapes = np.stack([np.real(self.shape(x, direction)) for direction in order], axis=1)
             return plot_shapes_by_plane(x, shapes, self.labels(), words, ax)
         return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax)
@@ -156,7 +149,7 @@ class Modes(StatesModelError):
         ]
 
 
-def _drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
+def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
     """Directions that are drawn solid and dashed, and their names."""
     solid, names = first_drawn(scene.mount), name_directions(scene.mount)
     return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
@@ -203,19 +196,25 @@ def natural_modes(
     check_scene(scene)
     speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
     check_speeds(speeds, "speed")
-    tolerance = _check_tolerance(tolerance)
-    scene = choose_physics(scene, speeds, modes, tolerance)
+    tolerance = check_tolerance(tolerance)
+    if scene.chooses_physics:
+        from beamdyn.model_error.choice import choose_physics  # here, for the time that it takes to import
+
+        scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
-    vectors, status = _with_positive_tip(equations.tips, solution.eigen.vector[0]), _status(s)
+    vectors = _with_positive_tip(equations.tips, solution.eigen.vector[0])
     deflection, strain = static_load(solution.model, speeds)
-    warnings = _warnings(solution.model, speeds, deflection, strain, solution.error, status[None], tolerance)
+    growth_rate = np.real(s) + 0.0
+    warnings = warn_of_modes(
+        solution.model, speeds, deflection, strain, solution.error, growth_rate[None], tolerance
+    )
     return Modes(
         speed=float(speeds[0]),
-        frequency=_frequency(s, status),
+        frequency=frequency_of(s),
         error=solution.error[0],
-        growth_rate=np.real(s) + 0.0,
-        status=status,
+        growth_rate=growth_rate,
+        status=status_of(s),
         eigenvalue=s,
         tip=np.real(equations.tip @ vectors),
         tip_across=np.real(equations.tip_across @ vectors),
@@ -227,33 +226,37 @@ def natural_modes(
         static_deflection=float(deflection[0]),
         axial_strain=float(strain[0]),
         warnings=tuple(warnings),
-        provenance=_provenance(solution, start),
+        provenance=provenance_of(solution, start),
         scene=scene,
         vectors=vectors,
         model=solution.model,
     )
 
 
-def _check_tolerance(tolerance: float | None) -> float | None:
+def check_tolerance(tolerance: float | None) -> float | None:
+    """Refuse a tolerance that no model is chosen for."""
     return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
 
 
 def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Give the vectors the phase at which the larger of their tip deflections is real and positive."""
     each = tips @ vectors
-    deflection = np.take_along_axis(each, np.abs(each).argmax(axis=0)[None], axis=0)[0]
-    phase = np.where(deflection == 0, 1.0, deflection / np.abs(np.where(deflection == 0, 1.0, deflection)))
-    return vectors / phase
+    deflection = each[np.abs(each).argmax(axis=0), np.arange(each.shape[1])]
+    deflection[deflection == 0] = 1.0
+    return vectors / (deflection / np.abs(deflection))
 
 
-def _status(s: np.ndarray) -> np.ndarray:
+def status_of(s: np.ndarray) -> np.ndarray:
+    """Status of modes in a word, by their eigenvalues [1/s]: both of one shape."""
     growing, oscillating = np.real(s) > 0, np.imag(s) != 0
-    names = ["flutter", "divergence", "stable", "neutral"]
-    return np.select([growing & oscillating, growing, oscillating, s == 0], names, "overdamped")
+    without_growth = np.where(oscillating, "stable", np.where(s == 0, "neutral", "overdamped"))
+    return np.where(growing, np.where(oscillating, "flutter", "divergence"), without_growth)
 
 
-def _frequency(s: np.ndarray, status: np.ndarray) -> np.ndarray:
-    return np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
+def frequency_of(s: np.ndarray) -> np.ndarray:
+    """Frequencies [Hz] of modes by their eigenvalues [1/s], of one shape; nan of others than stable ones."""
+    vibrates = (np.real(s) <= 0) & ((np.imag(s) != 0) | (s == 0))
+    return np.where(vibrates, np.imag(s) / (2 * np.pi), np.nan)
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -285,18 +288,19 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
 
 
-def _warnings(
+def warn_of_modes(
     model: Model,
     speeds: np.ndarray,
     deflection: np.ndarray,
     strain: np.ndarray,
     error: np.ndarray,
-    status: np.ndarray,
+    growth_rate: np.ndarray,
     tolerance: float | None,
 ) -> Iterator[str]:
+    """Yield what limits the answer, by errors and growth rates (S, m) at speeds (S,), and static loads."""
     scene = model.scene
     yield from warn_of_left_out(scene)
-    unstable = np.isin(status, ("divergence", "flutter"))
+    unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
         yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
@@ -313,192 +317,18 @@ def _warnings(
 def _warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[str]:
     """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
     lost = np.isnan(deflection)
-    if lost.any() and bends(model):
+    if not lost.any():
+        return
+    from beamdyn.model_error.large_deflection import bends  # here, for the time that it takes to import
+
+    if bends(model):
         yield (
             f"at {list_range(speeds[lost])} the straight beam is unstable; the rotation bends it before: "
             f"the answer is {OUTSIDE}"
         )
 
 
-def _provenance(solution: EstimatedModes, start: float) -> Provenance:
+def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
+    """How modes were found, since a start by `perf_counter` [s]."""
     names = str(solution.model.discretization), str(solution.coarse.discretization)
     return Provenance(__version__, *names, wall_time=perf_counter() - start)
-
-
-# Loci over speeds ---------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Locus(StatesModelError):
-    """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
-
-    `error` is that of the numbers; `model_error` (k, m) and `left_out`, computed when asked for, are what the
-    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.
-
-    Parameters
-    ----------
-    speeds : ndarray, shape (S,)
-        Speeds [rad/s].
-    frequency : ndarray, shape (S, m)
-        Frequencies [Hz]; nan where a mode is unstable or does not oscillate.
-    growth_rate : ndarray, shape (S, m)
-        Growth rates [1/s].
-    confidence : ndarray, shape (S, m)
-        Confidence that a mode continues the one at the speed before: 1 is certain, 0 a guess.
-    error : ndarray, shape (S, m)
-        Estimated relative error of the eigenvalues.
-    status : ndarray of str, shape (S, m)
-        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
-    eigenvalue : ndarray of complex, shape (S, m)
-        s in exp(s t) [1/s].
-    plane_share : ndarray, shape (S, m, 2)
-        Share of each direction of bending at the root in the kinetic energy of the mode's deflection.
-    static_deflection : ndarray, shape (S,)
-        Static tip deflection under the rotation [m], signed or a magnitude as in `Modes`.
-    axial_strain : ndarray, shape (S,)
-        Largest static axial strain; nan if it is unknown.
-    warnings : tuple of str
-        What limits the answer.
-    provenance : Provenance
-        How it was found.
-    """
-
-    speeds: np.ndarray
-    frequency: np.ndarray
-    growth_rate: np.ndarray
-    confidence: np.ndarray
-    error: np.ndarray
-    status: np.ndarray
-    eigenvalue: np.ndarray
-    plane_share: np.ndarray
-    static_deflection: np.ndarray
-    axial_strain: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
-    model: Model = field(repr=False)
-    ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
-    place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
-
-    @cached_property
-    def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
-        return self.left_out_at(self._judged)
-
-    @property
-    def left_out_speeds(self) -> np.ndarray:
-        """Speeds of the locus at which its model error is computed [rad/s], (k,).
-
-        The ends are among them, and those before and after a mode becomes unstable or stable.
-        """
-        return self.speeds[self._judged]
-
-    @property
-    def _judged(self) -> np.ndarray:
-        """Indices of the speeds at which the model error is computed (k,)."""
-        changed = (self.status[1:] != self.status[:-1]).any(axis=1)
-        before = np.flatnonzero(changed)[:_MOST_JUDGED]
-        return np.unique(np.concatenate([_spread(len(self.speeds), _MOST_JUDGED), before, before + 1]))
-
-    def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
-        """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
-        at = np.asarray(indices, dtype=int)
-        return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
-
-    def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with its model error and what is left out."""
-        return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the frequencies over speed."""
-        from beamdyn.output.plots import plot_locus
-        from beamdyn.output.plots_by_plane import plot_locus_by_plane
-
-        if self.scene.physics.planes == 2:
-            (solid, _), words = _drawn_order(self.scene)
-            return plot_locus_by_plane(self.speeds, self.frequency, self.plane_share[:, :, solid], words, ax)
-        return plot_locus(self.speeds, self.frequency, ax)
-
-
-@announced
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
-def frequency_locus(
-    scene: Scene,
-    speeds: np.ndarray | Sequence[float] | float,
-    modes: int = 3,
-    discretization: DiscretizationChoice = "ritz",
-    tolerance: float | None = None,
-) -> Locus:
-    """Compute natural frequencies over speed, and follow the modes.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene; its motion is not used.
-    speeds : sequence of float
-        Speeds [rad/s], ascending.
-    modes : int
-        Number of modes to follow.
-    discretization : {"ritz", "fem"} or Discretization
-        As for `natural_modes`.
-    tolerance : float, optional
-        As for `natural_modes`; kept at every speed.
-
-    Returns
-    -------
-    Locus
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range.
-    """
-    start = perf_counter()
-    check_scene(scene)
-    speeds, modes = ascending("speeds", speeds), count("modes", modes)
-    check_speeds(speeds)
-    tolerance = _check_tolerance(tolerance)
-    scene = choose_physics(scene, speeds, modes, tolerance)
-    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _EXTRA_MODES)
-    order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
-    s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]
-    error = _track_error(solution, order[:, :modes])
-    status = _status(s)
-    deflection, strain = static_load(solution.model, speeds)
-    return Locus(
-        speeds=speeds,
-        frequency=_frequency(s, status),
-        growth_rate=np.real(s) + 0.0,
-        confidence=confidence[:, :modes],
-        error=error,
-        status=status,
-        eigenvalue=s,
-        plane_share=_track_shares(solution, order[:, :modes]),
-        static_deflection=deflection,
-        axial_strain=strain,
-        warnings=tuple(_warnings(solution.model, speeds, deflection, strain, error, status, tolerance)),
-        provenance=_provenance(solution, start),
-        scene=scene,
-        model=solution.model,
-        ascending=solution.eigen.eigenvalue,
-        place=order[:, :modes],
-    )
-
-
-def _spread(count: int, most: int) -> np.ndarray:
-    """Indices of at most so many of a number of speeds, evenly spread, the ends among them."""
-    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
-
-
-def _track_shares(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
-    """Shares of the planes (S, m, 2) in tracked order."""
-    shares = plane_share(solution.model.equations, solution.eigen.vector)
-    return np.take_along_axis(shares, order[:, :, None], axis=1)
-
-
-def _track_error(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
-    """Errors in tracked order; an extra mode gets the largest error at its speed."""
-    modes = solution.error.shape[1]
-    errors = np.repeat(solution.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
-    errors[:, :modes] = solution.error[:, : errors.shape[1]]
-    return np.take_along_axis(errors, order, axis=1)

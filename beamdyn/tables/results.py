@@ -24,12 +24,14 @@ from beamdyn.model_error.left_out_effects import where_worst
 if TYPE_CHECKING:
     from beamdyn.model_error.left_out_effects import LeftOutEffects
     from beamdyn.scene.scene import Scene
-    from beamdyn.spectrum.critical import CriticalPoint, SettingAngleLimits
-    from beamdyn.spectrum.modes import Locus, Modes
+    from beamdyn.spectrum.critical import CriticalPoint
+    from beamdyn.spectrum.locus import Locus
+    from beamdyn.spectrum.modes import Modes
+    from beamdyn.spectrum.setting_angles import SettingAngleLimits
     from beamdyn.steady.resonance import Crossing, Crossings
     from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
+    from beamdyn.transient.transient import Transient
 
 _MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
 Cell: TypeAlias = "str | Text"  # of a table

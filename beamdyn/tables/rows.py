@@ -11,11 +11,12 @@ from beamdyn.tables.results import largest_by_direction, model_error_at
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
-    from beamdyn.spectrum.modes import Locus, Modes
+    from beamdyn.spectrum.locus import Locus
+    from beamdyn.spectrum.modes import Modes
     from beamdyn.steady.resonance import Crossings
     from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.simulate import Transient
     from beamdyn.transient.sweep import Sweep
+    from beamdyn.transient.transient import Transient
 
 _WHERE_COMPUTED = "model_error_where_computed"
 

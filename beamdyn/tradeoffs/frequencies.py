@@ -14,7 +14,8 @@ from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.bounds import frequency_bounds
-from beamdyn.spectrum.modes import frequency_locus, natural_modes
+from beamdyn.spectrum.locus import frequency_locus
+from beamdyn.spectrum.modes import natural_modes
 from beamdyn.tradeoffs.measurements import Diagram, number_of
 from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 

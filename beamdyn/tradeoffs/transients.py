@@ -15,7 +15,8 @@ from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.scene.scene import Scene
 from beamdyn.tradeoffs.measurements import Diagram, number_of
 from beamdyn.tradeoffs.timing import Family, Setting, measure_families, remaining_budget
-from beamdyn.transient.simulate import Transient, TransientRequest, simulate
+from beamdyn.transient.simulate import simulate
+from beamdyn.transient.transient import Transient, TransientRequest
 
 OURS = "Gauss collocation"
 STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")

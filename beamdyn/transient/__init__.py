@@ -1,1 +1,1 @@
-"""Motion in time: step size, integrators, one run, batches of runs, and sweeps over speeds."""
+"""Motion in time: step size, integrators, one run, and sweeps over speeds."""

@@ -1,4 +1,4 @@
-"""Cases of a sweep: the request, and the solution of one chunk of cases, as a batch or one by one."""
+"""Cases of a sweep: the request, and the solution of one chunk of cases, each with its own steps."""
 
 from __future__ import annotations
 
@@ -11,18 +11,17 @@ import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
-from beamdyn.transient.batch import integrate_batch
+from beamdyn.transient.integration import integrate
 from beamdyn.transient.model_of_basis import choose_for_basis
-from beamdyn.transient.record_steps import is_record
-from beamdyn.transient.simulate import TransientRequest
-from beamdyn.transient.step_size import StepSize, TooManySteps
-from beamdyn.transient.system import ModalSystem, excited_equations
-from beamdyn.transient.trajectory import Trajectory, largest_deflection
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import largest_deflection
+from beamdyn.transient.transient import TransientRequest
 
 DONE = "done"
 
@@ -60,6 +59,11 @@ class SweepRequest(FieldsOnly):
         """The discretized scene, chosen for the modal basis and the tolerance."""
         return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
 
+    @cached_property
+    def modal_equations(self) -> Equations:
+        """The equations of motion in the modal basis."""
+        return self.model.modal_equations(self.basis)
+
 
 class CaseResult(NamedTuple):
     """Result of one case: the fields of `Sweep`."""
@@ -72,36 +76,32 @@ class CaseResult(NamedTuple):
 
 
 def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseResult]:
-    """Solve the cases of one chunk as a batch, and again one by one those that exceed the tolerance."""
-    motions = request.motions(speeds)
+    """Solve the cases of one chunk, each with its own steps."""
+    solve = _solve_transient if request.scene.physics.large_deflection else _solve
     with one_blas_thread(), np.errstate(all="ignore"):
-        return [
-            case if case.time_error <= request.tolerance * case.largest else _solve_single(request, motion)
-            for case, motion in zip(_solve_batch(request, motions), motions, strict=True)
-        ]
+        return [solve(request, motion) for motion in request.motions(speeds)]
 
 
-def _solve_batch(request: SweepRequest, motions: Sequence[Motion]) -> list[CaseResult]:
-    if request.scene.physics.large_deflection:
-        return [_solve_single(request, motion) for motion in motions]
-    equations = excited_equations(request.model.modal_equations(request.basis), motions, request.t_end)
-    systems = [ModalSystem(equations, motion) for motion in motions]
-    if is_record(systems[-1], request.t_end, StepSize.from_tolerance(request.tolerance)):
-        # A batch has no steps over several samples.
-        return [_solve_single(request, motion) for motion in motions]
+def _solve(request: SweepRequest, motion: Motion) -> CaseResult:
+    """Solve one case by its equations as `simulate` does; of its motion only peaks of the tip are kept."""
+    system = ModalSystem.from_rest(request.modal_equations, motion, request.t_end)
     try:
-        batch = integrate_batch(systems, request.t_end, request.tolerance)
-    except TooManySteps:
-        if (half := len(motions) // 2) == 0:
-            raise
-        return [*_solve_batch(request, motions[:half]), *_solve_batch(request, motions[half:])]
-    except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return [_failed(request, str(error))] * len(motions)
-    return [_case_result(request, *pair) for pair in zip(batch.tips, batch.time_error, strict=True)]
+        path, error, _ = integrate(system, np.zeros(2 * system.size), request.t_end, request.tolerance)
+    except (ArithmeticError, np.linalg.LinAlgError) as reason:
+        return _failed(request, str(reason))
+    tip = path.projected(system.tips)
+    outputs = np.eye(len(system.tips))
+    peak, largest = (largest_deflection(outputs, tip, *w) for w in (request.window, (tip.start, tip.end)))
+    if not np.isfinite(largest):
+        return _failed(request, "not finite")
+    each = (
+        [largest_deflection(o[None], tip, *request.window) for o in outputs] if len(outputs) > 1 else [peak]
+    )
+    return CaseResult(peak, max(peak, largest), error, DONE, tuple(each))
 
 
-def _solve_single(request: SweepRequest, motion: Motion) -> CaseResult:
-    """Solve one case as `simulate` does, which refines its step size until the tolerance is met."""
+def _solve_transient(request: SweepRequest, motion: Motion) -> CaseResult:
+    """Solve one case of large deflection."""
     try:
         run = request.transient_request(motion).run()
         peak = run.peak(*request.window)
@@ -111,17 +111,6 @@ def _solve_single(request: SweepRequest, motion: Motion) -> CaseResult:
         return _failed(request, "not finite")
     by_direction = [run.peak(*request.window, i) for i in range(request.directions)]
     return CaseResult(peak, run.largest, run.time_error, DONE, tuple(by_direction))
-
-
-def _case_result(request: SweepRequest, path: Trajectory, error: float) -> CaseResult:
-    """Result of a case from a trajectory whose coordinates are the tip deflections in each direction."""
-    outputs = np.eye(path.segments[0].acceleration.shape[2])
-    windows = request.window, (path.start, path.end)
-    peak, largest = (largest_deflection(outputs, path, *window) for window in windows)
-    each = (
-        [peak] if len(outputs) == 1 else [largest_deflection(o[None], path, *request.window) for o in outputs]
-    )
-    return CaseResult(peak, max(peak, largest), float(error), DONE, tuple(each))
 
 
 def _failed(request: SweepRequest, reason: str) -> CaseResult:

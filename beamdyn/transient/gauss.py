@@ -13,7 +13,7 @@ Hairer, Lubich, Wanner, Geometric Numerical Integration, 2006, sections II.1.3 a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Protocol
 
@@ -115,7 +115,7 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
     """
     if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
         return _maps_of_equal_steps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
-    a = np.linalg.solve(left_side(C, K, h, table), _right_side(C, K, f, h, table))
+    a = np.linalg.solve(left_side(C, K, h, table), right_side(C, K, f, h, table))
     return StepMaps(_maps_to_end(a, h, table), a.reshape(*f.shape, -1))
 
 
@@ -123,7 +123,7 @@ def _maps_of_equal_steps(
     C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau, count: int
 ) -> StepMaps:
     """Solve equal steps as one, by iterative refinement, because errors of the map grow with its powers."""
-    matrix, right = left_side(C, K, h, table), _right_side(C, K, f, h, table)
+    matrix, right = left_side(C, K, h, table), right_side(C, K, f, h, table)
     a = np.linalg.solve(matrix, right).astype(np.longdouble)
     for _ in range(2):
         a += np.linalg.solve(matrix, (right - matrix.astype(np.longdouble) @ a).astype(float))
@@ -168,7 +168,7 @@ def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> 
     return matrix
 
 
-def _right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
+def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
     """Right-hand sides of the collocation equations for the augmented state, shape (N, s n, 2 n + 1)."""
     N, s, n = f.shape
     right = np.empty((N, s, n, 2 * n + 1))
@@ -178,6 +178,18 @@ def _right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
     if C is not None:
         right[..., n + 1 :] -= C
     return right.reshape(N, s * n, 2 * n + 1)
+
+
+def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+    """Values (..., d) of linear functions of coordinates q (..., n), given per unit of each (d, n)."""
+    return np.stack([q @ output for output in outputs], axis=-1)
+
+
+def project(state: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+    """Augmented states of linear functions (d, n) of coordinates, (..., 2 d + 1), from (..., 2 n + 1)."""
+    n = outputs.shape[1]
+    q, v = state[..., 1 : n + 1], state[..., n + 1 :]
+    return np.concatenate([state[..., :1], components(q, outputs), components(v, outputs)], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -203,6 +215,12 @@ class Segment:
     def end(self) -> float:
         """End [s]."""
         return self.start + self.h * len(self.acceleration)
+
+    def projected(self, outputs: np.ndarray) -> Segment:
+        """Segment of linear functions of the coordinates, given per unit of each: (d, n)."""
+        return replace(
+            self, state=project(self.state, outputs), acceleration=components(self.acceleration, outputs)
+        )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Sample times, displacements and velocities at `count` equal parts of each step, without its end."""
@@ -307,8 +325,8 @@ def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None)
 
 def advance(steps: np.ndarray, state: np.ndarray) -> None:
     """Fill the augmented states state[1:] from state[0] by affine maps, one after the other."""
-    for k, step in enumerate(steps):
-        np.dot(step, state[k], out=state[k + 1, 1:])
+    for step, before, after in zip(steps, state[:-1], state[1:, 1:], strict=True):
+        step.dot(before, out=after)
 
 
 def _affine_powers(step: np.ndarray, count: int) -> np.ndarray:

@@ -10,7 +10,7 @@ them it shows in the deflection, where the error estimate sees it (`record_error
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Protocol
@@ -25,8 +25,10 @@ from beamdyn.transient.gauss import (
     StepMaps,
     Tableau,
     advance,
+    components,
     interpolate,
     interpolate_each,
+    project,
     solve_steps,
     tableau,
 )
@@ -196,6 +198,12 @@ class RecordSegment:
     def end(self) -> float:
         """End [s]."""
         return float(self.steps.start[-1] + self.steps.h[-1])
+
+    def projected(self, outputs: np.ndarray) -> RecordSegment:
+        """Segment of linear functions of the coordinates, given per unit of each: (d, n)."""
+        return replace(
+            self, state=project(self.state, outputs), acceleration=components(self.acceleration, outputs)
+        )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Sample times, displacements and velocities at `count` equal parts of each step, without its end."""

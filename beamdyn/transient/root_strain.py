@@ -14,7 +14,7 @@ from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_error import estimate_record_error
 from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.time_error import CheckedSteps, estimate_time_error
+from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
 
 _TIMES_CHECKED = 257  # of a run, at which the strain per coordinate is compared
@@ -64,9 +64,9 @@ class RootStrain:
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip
         outputs = self._largest_per_coordinate(np.linspace(path.start, path.end, _TIMES_CHECKED))
-        checks = [CheckedSteps.of_segment(s) for s in path.segments if isinstance(s, Segment)]
+        steps = [s for s in path.segments if isinstance(s, Segment)]
         of_records = (s for s in path.segments if isinstance(s, RecordSegment))
-        errors = [estimate_time_error(self.system, checks, outputs)]
+        errors = [estimate_time_error(self.system, steps, outputs)]
         errors += [estimate_record_error(self.system, segment, outputs) for segment in of_records]
         return sum(error.total for error in errors)
 

@@ -10,11 +10,18 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.motion import Motion
+from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.record_error import estimate_record_error
 from beamdyn.transient.record_steps import RecordSteps, is_record, propagate_record, smooth_piece_ends
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.time_error import ERROR_ORDER, STAGES, CheckedSteps, TimeError, estimate_time_error
+from beamdyn.transient.time_error import (
+    ERROR_ORDER,
+    STAGES,
+    SegmentWithError,
+    TimeError,
+    estimate_time_error,
+)
 from beamdyn.transient.trajectory import Trajectory, magnitude
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
@@ -22,6 +29,7 @@ TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the ro
 _REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
 _LOOSEST_TOLERANCE = 0.01  # of the free vibration of a mode whose phase is resolved
 _PARTS = 4  # of a segment in which the speed changes, each with its own step size
+_WORTH_A_SEGMENT = 500  # steps that cost as much as the preparation of a segment
 _MOST_STEPS = 3_000_000  # of a run
 _MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
 _TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
@@ -54,13 +62,17 @@ class StepSize:
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
         """Number of equal steps from start to end [s]."""
-        t = np.linspace(start, end, 9)
-        speed = np.abs(system.motion.at(t).speed).max()
-        lines = [line.multiple * speed for line in system.motion.lines]
+        return self.count_steps_of_each(system, np.array([start, end]))[0]
+
+    def count_steps_of_each(self, system: ModalSystem, ends: np.ndarray) -> list[int]:
+        """Numbers of equal steps of neighbouring segments, by their ends [s]."""
+        t = np.linspace(ends[:-1], ends[1:], 9, axis=1)
+        speed = np.abs(system.motion.at(t).speed).max(axis=1)
+        multiple = max((line.multiple for line in system.motion.lines), default=0.0)
         _, K, _ = system.coefficients(t)
-        natural = np.sqrt(np.sort(np.abs(np.linalg.eigvals(K)), axis=1)[:, self.modes - 1].max())
-        fastest = max(natural, speed * (system.equations.gravity != 0), *lines, 0.0)
-        return max(1, int(np.ceil((end - start) * fastest / self.phase)))
+        natural = np.sqrt(np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, self.modes - 1].max(axis=1))
+        fastest = np.maximum(natural, speed * max(multiple, float(system.equations.gravity != 0)))
+        return np.maximum(1, np.ceil(np.diff(ends) * fastest / self.phase)).astype(int).tolist()
 
     def refine(self, error: TimeError, bound: float, order: int) -> StepSize:
         """Next step size, where the error exceeds its bound [m]: more modes resolved, or a smaller angle.
@@ -133,12 +145,34 @@ def _attempt(
     system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
 ) -> tuple[Trajectory, TimeError, int]:
     """Integrate with equal steps in each segment: path, error, and the order of the error."""
-    edges = split_at_breakpoints(system.motion, t_end)
-    steps = [step_size.count_steps(system, a, b) for a, b in pairwise(edges)]
+    edges, steps = _choose_steps(system, t_end, step_size)
     check_number_of_steps(sum(steps), system.size, t_end)
     segments = _propagate(system, edges, steps, y0, tolerance)
-    error = estimate_time_error(system, [CheckedSteps.of_segment(s) for s in segments], system.tips)
+    error = estimate_time_error(system, segments, system.tips)
     return Trajectory(segments), error, ERROR_ORDER
+
+
+def _choose_steps(system: ModalSystem, t_end: float, step_size: StepSize) -> tuple[np.ndarray, list[int]]:
+    """Segments of a run, by their ends [s], and their numbers of steps.
+
+    Neighbouring parts of one smooth piece are joined where steps of one size cost fewer steps more than
+    the preparation of another segment is worth.
+    """
+    breakpoints = set(smooth_piece_ends(system.motion, t_end))
+    edges, steps = [0.0], []
+    parts = split_at_breakpoints(system.motion, t_end)
+    for (a, b), count in zip(
+        pairwise(parts.tolist()), step_size.count_steps_of_each(system, parts), strict=True
+    ):
+        if steps and a not in breakpoints:
+            densest = max(steps[-1] / (a - edges[-2]), count / (b - a))
+            joined = int(np.ceil(densest * (b - edges[-2]) * (1 - 1e-12)))
+            if joined <= steps[-1] + count + _WORTH_A_SEGMENT:
+                edges[-1], steps[-1] = b, joined
+                continue
+        edges.append(b)
+        steps.append(count)
+    return np.array(edges), steps
 
 
 def _attempt_record(
@@ -150,6 +184,27 @@ def _attempt_record(
     segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES)
     order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
     return Trajectory((segment,)), estimate_record_error(system, segment, system.tips), order
+
+
+def follow_steps(
+    path: Trajectory, system: ModalSystem, y0: np.ndarray, tolerance: float
+) -> tuple[Trajectory, float]:
+    """Integrate other equations in the equal steps of a path.
+
+    The other parameters and what is raised are those of `integrate`.
+
+    Returns
+    -------
+    path : Trajectory
+    error : float
+        Error of the tip deflection [m] in those segments that state one; that of the others is not estimated.
+    """
+    steps = [len(segment.acceleration) for segment in path.segments]
+    check_number_of_steps(sum(steps), system.size, path.end)
+    edges = np.array([path.start, *(segment.end for segment in path.segments)])
+    segments = _propagate(system, edges, steps, y0, tolerance)
+    stated = [s for s in segments if isinstance(s, SegmentWithError)]
+    return Trajectory(segments), estimate_time_error(system, stated, system.tips).total if stated else 0.0
 
 
 def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
@@ -202,7 +257,8 @@ def _propagate_segment(
     """Integrate a segment: by the series for weakly modulated stiffness if it converges, else directly."""
     modulated = system.modulated(a, b)
     if modulated is not None:
-        segment = propagate_modulated(modulated, a, b, steps, q, v, STAGES, accuracy)
-        if segment is not None:
-            return segment
+        for propagate_all in (propagate_in_closed_form, propagate_modulated):
+            segment = propagate_all(modulated, a, b, steps, q, v, STAGES, accuracy)
+            if segment is not None:
+                return segment
     return propagate(system, a, b, steps, q, v, STAGES)

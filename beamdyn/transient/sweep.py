@@ -39,8 +39,9 @@ from beamdyn.transient.chunk_collector import ChunkCollector, Progress
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
-from beamdyn.transient.simulate import Transient, TransientRequest, simulate
+from beamdyn.transient.simulate import simulate
 from beamdyn.transient.step_size import TOLERANCES
+from beamdyn.transient.transient import Transient, TransientRequest
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -133,17 +134,15 @@ def sweep(
     store: str | Path | None = None,
     progress: Progress | None = None,
     discretization: DiscretizationChoice = "ritz",
-    chunk: int = 40,
+    chunk: int = 10,
 ) -> Sweep:
     """Compute the largest |tip deflection| in a time window, from rest, for each final speed of the motion.
 
-    The cases are split into chunks of neighbouring speeds, each integrated as one batch.  The
-    chunks depend on the request only, so that the result is the same to the bit for any workers, executor,
-    order and resumption.
+    Each case takes steps of its own, so that its result is the same to the bit for any workers, executor,
+    order, resumption and size of the chunks.
 
-    The cases of a chunk share their steps, and with ``modes="auto"`` all cases share a modal basis, which
-    is chosen at the slowest and the fastest speed.  So the result of a case depends within `time_error` and
-    `mode_error` on which other speeds are asked for, and within `time_error` on `chunk`.
+    With ``modes="auto"`` all cases share a modal basis, which is chosen at the slowest and the fastest speed.
+    So the result of a case depends within `time_error` and `mode_error` on which other speeds are asked for.
 
     Parameters
     ----------
@@ -172,7 +171,7 @@ def sweep(
     discretization : {"ritz", "fem"} or Discretization
         Discretization from which the modes are computed.
     chunk : int
-        Number of cases in a chunk.  It changes the result within `time_error`.
+        Number of cases that a worker takes and the store keeps at once.
 
     Returns
     -------
@@ -204,7 +203,7 @@ def sweep(
     request = replace(request, basis=largest)
     collector = ChunkCollector(request, _split(cases, chunk), chunk_store, progress)
     collector.collect(executor, workers)
-    method = f"Gauss collocation in batches of {chunk}, {request.basis} of {request.model.discretization}"
+    method = f"Gauss collocation, {request.basis} of {request.model.discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
     request = replace(request, scene=scene)
     result = _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)

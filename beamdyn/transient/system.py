@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.equations.root_motion import CONSTANT_AT_STEADY_SPEED, Quantity, RootMotion
+from beamdyn.equations.root_motion import CONSTANT_AT_STEADY_SPEED, Quantity, RootMotion, root_motion
 from beamdyn.modal.modal_basis import SPEED_SAMPLES
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion import Motion, MotionSample
+from beamdyn.transient.gauss import components
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
 _MEAN_SAMPLES = 257  # of the root's motion, for the mean stiffness
@@ -82,30 +83,50 @@ class ModalSystem:
         return self.equations.matrix(1, root) if self.equations.matrices[1] else None
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into a constant part and a varying stiffness.
+        """Split the equations from start to end [s] into what follows the speed and a varying stiffness.
 
-        None if the speed changes, or if damping or gyroscopic terms vary.
+        None if damping or gyroscopic terms vary otherwise.
         """
         stiffness, damping, _ = self.equations.matrices
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
-        if self.motion.steady_start > start or not set(damping) <= set(CONSTANT_AT_STEADY_SPEED):
+        if not set(damping) <= set(CONSTANT_AT_STEADY_SPEED):
             return None
-        root = self.root(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
-        mean = RootMotion(*(np.asarray(getattr(root, f.name).mean()) for f in fields(RootMotion)))
-        loads = self.equations.vectors
+        loads, mean = self.equations.vectors, self._mean_excess(start, end)
+        speed = float(self.motion.at(np.array(start)).speed)
+
+        def slow(t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
+            about_centre = self._about_fixed_centre(self.motion.at(t))
+            moved = {name: getattr(about_centre, name) + mean[name] for name in varying}
+            C, K, _ = self.assemble(replace(about_centre, **moved))
+            return C, K
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            now = self.root(t)
-            e = [getattr(now, name) - getattr(mean, name) for name in varying]
+            sample = self.motion.at(t)
+            now, about_centre = self.equations.root(sample), self._about_fixed_centre(sample)
+            e = [getattr(now, name) - getattr(about_centre, name) - mean[name] for name in varying]
             return _stack(e, t.shape), _stack([getattr(now, name) for name in loads], t.shape)
 
         return ModulatedSystem(
-            C=self._damping(mean),
-            K=self.equations.matrix(0, mean),
+            slow=slow,
+            steady=self.motion.steady_start <= start,
             G=np.array([stiffness[name] for name in varying]).reshape(-1, self.size, self.size),
             P=np.array([*loads.values()]).reshape(-1, self.size),
             scalars=scalars,
+            lines=abs(speed) * np.array([1.0, *(line.multiple for line in self.motion.lines)]),
         )
+
+    def _about_fixed_centre(self, sample: MotionSample) -> RootMotion:
+        """Motion of the root about a fixed centre without gravity, which follows the speed."""
+        still = MotionSample(np.zeros(()), sample.speed, sample.acceleration, np.zeros(3))
+        return root_motion(self.equations.mount, still)
+
+    def _mean_excess(self, start: float, end: float) -> dict[str, np.ndarray]:
+        """Means from start to end [s] of what the motion of the root has beyond that about a fixed centre."""
+        sample = self.motion.at(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
+        now, about_centre = self.equations.root(sample), self._about_fixed_centre(sample)
+        return {
+            f.name: (getattr(now, f.name) - getattr(about_centre, f.name)).mean() for f in fields(RootMotion)
+        }
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
@@ -122,11 +143,6 @@ class ModalSystem:
         if C is not None:
             J[n:, n:] = -C
         return J
-
-
-def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Values (..., d) of linear functions of coordinates q (..., n), given per unit of each (d, n)."""
-    return np.stack([q @ output for output in outputs], axis=-1)
 
 
 def excited_equations(equations: Equations, motions: Sequence[Motion], t_end: float) -> Equations:

@@ -13,9 +13,9 @@ from beamdyn.transient.trajectory import magnitude
 
 STAGES = 8  # of the Gauss collocation that is checked
 ERROR_ORDER = 2 * STAGES  # of its error, in the step size
-_MOST_CHECKED = 48  # steps of a segment at which the local error is measured
+_MOST_CHECKED = 32  # steps of a segment at which the local error is measured
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
-_INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
+INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
 _ROUNDING = 1e-14  # rounding error of a step, over the sum of the magnitudes of its terms
 _MARGIN = 1.5  # safety factor of the estimate
@@ -37,6 +37,8 @@ class CheckedSteps:
         Augmented states (1, q, v) at the beginnings of the checked steps.
     end_state : ndarray, shape (k, 2 n)
         Computed coordinates and velocities at their ends.
+    acceleration : ndarray, shape (k, s, n)
+        Computed accelerations at their nodes.
     """
 
     starts: np.ndarray
@@ -44,6 +46,7 @@ class CheckedSteps:
     steps: int
     state: np.ndarray
     end_state: np.ndarray
+    acceleration: np.ndarray
 
     @classmethod
     def of_segment(cls, segment: Segment) -> CheckedSteps:
@@ -51,7 +54,8 @@ class CheckedSteps:
         steps = len(segment.acceleration)
         chosen = choose_checked_steps(steps)
         starts = segment.start + segment.h * chosen
-        return cls(starts, segment.h, steps, segment.state[chosen], segment.state[chosen + 1, 1:])
+        ends = segment.state[chosen + 1, 1:]
+        return cls(starts, segment.h, steps, segment.state[chosen], ends, segment.acceleration[chosen])
 
 
 def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
@@ -59,6 +63,38 @@ def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
     if steps <= most:
         return np.arange(steps)
     return np.unique((steps * (_GOLDEN * np.arange(most) % 1)).astype(int))
+
+
+@dataclass(frozen=True)
+class SegmentError:
+    """Time-integration error of a segment, in coordinates.
+
+    Parameters
+    ----------
+    coordinates : ndarray, shape (n,)
+        Largest error of each coordinate at the ends of the steps.
+    interpolation : ndarray, shape (k, n)
+        Interpolation errors at some times.
+    unresolved : ndarray of bool, shape (n,)
+        Whether the steps are too long to follow the free vibration of a coordinate.
+    """
+
+    coordinates: np.ndarray
+    interpolation: np.ndarray
+    unresolved: np.ndarray
+
+
+@dataclass(frozen=True)
+class SegmentWithError(Segment):
+    """Segment of a trajectory whose error is known from how it was found.
+
+    Parameters
+    ----------
+    error : SegmentError
+        Its error.
+    """
+
+    error: SegmentError
 
 
 @dataclass(frozen=True)
@@ -93,21 +129,15 @@ class TimeError:
         return _MARGIN * (float(self.modes.sum()) + self.interpolation)
 
 
-def estimate_time_error(
-    system: ModalSystem, checks: Sequence[CheckedSteps], outputs: np.ndarray
-) -> TimeError:
-    """Estimate the time-integration error of a quantity from the local errors of some steps.
-
-    Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
-    coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
-    of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.
+def estimate_time_error(system: ModalSystem, segments: Sequence[Segment], outputs: np.ndarray) -> TimeError:
+    """Estimate the time-integration error of a quantity from the errors of all segments.
 
     Parameters
     ----------
     system : ModalSystem
         The equations.
-    checks : sequence of CheckedSteps
-        Checked steps of each segment.
+    segments : sequence of Segment
+        The segments of a trajectory.
     outputs : ndarray, shape (d, n)
         The quantity whose error is sought, such as the tip deflection, per unit of each coordinate: the d
         components of a vector, whose error is the magnitude of that of the vector.
@@ -116,19 +146,33 @@ def estimate_time_error(
     -------
     TimeError
     """
-    n, frequencies = system.size, vibration_frequencies(system, sum(c.h * c.steps for c in checks))
-    total, interpolation, unresolved = np.zeros(n), 0.0, np.zeros(n, dtype=bool)
-    for check in checks:
-        maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
-        local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies).mean(axis=0)
-        delta = phase_errors(finer.step - maps.step, frequencies)
-        total += total_of_local_errors(local, delta, check.steps)
-        unresolved |= delta > UNRESOLVED_PHASE
-        accelerations = [(m.acceleration @ check.state[:, None, :, None])[..., 0] for m in (maps, finer)]
-        q = [interpolate(check.h, check.state, a, _INTERPOLATION_POINTS)[0] for a in accelerations]
-        interpolation = max(interpolation, float(magnitude(q[0] - q[1], outputs).max()))
-    modes = total * size_per_coordinate(outputs)
+    frequencies = vibration_frequencies(system, sum(s.end - s.start for s in segments))
+    errors = [
+        s.error if isinstance(s, SegmentWithError) else _error_of_steps(system, s, frequencies)
+        for s in segments
+    ]
+    zero = np.zeros(system.size)
+    modes = sum((e.coordinates for e in errors), zero) * size_per_coordinate(outputs)
+    interpolation = max((float(magnitude(e.interpolation, outputs).max()) for e in errors), default=0.0)
+    unresolved = np.logical_or.reduce([zero > 0, *(e.unresolved for e in errors)])
     return TimeError.of_coordinates(system, modes, interpolation, unresolved)
+
+
+def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarray) -> SegmentError:
+    """Error of a segment by the local errors of some steps.
+
+    Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
+    coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
+    of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.
+    """
+    check = CheckedSteps.of_segment(segment)
+    maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
+    local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies).mean(axis=0)
+    delta = phase_errors(finer.step - maps.step, frequencies)
+    accelerations = check.acceleration, (finer.acceleration @ check.state[:, None, :, None])[..., 0]
+    q = [interpolate(check.h, check.state, a, INTERPOLATION_POINTS)[0] for a in accelerations]
+    total = total_of_local_errors(local, delta, check.steps)
+    return SegmentError(total, (q[0] - q[1]).reshape(-1, system.size), delta > UNRESOLVED_PHASE)
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from beamdyn.transient.record_steps import RecordSegment
 
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
+_REFINED = 4  # of these, after the first refinement
 _REFINEMENTS = 4  # of a maximum, each on a grid 17 times as fine
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
@@ -70,6 +71,11 @@ class Trajectory:
         return self.segments[-1].end
 
     @property
+    def in_equal_steps(self) -> bool:
+        """Whether each segment has equal steps."""
+        return all(isinstance(segment, Segment) for segment in self.segments)
+
+    @property
     def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times (k,) [s], coordinates and velocities (k, n), several in each step."""
         return self._samples
@@ -82,6 +88,10 @@ class Trajectory:
         parts = [*(segment.samples(SAMPLES) for segment in self.segments), end]
         t, q, v = (np.concatenate(each) for each in zip(*parts, strict=True))
         return t, q, v
+
+    def projected(self, outputs: np.ndarray) -> Trajectory:
+        """Path of linear functions of the coordinates, given per unit of each, (d, n), as coordinates."""
+        return Trajectory(tuple(segment.projected(outputs) for segment in self.segments))
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and velocities at times t [s]: shapes (len(t), n)."""
@@ -142,7 +152,8 @@ def largest_on(size_of: Size, path: Path, start: float, end: float) -> float:
     for _ in range(_REFINEMENTS):
         near = np.clip(t[:, None] + np.linspace(-half_width, half_width, 35), start, end)
         size = size_of(path.at(near.ravel())[0]).reshape(near.shape)
-        t, half_width = near[np.arange(len(t)), size.argmax(axis=1)], half_width / 17
+        highest = np.argsort(size.max(axis=1))[-_REFINED:]  # the first refinement tells them from the others
+        t, half_width = near[highest, size[highest].argmax(axis=1)], half_width / 17
     return float(size.max())
 
 

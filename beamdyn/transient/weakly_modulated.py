@@ -1,98 +1,337 @@
-"""Gauss collocation for a stiffness that varies weakly about its mean: at steady speed.
+"""Gauss collocation for a stiffness that varies slowly with the speed, and weakly about that.
 
-The equations: q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with constant matrices.  With e = 0
-the matrix of the collocation equations is the same for all steps and is inverted once.  The maps of the steps
-follow from a power series in the values of e at their nodes, up to the second order, so that no step needs a
-factorisation of its own.
+The equations: q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with constant matrices G_m, P_l.
+C and K follow the speed.  With e = 0 the maps of the steps are smooth functions of time, which are
+interpolated between a few steps by Chebyshev polynomials; at steady speed one step stands for all.  What e
+changes follows from a power series in the values of e at the nodes, up to the second order.  So no step needs
+a factorisation of its own, and the maps of many steps are one product of matrices.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 
 import numpy as np
 
-from beamdyn.transient.gauss import BLOCK, Segment, Tableau, add_drift, advance, increment, left_side, tableau
+from beamdyn.transient.gauss import (
+    Segment,
+    Tableau,
+    add_drift,
+    advance,
+    increment,
+    left_side,
+    right_side,
+    tableau,
+)
+
+_POINTS = (25, 37)  # Chebyshev points of a segment of changing speed that are tried; odd
+_FEWEST_STEPS = 6  # steps for each point, below which solving every step costs no more
+_MOST_VALUES = 4_000_000  # of the expanded maps of changing speed, some 30 MB
+_LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
+_SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
+_SAMPLES = 257  # of e, for its largest value
+_NEGLIGIBLE = 1e-3  # share of an accuracy
+_SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
+_STEPS = 192  # steps solved as one batch
 
 
 @dataclass(frozen=True)
 class ModulatedSystem:
-    """Equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l.
+    """Equations q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l.
 
     Parameters
     ----------
-    C : ndarray, shape (n, n), or None
-        Damping and gyroscopic matrix.
-    K : ndarray, shape (n, n)
-        Mean stiffness.
+    slow : callable
+        From times (...) [s] to C, (..., n, n) or None, and K, (..., n, n), which follow the speed.
+    steady : bool
+        Whether C and K are constant.
     G : ndarray, shape (m, n, n)
         Matrices G_m of the varying stiffness.
     P : ndarray, shape (l, n)
         Vectors P_l of the loads.
     scalars : callable
         From times (...) [s] to e, shape (..., m), and g, shape (..., l).
+    lines : ndarray, shape (f,)
+        Angular frequencies [rad/s] that e and g have at steady speed, as far as they are known.
     """
 
-    C: np.ndarray | None
-    K: np.ndarray
+    slow: Callable[[np.ndarray], tuple[np.ndarray | None, np.ndarray]]
+    steady: bool
     G: np.ndarray
     P: np.ndarray
     scalars: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+    lines: np.ndarray
 
 
 @dataclass(frozen=True)
-class _Series:
-    """Power series of the accelerations a = (L + sum_m D_m Z_m)^-1 (R0 + sum_m D_m R_m) z, D_m = diag(e_m).
+class _Point:
+    """Maps of steps that begin at P Chebyshev points, as a power series in e.
 
-    z = (q, v, g at the nodes) has 2 n + s l entries.  To the second order in D,
-    a = X0 z + Y D W z - Y D Z Y D W z, summed over m, with Y = L^-1, X0 = Y R0 and W_m = R_m - Z_m X0.
+    The accelerations at the nodes are a = (L + sum_m D_m Z_m)^-1 (R0 + sum_m D_m R_m) z, D_m = diag(e_m),
+    with z = (q, v, g at the nodes) of 2 n + s l entries.  To the second order in D,
+    a = X0 z + Y D (R - Z X0) z - Y D Z Y D (R - Z X0) z, summed over m, with Y = L^-1 and X0 = Y R0.
+
+    Parameters
+    ----------
+    Y, X0 : ndarray, shape (P, s n, s n) and (P, s n, 2 n + s l)
+    R, Z : ndarray, shape (m, s n, 2 n + s l) and (m, s n, s n)
+    h : float
+        Step size [s].
+    table : Tableau
+        Collocation.
     """
 
     Y: np.ndarray
-    Z: np.ndarray
     X0: np.ndarray
-    W: np.ndarray
+    R: np.ndarray
+    Z: np.ndarray
+    h: float
+    table: Tableau
 
-    def accelerations(self, e: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Accelerations at the nodes of N steps, shape (N, s n), for e (m, N, s n) and z (N, 2 n + s l)."""
-        first = (e * (z @ np.swapaxes(self.W, 1, 2))).sum(axis=0) @ self.Y.T
-        second = (e * (first @ np.swapaxes(self.Z, 1, 2))).sum(axis=0) @ self.Y.T
-        return z @ self.X0.T + first - second
+    @classmethod
+    def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: Tableau) -> _Point:
+        """Expand the accelerations of steps of h [s] that begin at some times (P,) [s]."""
+        C, K = system.slow(times[:, None] + h * table.c)
+        P, s, n, _ = K.shape
+        Y = np.linalg.inv(left_side(C, K, h, table))
+        free = right_side(C, K, np.zeros((P, s, n)), h, table)[:, :, 1:]
+        loads = np.einsum("ij,la->iajl", np.eye(s), system.P).reshape(s * n, -1)
+        drift = np.stack([np.ones(s), h * table.c], axis=1)  # of q and v in the displacement at the nodes
+        R = -np.einsum("ix,mab->miaxb", drift, system.G).reshape(-1, s * n, 2 * n)
+        R = np.concatenate([R, np.zeros((len(R), *loads.shape))], axis=2)
+        Z = h**2 * np.einsum("ij,mab->miajb", table.A2, system.G).reshape(-1, s * n, s * n)
+        return cls(Y, np.concatenate([Y @ free, Y @ loads], axis=2), R, Z, h, table)
 
-    def maps(self, h: float, table: Tableau) -> np.ndarray:
-        """Maps from z to (q, v) at the end of a step: factors of 1, e_k and e_k e_l with k, l = (m, node).
+    def every(self, stride: int) -> _Point:
+        """The same for some of the points."""
+        return replace(self, Y=self.Y[::stride], X0=self.X0[::stride])
 
-        With d = m s such pairs, the shape is (1 + d + d^2, 2 n, :).
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return self.Y.shape[1] // len(self.table.c)
+
+    def constant(self) -> np.ndarray:
+        """Maps from z to (q, v) at the end of a step with e = 0: shape (P, 1, 2 n, :)."""
+        return add_drift(increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
+
+    def _parts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Maps of a load at each node to (q, v), (P, s, 2 n, n), and W = R - Z X0, (P, m, s, n, :)."""
+        P, s, n = len(self.Y), len(self.table.c), self.size
+        ends = increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
+        W = self.R - self.Z @ self.X0[:, None]
+        return np.moveaxis(ends, 2, 1), W.reshape(P, len(self.Z), s, n, -1)
+
+    def first(self) -> np.ndarray:
+        """Factors of e_k, k = (m, node), in the maps to the end of a step: shape (P, m s, 2 n, :)."""
+        ends, W = self._parts()
+        found = ends[:, None] @ W
+        return found.reshape(len(found), -1, *found.shape[3:])
+
+    def second(self) -> np.ndarray:
+        """Factors of e_k e_l, k <= l, as `first`: shape (P, m s (m s + 1) / 2, 2 n, :)."""
+        ends, W = self._parts()
+        P, m, s, n, columns = W.shape
+        ZY = (self.Z @ self.Y[:, None]).reshape(P, m, s, n, s * n)
+        left = (ends[:, None] @ ZY).reshape(P, m * s * 2 * n, s, n).swapaxes(1, 2)
+        pairs = (left[:, None] @ W).reshape(P, m * s, m * s, 2 * n, columns)  # of e_l and, before it, e_k
+        rows, cols = _pairs(m * s)
+        twice = np.where(rows == cols, 0.5, 1.0)[:, None, None]
+        return -(pairs[:, rows, cols] + pairs[:, cols, rows]) * twice
+
+    def ratio(self) -> np.ndarray:
+        """Bound of the ratio of successive terms of the series for e_m = 1: shape (m,)."""
+        A = self.Z @ self.Y[:, None]
+        norm = np.linalg.norm(A, axis=(2, 3)) + 1e-300
+        A = A / norm[:, :, None, None]
+        for _ in range(_SQUARINGS):
+            A = A @ A
+        return (norm * np.linalg.norm(A, axis=(2, 3)) ** (0.5**_SQUARINGS)).max(axis=0)
+
+
+@dataclass(frozen=True)
+class _Expansion:
+    """Maps of all steps: sums of Chebyshev polynomials of the step's beginning, times monomials in e.
+
+    Parameters
+    ----------
+    maps : tuple of ndarray, shapes (p_o, k_o, 2 n, 2 n + s l)
+        Coefficients of the maps to the end of a step, for the k_o monomials of orders 0, 1 and 2.
+    X0, Y : ndarray, shape (p, s n, :)
+        Chebyshev coefficients of X0 and Y of `_Point`.
+    sizes : tuple of ndarray, shapes (p,)
+        Size of each polynomial in the maps of each order, in X0 and in Y.
+    allowed : tuple of float
+        Size of what may be left out of each.
+    ratio : ndarray, shape (m,)
+        Ratio of successive terms of the series for e_m = 1.
+    point : _Point
+        The series at the Chebyshev points.
+    """
+
+    maps: tuple[np.ndarray, ...]
+    X0: np.ndarray
+    Y: np.ndarray
+    sizes: tuple[np.ndarray, ...]
+    allowed: tuple[float, ...]
+    ratio: np.ndarray
+    point: _Point
+
+    @classmethod
+    def of(
+        cls,
+        system: ModulatedSystem,
+        points: int,
+        first: float,
+        h: float,
+        steps: int,
+        table: Tableau,
+        accuracy: float,
+    ) -> _Expansion | None:
+        """Expand the maps of some steps of h, the first beginning at `first` [s], so many points.
+
+        None if the polynomials of so many points are not within the accuracy after all steps.
         """
-        s, size = len(table.c), len(self.Y)
-        n = size // s
-        nodes = [slice(i * n, (i + 1) * n) for i in range(s)]
-        pairs = [(m, i) for m in range(len(self.Z)) for i in nodes]
-        ZY = self.Z @ self.Y
-        first = [self.Y[:, i] @ self.W[m, i] for m, i in pairs]
-        second = [-self.Y[:, i] @ ZY[m, i, j] @ self.W[k, j] for m, i in pairs for k, j in pairs]
-        constant = add_drift(increment(self.X0[None], h, table), h, first=0)
-        varying = np.array([*first, *second]).reshape(-1, *self.X0.shape)
-        return np.concatenate([constant, increment(varying, h, table)])
+        begin = first + (steps - 1) * h * (1 + _extrema(points)) / 2
+        point = _Point.at(system, begin, h, table)
+        e, _ = system.scalars(np.linspace(first, first + steps * h, _SAMPLES)[1:-1])
+        largest, ratio = _LARGEST_SAMPLED * np.abs(e).max(axis=0), point.every(3).ratio()
+        constant = point.constant()
+        rows, columns = _scales(system, constant, first, table)
+        maps, sizes, scale = [], [], rows[:, None] * columns
+        values = constant, point.first(), point.every(2).second()
+        for value, factor in zip(
+            values, _monomials_by_order(np.repeat(largest, len(table.c))[None]), strict=True
+        ):
+            maps.append(_chebyshev_coefficients(value))
+            sizes.append((np.abs(maps[-1] * scale).max(axis=(2, 3)) * factor).sum(axis=1))
+            if points > 1 and sizes[-1][-1] > accuracy / steps:
+                return None
+        X0, Y = _chebyshev_coefficients(point.X0), _chebyshev_coefficients(point.Y)
+        forces = np.tile(rows[point.size :] ** 2, len(table.c))  # of accelerations, to displacements
+        sizes += [np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2)), np.abs(Y).max(axis=(1, 2))]
+        rough = accuracy / max(float(ratio @ largest), accuracy)
+        kept = [
+            min(_NEGLIGIBLE * share, 1.0) * size.max()
+            for share, size in zip((accuracy, rough), sizes[3:], strict=True)
+        ]
+        return cls(tuple(maps), X0, Y, tuple(sizes), (*[accuracy / steps] * 3, *kept), ratio, point)
+
+    def over(self, start: float, end: float) -> _Block:
+        """The maps of the steps that begin from `start` to `end`, both in [-1, 1], by fewer polynomials."""
+        parts = zip((*self.maps, self.X0, self.Y), self.sizes, self.allowed, strict=True)
+        fewer = (_localize(values, size, allowed, start, end) for values, size, allowed in parts)
+        *maps, X0, Y = fewer
+        return _Block(tuple(maps), X0, Y, self.point)
 
 
-def _expand_accelerations(system: ModulatedSystem, h: float, table: Tableau) -> _Series:
-    """Expand the accelerations of a step of h [s] in powers of the varying stiffness."""
-    s, n = len(table.c), len(system.K)
-    C = None if system.C is None else np.broadcast_to(system.C, (1, s, n, n))
-    L = left_side(C, np.broadcast_to(system.K, (1, s, n, n)), h, table)[0]
-    drift = np.stack([np.ones(s), h * table.c], axis=1)  # of q and v in the displacement at the nodes
-    R0 = -np.einsum("ix,ab->iaxb", drift, system.K).reshape(s * n, 2 * n)
-    if system.C is not None:
-        R0[:, n:] -= np.tile(system.C, (s, 1))
-    loads = np.einsum("ij,la->iajl", np.eye(s), system.P).reshape(s * n, -1)
-    R = -np.einsum("ix,mab->miaxb", drift, system.G).reshape(-1, s * n, 2 * n)
-    Y = np.linalg.inv(L)
-    Z = h**2 * np.einsum("ij,mab->miajb", table.A2, system.G).reshape(-1, s * n, s * n)
-    X0 = Y @ np.concatenate([R0, loads], axis=1)
-    W = np.concatenate([R, np.zeros((len(R), *loads.shape))], axis=2) - Z @ X0
-    return _Series(Y, Z, X0, W)
+@dataclass(frozen=True)
+class _Block:
+    """Maps of neighbouring steps, as `_Expansion` has them of all, by polynomials of these alone."""
+
+    maps: tuple[np.ndarray, ...]
+    X0: np.ndarray
+    Y: np.ndarray
+    point: _Point
+
+    def polynomials(self, x: np.ndarray) -> np.ndarray:
+        """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""
+        return _polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
+
+    def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
+        """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
+        orders = zip(_monomials_by_order(e), self.maps, strict=True)
+        factors = [_products(T, monomials, values) for monomials, values in orders]
+        shape = self.maps[0].shape[2:]
+        flat = [values.reshape(-1, shape[0] * shape[1]) for values in self.maps]
+        return (np.concatenate(factors, axis=1) @ np.concatenate(flat)).reshape(len(e), *shape)
+
+    def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Accelerations at the nodes, (N, s n), as `steps`, for z (N, 2 n + s l)."""
+        R, Z, n = self.point.R, self.point.Z, self.point.size
+        factor = np.repeat(e.reshape(len(e), len(Z), -1).swapaxes(0, 1), n, axis=2)  # (m, N, s n)
+        total = _evaluate(self.X0, T, z)
+        more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
+        first = _evaluate(self.Y, T, more)
+        second = (factor * (first @ Z.swapaxes(1, 2))).sum(axis=0)
+        return total + first - _evaluate(self.Y, T, second)
+
+
+def _localize(values: np.ndarray, size: np.ndarray, allowed: float, start: float, end: float) -> np.ndarray:
+    """Chebyshev coefficients over a part of [-1, 1], as many as are not within `allowed` together.
+
+    Those over all of it are given, (p, ...), with their sizes (p,).
+    """
+    if len(values) == 1:
+        return values
+    local = _to_part(len(values), start, end)
+    left_out = np.cumsum((np.abs(local) @ size)[::-1])[::-1]
+    count = int((left_out > allowed).sum())
+    return (local[:count] @ values.reshape(len(values), -1)).reshape(count, *values.shape[1:])
+
+
+@lru_cache(maxsize=64)
+def _to_part(count: int, start: float, end: float) -> np.ndarray:
+    """Matrix from Chebyshev coefficients over [-1, 1], so many, to those over a part of it."""
+    T = _polynomials(start + (end - start) * (1 + _extrema(count)) / 2, count)
+    return _to_coefficients(count) @ T
+
+
+def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Products of polynomials T (N, :) and monomials (N, k) by which values (p, k, ...) count: (N, p k)."""
+    return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
+
+
+def _evaluate(coefficients: np.ndarray, T: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Multiply the vectors z (N, c) by matrices given by Chebyshev coefficients (p, r, c): shape (N, r)."""
+    p, rows, columns = coefficients.shape
+    return _products(T, z, coefficients) @ coefficients.swapaxes(1, 2).reshape(p * columns, rows)
+
+
+def _chebyshev_coefficients(values: np.ndarray) -> np.ndarray:
+    """Chebyshev coefficients of functions given at the P extrema of a polynomial, along the first axis."""
+    P = len(values)
+    return values if P == 1 else (_to_coefficients(P) @ values.reshape(P, -1)).reshape(values.shape)
+
+
+@cache
+def _to_coefficients(points: int) -> np.ndarray:
+    """Matrix from values at the extrema of a Chebyshev polynomial to coefficients, shape (P, P)."""
+    return np.linalg.inv(_polynomials(_extrema(points), points))
+
+
+def _extrema(points: int) -> np.ndarray:
+    """Extrema of a Chebyshev polynomial, P of them, from 1 to -1; of one point, 0."""
+    return np.cos(np.pi * np.arange(points) / (points - 1)) if points > 1 else np.zeros(1)
+
+
+def _polynomials(x: np.ndarray, count: int) -> np.ndarray:
+    """Chebyshev polynomials, so many of them, at x (N,) in [-1, 1]: shape (N, count)."""
+    return np.cos(np.arccos(np.clip(x, -1, 1))[:, None] * np.arange(count))
+
+
+@cache
+def _pairs(d: int) -> tuple[np.ndarray, np.ndarray]:
+    """Indices k <= l of all pairs of d numbers."""
+    return np.triu_indices(d)
+
+
+def _scales(
+    system: ModulatedSystem, constant: np.ndarray, t: float, table: Tableau
+) -> tuple[np.ndarray, np.ndarray]:
+    """Factors of rows (2 n,) and columns (2 n + s l,) that make entries of the maps comparable.
+
+    Errors of velocity count over the frequency, those of loads over the largest effect of each in a step.
+    """
+    K = system.slow(np.array([t]))[1][0]
+    n, frequency = len(K), np.sqrt(np.abs(np.diag(K)))
+    frequency = np.maximum(frequency, frequency.max() * _SLOWEST + 1e-300)
+    rows = np.concatenate([np.ones(n), 1 / frequency])
+    effect = np.abs(constant[:, 0, :, 2 * n :] * rows[:, None]).max(axis=(0, 1)).reshape(len(table.c), -1)
+    loads = np.tile(1 / (effect.max(axis=0) + 1e-300), len(table.c))
+    return rows, np.concatenate([np.ones(n), frequency, loads])
 
 
 def propagate_modulated(
@@ -105,7 +344,7 @@ def propagate_modulated(
     stages: int,
     accuracy: float,
 ) -> Segment | None:
-    """Integrate over equal steps, as `beamdyn.transient.gauss.propagate` does, by the power series.
+    """Integrate over equal steps, as `beamdyn.transient.gauss.propagate` does, by the expanded maps.
 
     Parameters
     ----------
@@ -115,35 +354,57 @@ def propagate_modulated(
         As for `propagate`.
     accuracy : float
         Largest relative error by the truncation of the series, estimated as rho^3 times the number of
-        steps, where rho is the ratio of successive terms.
+        steps, where rho is the ratio of successive terms; and by that of the Chebyshev polynomials.
 
     Returns
     -------
     Segment or None
-        None if the stiffness varies too strongly for the series.
+        None if the stiffness varies too strongly for the series, or too fast for the polynomials.
     """
     h, n, table = (t1 - t0) / steps, len(q0), tableau(stages)
-    series = _expand_accelerations(system, h, table)
-    ratio = np.abs(np.linalg.eigvals(series.Z @ series.Y)).max(axis=1)
-    maps = series.maps(h, table).reshape(-1, 2 * n * series.X0.shape[1])
+    expansion = _expand(system, t0, h, steps, table, accuracy)
+    if expansion is None:
+        return None
     state, acceleration = np.empty((steps + 1, 2 * n + 1)), np.empty((steps, stages, n))
     state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    for first in range(0, steps, BLOCK):
-        block = slice(first, min(first + BLOCK, steps))
+    for first in range(0, steps, _STEPS):
+        block = slice(first, min(first + _STEPS, steps))
         k = np.arange(block.start, block.stop)
         e, g = system.scalars(t0 + h * (k[:, None] + table.c))
-        if steps * (ratio * np.abs(e).max(axis=(0, 1))).sum() ** 3 > accuracy:
+        if steps * (expansion.ratio * np.abs(e).max(axis=(0, 1))).sum() ** 3 > accuracy:
             return None
-        e, g = np.moveaxis(e, 2, 1), g.reshape(len(k), -1)  # e over (step, m, node)
-        step = (_monomials(e.reshape(len(k), -1)) @ maps).reshape(len(k), 2 * n, -1)
-        constant = step[:, :, 2 * n :] @ g[:, :, None]
-        advance(np.concatenate([constant, step[:, :, : 2 * n]], axis=2), state[first : block.stop + 1])
+        start, end = (2 * x / max(steps - 1, 1) - 1 for x in (int(k[0]), int(k[-1])))
+        local = expansion.over(start, end)
+        T = local.polynomials(2 * (k - k[0]) / max(len(k) - 1, 1) - 1)
+        e, g = np.moveaxis(e, 2, 1).reshape(len(k), -1), g.reshape(len(k), -1)  # e over (step, (m, node))
+        maps = local.steps(T, e)
+        affine = np.empty((len(k), 2 * n, 2 * n + 1))
+        np.matmul(maps[:, :, 2 * n :], g[:, :, None], out=affine[:, :, :1])
+        affine[:, :, 1:] = maps[:, :, : 2 * n]
+        advance(affine, state[first : block.stop + 1])
         z = np.concatenate([state[block, 1:], g], axis=1)
-        a = series.accelerations(np.repeat(np.moveaxis(e, 1, 0), n, axis=2), z)
-        acceleration[block] = a.reshape(len(k), stages, n)
+        acceleration[block] = local.accelerations(T, e, z).reshape(len(k), stages, n)
     return Segment(t0, h, state, acceleration)
 
 
-def _monomials(e: np.ndarray) -> np.ndarray:
-    """Monomials 1, e_k and e_k e_l of each row of e (N, d): shape (N, 1 + d + d^2)."""
-    return np.concatenate([np.ones((len(e), 1)), e, (e[:, :, None] * e[:, None]).reshape(len(e), -1)], axis=1)
+def _expand(
+    system: ModulatedSystem, first: float, h: float, steps: int, table: Tableau, accuracy: float
+) -> _Expansion | None:
+    """Expand the maps of some steps by as few points as suffice, if any do."""
+    if system.steady:
+        return _Expansion.of(system, 1, first, h, steps, table, accuracy)
+    n, d = system.G.shape[1], len(system.G) * len(table.c)
+    width = 2 * n * (2 * n + len(table.c) * len(system.P))
+    for points in _POINTS:
+        terms = points + points * d + points * d * d // 4
+        if steps < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
+            return None
+        if (found := _Expansion.of(system, points, first, h, steps, table, accuracy)) is not None:
+            return found
+    return None
+
+
+def _monomials_by_order(e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Monomials of each row of e (N, d): 1, (N, 1); e_k, (N, d); e_k e_l with k <= l, (N, d (d + 1) / 2)."""
+    rows, columns = _pairs(e.shape[1])
+    return np.ones((len(e), 1)), e, e[:, rows] * e[:, columns]

@@ -12,7 +12,6 @@ from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import beamdyn as bd
@@ -120,18 +119,13 @@ def test_without_a_store_the_error_says_so():
         run(executor=Breaking(1))
 
 
-def test_what_does_not_converge_together_is_computed_alone(undisturbed, monkeypatch):
-    def integrate_batch(*_):
-        raise ArithmeticError("not converged")
-
-    monkeypatch.setattr("beamdyn.transient.chunks.integrate_batch", integrate_batch)
-    found = bd.sweep(SCENE, SPEEDS, WINDOW)
-    assert found.status == undisturbed[1]
-    assert found.peaks == pytest.approx(np.frombuffer(undisturbed[0][0]), rel=2e-5)
+@pytest.mark.parametrize("chunk", [1, 5, 12])
+def test_chunks(undisturbed, chunk):
+    assert bits(bd.sweep(SCENE, SPEEDS, WINDOW, chunk=chunk)) == undisturbed
 
 
 def test_an_error_of_a_case_is_not_one_of_the_executor(monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.chunks._solve_batch", lambda *_: 1 / 0)
+    monkeypatch.setattr("beamdyn.transient.chunks._solve", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError), ThreadPoolExecutor(1) as executor:
         run(executor=executor)
 

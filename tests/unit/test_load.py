@@ -153,7 +153,7 @@ def test_results_come_back_from_a_pool_of_new_processes(made):
 def test_a_computed_error_is_kept_in_the_file(made, tmp_path, monkeypatch):
     run = made("transient")
     run.save(tmp_path / "run.json")
-    monkeypatch.setattr("beamdyn.transient.simulate.TransientRequest.run_refined", None)  # not to be called
+    monkeypatch.setattr("beamdyn.transient.transient.TransientRequest.run_refined", None)  # not to be called
     assert bd.load(tmp_path / "run.json").mode_error == run.mode_error > 0
 
 

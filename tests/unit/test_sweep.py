@@ -74,17 +74,22 @@ def test_other_speeds_and_chunks_change_a_case_within_its_errors_only(given, opt
     assert (np.abs(one.largest[i] - other.largest[j]) <= bound).all()
 
 
-def test_a_batch_too_large_for_memory_is_halved(found, monkeypatch):
+def test_a_case_too_large_for_memory_is_refused(monkeypatch):
     def check(steps, size, t_end):
-        if size > 1:
-            raise TooManySteps("t_end", t_end, "too many")
+        raise TooManySteps("t_end", t_end, "too many")
 
-    monkeypatch.setattr("beamdyn.transient.batch.check_number_of_steps", check)
-    halved = bd.sweep(SCENE, SPEEDS, WINDOW, modes=5)
-    assert (np.abs(halved.peaks - found.peaks) <= halved.time_error + found.time_error).all()
-    monkeypatch.setattr("beamdyn.transient.batch.check_number_of_steps", lambda s, n, t: check(s, 2, t))
+    monkeypatch.setattr("beamdyn.transient.step_size.check_number_of_steps", check)
     with pytest.raises(ValueError, match="too many"):
         bd.sweep(SCENE, SPEEDS, WINDOW, modes=5)
+
+
+@pytest.mark.parametrize("given", [{"chunk": 1}, {"chunk": 3}, {"speeds": [30.0, 53.0]}])
+def test_other_speeds_and_chunks_do_not_change_a_bit_of_a_case(found, given):
+    """Each case takes its own steps; with a given number of modes nothing is shared."""
+    other = bd.sweep(**{"scene": SCENE, "speeds": SPEEDS, "window": WINDOW, "modes": 5} | given)
+    _, i, j = np.intersect1d(found.speeds, other.speeds, return_indices=True)
+    for name in ("peaks", "largest", "time_error"):
+        np.testing.assert_array_equal(getattr(found, name)[i], getattr(other, name)[j])
 
 
 def test_modes_that_miss_the_tolerance_are_named():

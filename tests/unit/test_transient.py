@@ -10,11 +10,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
-from beamdyn.transient.batch import integrate_batch
 from beamdyn.transient.step_size import TooManySteps, check_number_of_steps
-from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import largest_deflection
 from benchmarks.cases.scenes import HARVESTER, ROLLING, SHORT_SPIN_UP
 
 STEADY = replace(HARVESTER, mount=bd.Mount(0.215, 0.02), motion=bd.SteadyRotation(50.0))
@@ -140,29 +136,6 @@ def test_full_finite_elements_equal_their_modes() -> None:
     some = bd.simulate(scene, 0.5, modes=6, discretization=bd.Fem(6))
     t = np.linspace(0, 0.5, 50)
     assert np.abs(full.deflection(t) - some.deflection(t)).max() < 1e-3 * some.largest
-
-
-def test_a_batch_is_its_cases_one_by_one() -> None:
-    motions = [ROLLING.motion.with_speed(v) for v in (0.0, 40.0, 55.0, 120.0)]
-    equations = Model(HARVESTER, bd.Ritz(18)).modal_equations(4)
-    batch = integrate_batch([ModalSystem(equations, m) for m in motions], 3.0)
-    for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
-        run = bd.simulate(replace(ROLLING, motion=motion), 3.0, modes=4, tolerance=1e-9)
-        found = largest_deflection(np.ones((1, 1)), tip, 1.0, 3.0)
-        assert abs(found - run.peak(1.0, 3.0)) <= 1e-5 * run.largest
-        assert error <= 1e-5 * run.largest
-
-
-def test_a_damped_batch_with_stretch_and_gravity() -> None:
-    scene = replace(ROLLING, damping_ratio=0.03, gravity=9.81, physics=bd.Physics(stretch=True))
-    motions = [ROLLING.motion.with_speed(v) for v in (40.0, 55.0)]
-    equations = Model(scene, bd.Ritz(16)).modal_equations(2)
-    batch = integrate_batch([ModalSystem(equations, m) for m in motions], 1.0)
-    for motion, tip, error in zip(motions, batch.tips, batch.time_error, strict=True):
-        run = bd.simulate(replace(scene, motion=motion), 1.0, modes=2, tolerance=1e-9)
-        t = np.linspace(0.1, 1, 20)
-        assert np.abs(tip.at(t)[0][:, 0] - run.deflection(t)).max() <= error
-        assert error <= 1e-5 * run.largest
 
 
 @pytest.mark.parametrize(
@@ -318,7 +291,7 @@ def test_a_tolerance_that_cannot_be_met_does_not_make_the_answer_worse(
 ) -> None:
     """More accurate steps leave less work for modes; a small limit of the work shows that in a second."""
     for limit in ("_MOST_WORK", "_SLOW_WORK"):
-        monkeypatch.setattr(importlib.import_module("beamdyn.transient.simulate"), limit, 1e5)
+        monkeypatch.setattr(importlib.import_module("beamdyn.transient.transient"), limit, 1e5)
     sudden = replace(HARVESTER, motion=bd.SpinUp(50.0, duration=1e-4), damping_ratio=0.005)
     usual, tight = (bd.simulate(sudden, 0.05, tolerance=tolerance) for tolerance in (1e-5, 1e-9))
     assert tight.mode_error <= usual.mode_error and "not reached" in " ".join(tight.warnings)

@@ -11,9 +11,10 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import cache
 from typing import Any, BinaryIO
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 ATTEMPTS = 3  # processes that one task may cost
 _SERVE = (
@@ -164,6 +165,13 @@ def _receive(stream: BinaryIO | Any) -> bytes:
 
 # Threads of BLAS ----------------------------------------------------------------------------------
 
+
+@cache
+def _find_libraries() -> ThreadpoolController:
+    """Libraries of numpy and scipy that start threads.  They stay loaded; to find them takes milliseconds."""
+    return ThreadpoolController()
+
+
 _blas_lock = threading.Lock()
 _blas_users = 0
 _blas_limits: Any = None
@@ -176,7 +184,7 @@ def one_blas_thread() -> Iterator[None]:
     with _blas_lock:
         _blas_users += 1
         if _blas_users == 1:
-            _blas_limits = threadpool_limits(1)
+            _blas_limits = _find_libraries().limit(limits=1)
     try:
         yield
     finally:

@@ -42,6 +42,8 @@ from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
 
+_NO_BODY, _NOTHING = TipMass(0.0), ONE.scaled(0.0)
+
 
 @dataclass(frozen=True)
 class Trial:
@@ -91,7 +93,7 @@ class Trial:
     @cached_property
     def tip(self) -> TipMass:
         """Rigid body at the tip."""
-        return self.beam.tip or TipMass(0.0)
+        return self.beam.tip or _NO_BODY
 
     @cached_property
     def rotation(self) -> np.ndarray:
@@ -133,6 +135,11 @@ class Trial:
     def Q(self) -> np.ndarray:
         """Load under a unit angular acceleration in the direction of the field [kg m], shape (n,)."""
         return self.first_moment + self.tilting_load(self.direction)
+
+    @cached_property
+    def Q_across(self) -> np.ndarray:
+        """The same in the other direction, towards which oblique sections are tilted."""
+        return self.tilting_load(1 - self.direction)
 
     @cached_property
     def P(self) -> np.ndarray:
@@ -251,7 +258,7 @@ class TransverseField(Field):
                 pair = Pair(Trial(partner, scene, spaces), own)
                 above, skew = [*self._terms_with(pair)], [*_coriolis(pair)]
                 terms += [*above, *map(_transposed, above), *skew, *map(_transposed_skew, skew)]
-        deflection = Deflection(own.space, own.P, own.Q, own.tilting_load(1 - self.direction), self.direction)
+        deflection = Deflection(own.space, own.P, own.Q, own.Q_across, self.direction)
         turning = own.conditions.held == 1 and self.rotates
         return FieldEquations(own.space, (*terms,), (*_loads(own),), deflection, turning)
 
@@ -333,8 +340,9 @@ def _spin(pair: Pair) -> Iterator[Term]:
         product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
         for (p, q), inertia in section_tensor(beam, "rotary_inertia").items():
             product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
-        matrix = _twist_by_bending(pair, product)
-        yield term_of("twisting by inertia", pair, matrix, "speed_squared", cone[0] ** 2 / 2)
+        if product != _NOTHING:
+            matrix = _twist_by_bending(pair, product)
+            yield term_of("twisting by inertia", pair, matrix, "speed_squared", cone[0] ** 2 / 2)
 
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -429,9 +437,8 @@ def _loads(trial: Trial) -> Iterator[Load]:
     cosine, sine = exact_cos_sin(trial.scene.mount.precone)
     i = trial.direction
     yield Load("angular acceleration", name, trial.Q, "acceleration", cosine * d[i])
-    across = trial.tilting_load(1 - i)
-    if across.any():
-        yield Load("angular acceleration", name, across, "acceleration", cosine * d[1 - i])
+    if trial.Q_across.any():
+        yield Load("angular acceleration", name, trial.Q_across, "acceleration", cosine * d[1 - i])
     if sine:
         pressed = n[i] * trial.first_moment + trial.toppling_load(n)
         if pressed.any():

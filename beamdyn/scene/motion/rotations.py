@@ -131,11 +131,13 @@ class SpinUp(Rotation):
 
     def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
-        angle, speed, acceleration = _LAWS[self.law](np.clip(t / self.duration, 0.0, 1.0))
+        x = np.clip(t / self.duration, 0.0, 1.0)
+        after_its_end = x.ndim and x.size and x.min() == 1  # one value of the law is that of all times
+        angle, speed, acceleration = _LAWS[self.law](np.ones(1) if after_its_end else x)
         # Time at constant speed counts from the spin-up's end: the angle is continuous to the last digit.
         angle = self.speed * (self.duration * angle + np.maximum(t - self.duration, 0.0))
         acceleration = np.where((t >= 0) & (t < self.duration), acceleration, 0.0)
-        return angle, self.speed * speed, self.speed / self.duration * acceleration
+        return angle, np.broadcast_to(self.speed * speed, t.shape), self.speed / self.duration * acceleration
 
     def with_speed(self, speed: float) -> SpinUp:
         """Copy the spin-up with another final speed [rad/s] and the same duration."""
@@ -160,14 +162,16 @@ _LAWS: dict[str, Callable[[np.ndarray], Kinematics]] = {"smooth": _smooth, "line
 
 def _subtract_sine(y: np.ndarray) -> np.ndarray:
     """Compute y - sin(y) for y >= 0, by its Taylor series for y < 1, where the difference cancels."""
-    difference = y - np.sin(y)
-    if y.size and y.min() >= 1:
-        return difference
-    small = np.minimum(y, 1.0)
-    series = np.ones_like(small)
-    for n in range(18, 2, -2):
-        series = 1 - small**2 / (n * (n + 1)) * series
-    return np.where(y < 1, small**3 / 6 * series, difference)
+    y = np.asarray(y)
+    difference = np.asarray(y - np.sin(y))
+    below = y < 1
+    if below.any():
+        small = y[below]
+        series = np.ones_like(small)
+        for n in range(18, 2, -2):
+            series = 1 - small**2 / (n * (n + 1)) * series
+        difference[below] = small**3 / 6 * series
+    return difference
 
 
 Interpolation = Literal["cubic", "pchip"]

@@ -1,0 +1,347 @@
+"""Motion at steady speed in closed form: a sum of exponentials, in place of many steps.
+
+The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g
+are sums of a few harmonics.  So the motion is that which the loads force, at sums of their frequencies and
+those of e, and free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
+iteration, because e is small.  What the result misses in the equations is measured, and decides whether it
+is used.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.transient.gauss import Segment, interpolate, tableau
+from beamdyn.transient.time_error import (
+    INTERPOLATION_POINTS,
+    SegmentError,
+    SegmentWithError,
+    choose_checked_steps,
+)
+from beamdyn.transient.weakly_modulated import ModulatedSystem
+
+_WORTH_IT = 200  # steps, below which they cost no more
+_ORDERS = (3, 5)  # powers of e that are tried
+_FIT_TIMES = 8  # for each harmonic of e and g, at which these are fitted
+_GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
+_FIT_ERROR = 1e-3  # of e and g, over the accuracy
+_SAME = 1e-9  # difference of frequencies that are the same, over the largest
+_MOST_HARMONICS = 400
+_ITERATIONS = 30
+_CONVERGED = 1e-15
+_CHECKED = 64  # times at which the equations are checked
+_NEGLIGIBLE = 1e-2  # share of the accuracy for all small terms that are left out
+_RESOLVED = 12.0  # phase per step [rad] of the fastest terms that the nodes of a step show
+_MOST_GROWTH = 20.0  # exponent of the largest growth
+_ROWS = 1024  # steps evaluated as one batch
+
+
+@dataclass(frozen=True)
+class _Harmonics:
+    """The varying stiffness and the loads as sums of harmonics exp(i frequency (t - t0)).
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (f,)
+        Angular frequencies [rad/s], ascending, with their negatives.
+    stiffness : ndarray, shape (f, n, n)
+        Factors of the varying stiffness.
+    load : ndarray, shape (f, n)
+        Factors of the loads.
+    """
+
+    frequency: np.ndarray
+    stiffness: np.ndarray
+    load: np.ndarray
+
+    @classmethod
+    def fit(cls, system: ModulatedSystem, t0: float, t1: float, accuracy: float) -> _Harmonics | None:
+        """Fit e and g from t0 to t1 [s]; None if they contain more than the lines of the system."""
+        lines = _distinct(np.concatenate([-system.lines, [0.0], system.lines]))
+        count = _FIT_TIMES * len(lines)
+        tau = (t1 - t0) * (_GOLDEN * np.arange(1, 2 * count + 1) % 1)
+        e, g = system.scalars(t0 + tau)
+        values, basis = np.concatenate([e, g], axis=1), np.exp(1j * np.outer(tau, lines))
+        found = np.linalg.lstsq(basis[:count], values[:count].astype(complex), rcond=None)[0]
+        missed = np.abs(np.real(basis @ found) - values).max(axis=0)
+        if (missed > _FIT_ERROR * accuracy * np.abs(values).max(axis=0)).any():
+            return None
+        m = len(system.G)
+        stiffness, load = np.tensordot(found[:, :m], system.G, axes=1), found[:, m:] @ system.P
+        return cls(lines, stiffness, load)
+
+    def sums(self, order: int) -> np.ndarray:
+        """Sums of up to so many frequencies of the stiffness, ascending: shape (k,)."""
+        varying = self.frequency[np.abs(self.stiffness).any(axis=(1, 2))]
+        found = np.zeros(1)
+        for _ in range(order):
+            found = _distinct(np.concatenate([found, np.add.outer(found, varying).ravel()]))
+        return found
+
+    def coupling(self, sums: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Which of some sums lead to which, by which matrix, as triples (to, from, matrix)."""
+        found = []
+        for frequency, matrix in zip(self.frequency, self.stiffness, strict=True):
+            if matrix.any():
+                to, source = _matches(sums, sums + frequency)
+                found.append((to, source, matrix.T))
+        return found
+
+
+def _distinct(frequencies: np.ndarray) -> np.ndarray:
+    """Frequencies, ascending, each once."""
+    sorted_ = np.sort(frequencies)
+    apart = np.diff(sorted_) > _SAME * max(abs(sorted_[0]), abs(sorted_[-1]))
+    return sorted_[np.concatenate([[True], apart])]
+
+
+def _matches(sums: np.ndarray, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of sums, and of those moved ones that they are."""
+    near = np.clip(np.searchsorted(sums, moved), 1, len(sums) - 1) if len(sums) > 1 else np.zeros(1, int)
+    near = near - (np.abs(sums[near - 1] - moved) < np.abs(sums[near] - moved)) * (len(sums) > 1)
+    same = np.abs(sums[near] - moved) <= 10 * _SAME * np.abs(sums).max()
+    return near[same], np.flatnonzero(same)
+
+
+@dataclass(frozen=True)
+class _Exponentials:
+    """A motion q(t) = Re sum_k b_k exp(s_k (t - t0)).
+
+    Parameters
+    ----------
+    s : ndarray of complex, shape (k,)
+        Exponents [1/s].
+    b : ndarray of complex, shape (k, n)
+        Factors.
+    """
+
+    s: np.ndarray
+    b: np.ndarray
+
+    def __add__(self, other: _Exponentials) -> _Exponentials:
+        return _Exponentials(np.concatenate([self.s, other.s]), np.concatenate([self.b, other.b]))
+
+    def some(self, which: np.ndarray) -> _Exponentials:
+        """Some of the terms."""
+        return _Exponentials(self.s[which], self.b[which])
+
+    def at(self, tau: np.ndarray, derivatives: int = 0) -> np.ndarray:
+        """Values at times tau (N,) [s] after t0, and those of derivatives: shape (derivatives + 1, N, n)."""
+        powers = self.s ** np.arange(derivatives + 1)[:, None]
+        return np.real(np.exp(np.outer(tau, self.s)) @ (powers[:, :, None] * self.b))
+
+
+def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> _Exponentials | None:
+    """The motion that the loads force; None if it is not found."""
+    loaded = np.abs(harmonics.load).any(axis=1)
+    if not loaded.any():
+        return _Exponentials(np.zeros(0, complex), np.zeros((0, len(K)), complex))
+    sums = _distinct(np.add.outer(harmonics.frequency[loaded], harmonics.sums(order)).ravel())
+    if len(sums) > _MOST_HARMONICS:
+        return None
+    load = np.zeros((len(sums), len(K)), complex)
+    to, source = _matches(sums, harmonics.frequency)
+    load[to] = harmonics.load[source]
+    flexible = np.linalg.inv(_stiffness(1j * sums, C, K))
+    coupling, c, before = harmonics.coupling(sums), np.zeros_like(load), np.inf
+    for _ in range(_ITERATIONS):
+        right = load.copy()
+        for to, source, matrix in coupling:
+            right[to] -= c[source] @ matrix
+        new = (flexible @ right[:, :, None])[:, :, 0]
+        change, size = np.abs(new - c).max(), np.abs(new).max()
+        c = new
+        if change <= _CONVERGED * size or change >= before:
+            break
+        before = change
+    half = sums >= 0
+    twice = np.where(sums[half] > 0, 2.0, 1.0)[:, None]
+    return _Exponentials(1j * sums[half], twice * c[half])
+
+
+def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Dynamic stiffness s^2 + s C + K at exponents s (...): shape (..., n, n)."""
+    s = s[..., None, None]
+    return s**2 * np.eye(len(K)) + s * C + K
+
+
+def _free(
+    harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Exponents (n, k) and shapes (n, k, n) of the n free vibrations; None if they are not found.
+
+    Each is corrected until it satisfies the equations at all sums of frequencies, by Newton's method with
+    the inverses at the exponents without the varying stiffness; that of its own exponent is bordered by the
+    direction of the shape, in which the exponent changes instead.
+    """
+    n, sums = len(K), harmonics.sums(order)
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
+    upper = np.imag(values) > 0
+    if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:
+        return None
+    exponent, shape = values[upper], vectors[:n, upper].T
+    shape = shape / np.linalg.norm(shape, axis=1)[:, None]
+    own = int(np.abs(sums).argmin())
+    inverse = np.linalg.inv(_stiffness_beside(exponent, 1j * sums, own, C, K))
+    border = np.empty((n, n + 1, n + 1), complex)
+    border[:, :n, :n] = _stiffness(exponent, C, K)
+    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
+    border[:, n, :n], border[:, n, n] = shape.conj(), 0
+    bordered = np.linalg.inv(border)
+    P = np.zeros((n, len(sums), n), complex)
+    P[:, own] = shape
+    coupling, before = harmonics.coupling(sums), np.inf
+    for _ in range(_ITERATIONS):
+        s = (exponent[:, None] + 1j * sums)[:, :, None]
+        residual = s**2 * P + s * (P @ C.T) + P @ K.T
+        for to, source, matrix in coupling:
+            residual[:, to] += P[:, source] @ matrix
+        step = (inverse @ residual[..., None])[..., 0]
+        at_own = (bordered[:, :, :n] @ residual[:, own, :, None])[..., 0]
+        step[:, own] = at_own[:, :n]
+        P, exponent = P - step, exponent - at_own[:, n]
+        change = np.abs(step).max()
+        if change <= _CONVERGED or change >= before:
+            break
+        before = change
+    return exponent[:, None] + 1j * sums, P
+
+
+def _stiffness_beside(
+    exponent: np.ndarray, sums: np.ndarray, own: int, C: np.ndarray, K: np.ndarray
+) -> np.ndarray:
+    """Dynamic stiffness at exponents plus sums, (n, k, n, n), with the unit matrix where the sum is zero."""
+    found = _stiffness(exponent[:, None] + sums, C, K)
+    found[:, own] = np.eye(len(K))
+    return found
+
+
+def _starting_from(
+    forced: _Exponentials, exponents: np.ndarray, shapes: np.ndarray, q0: np.ndarray, v0: np.ndarray
+) -> _Exponentials:
+    """Add the free vibrations that lead from the forced motion to the state q0, v0 at t0."""
+    n, zero = len(q0), np.zeros(1)
+    start = np.concatenate([q0, v0]) - forced.at(zero, 1).ravel()
+    columns = np.concatenate([shapes.sum(axis=1), (exponents[:, :, None] * shapes).sum(axis=1)], axis=1).T
+    scale = np.abs(columns).max(axis=1)
+    columns = np.concatenate([np.real(columns), -np.imag(columns)], axis=1) / scale[:, None]
+    real = np.linalg.solve(columns, start / scale)
+    factor = real[:n] + 1j * real[n:]
+    free = _Exponentials(exponents.ravel(), (factor[:, None, None] * shapes).reshape(-1, n))
+    return forced + free
+
+
+def propagate_in_closed_form(
+    system: ModulatedSystem,
+    t0: float,
+    t1: float,
+    steps: int,
+    q0: np.ndarray,
+    v0: np.ndarray,
+    stages: int,
+    accuracy: float,
+) -> SegmentWithError | None:
+    """Motion at steady speed, as `beamdyn.transient.weakly_modulated.propagate_modulated` has it.
+
+    Parameters
+    ----------
+    system : ModulatedSystem
+        The equations.
+    t0, t1, steps, q0, v0, stages
+        As for `beamdyn.transient.gauss.propagate`: the steps only sample the motion.
+    accuracy : float
+        Largest error by what the result misses in the equations, over the largest coordinate.
+
+    Returns
+    -------
+    SegmentWithError or None
+        None if the speed changes, e or g have other frequencies than the lines, or no order is accurate.
+    """
+    if not system.steady or steps < _WORTH_IT:
+        return None
+    C, K = system.slow(np.array([t0]))
+    C, K = np.zeros_like(K[0]) if C is None else C[0], K[0]
+    harmonics = _Harmonics.fit(system, t0, t1, accuracy)
+    if harmonics is None:
+        return None
+    for order in _ORDERS:
+        try:
+            motion = _solve(harmonics, C, K, order, q0, v0)
+        except np.linalg.LinAlgError:  # at resonance, without damping
+            return None
+        if motion is None or np.real(motion.s).max(initial=0.0) * (t1 - t0) > _MOST_GROWTH:
+            return None
+        missed, largest = _missed(system, C, K, motion, t0, t1)
+        if missed.sum() <= accuracy * largest:
+            return _sample(motion, t0, (t1 - t0) / steps, steps, stages, accuracy, missed)
+    return None
+
+
+def _solve(
+    harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int, q0: np.ndarray, v0: np.ndarray
+) -> _Exponentials | None:
+    """Forced and free motion from the state q0, v0, up to an order of e; None if it is not found."""
+    forced, free = _forced(harmonics, C, K, order), _free(harmonics, C, K, order)
+    return None if forced is None or free is None else _starting_from(forced, *free, q0, v0)
+
+
+def _missed(
+    system: ModulatedSystem, C: np.ndarray, K: np.ndarray, motion: _Exponentials, t0: float, t1: float
+) -> tuple[np.ndarray, float]:
+    """Error of each coordinate (n,) by what the motion misses in the equations, and the largest coordinate.
+
+    What is missed counts as if it were in resonance all the time.
+    """
+    tau = (t1 - t0) * (_GOLDEN * np.arange(1, _CHECKED + 1) % 1)
+    e, g = system.scalars(t0 + tau)
+    q, v, a = motion.at(tau, 2)
+    varying = (e[:, :, None] * (q @ system.G.swapaxes(1, 2)).swapaxes(0, 1)).sum(axis=1)
+    missed = a + v @ C.T + q @ K.T + varying - g @ system.P
+    error = (t1 - t0) * np.abs(missed).mean(axis=0) / np.sqrt(np.abs(np.diag(K)))
+    return error, float(np.abs(q).max())
+
+
+def _sample(
+    motion: _Exponentials, t0: float, h: float, steps: int, stages: int, accuracy: float, missed: np.ndarray
+) -> SegmentWithError:
+    """The motion at the ends of steps and at their nodes, without terms that are small or too fast."""
+    growth = np.exp(np.maximum(np.real(motion.s), 0) * h * steps)
+    size = np.abs(motion.b).max(axis=1) * growth
+    rank = np.argsort(size)
+    small = np.zeros(len(size), bool)
+    small[rank] = np.cumsum(size[rank]) <= _NEGLIGIBLE * accuracy * size.max(initial=0.0)
+    fast = np.abs(motion.s) * h > _RESOLVED
+    left_out = np.abs(motion.b[small | fast] * growth[small | fast, None]).sum(axis=0)
+    kept = motion.some(~(small | fast))
+    state, acceleration = _evaluate(kept, h, steps, stages)
+    segment = Segment(t0, h, state, acceleration)
+    unresolved = np.abs(motion.b[fast]).sum(axis=0) > (missed + left_out) / 2
+    error = SegmentError(missed + left_out, _interpolation_error(kept, segment), unresolved)
+    return SegmentWithError(t0, h, state, acceleration, error)
+
+
+def _interpolation_error(motion: _Exponentials, segment: Segment) -> np.ndarray:
+    """Differences (k, n) of the interpolated coordinates from the motion, in some steps."""
+    chosen = choose_checked_steps(len(segment.acceleration))
+    state, acceleration = segment.state[chosen], segment.acceleration[chosen]
+    q = interpolate(segment.h, state, acceleration, INTERPOLATION_POINTS)[0]
+    tau = segment.h * (chosen[:, None] + INTERPOLATION_POINTS)
+    return q.reshape(tau.size, -1) - motion.at(tau.ravel())[0]
+
+
+def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:
+    """Augmented states at the ends of steps, (N + 1, 2 n + 1), and accelerations (N, s, n) at their nodes."""
+    s, n = motion.s, motion.b.shape[1]
+    nodes = np.exp(np.multiply.outer(s, h * tableau(stages).c))[:, :, None] * (s**2)[:, None, None]
+    at_nodes = (nodes * motion.b[:, None]).reshape(len(s), stages * n)
+    b = np.concatenate([motion.b, s[:, None] * motion.b, at_nodes], axis=1)
+    columns = np.concatenate([np.real(b), -np.imag(b)])
+    values = np.empty((steps + 1, columns.shape[1]))
+    within = np.exp(np.outer(np.arange(min(_ROWS, steps + 1)), h * s))
+    for first in range(0, steps + 1, _ROWS):
+        factor = np.exp(first * h * s) * within[: steps + 1 - first]
+        values[first : first + _ROWS] = np.concatenate([np.real(factor), np.imag(factor)], axis=1) @ columns
+    state = np.concatenate([np.ones((steps + 1, 1)), values[:, : 2 * n]], axis=1)
+    return state, values[:-1, 2 * n :].reshape(steps, stages, n)
