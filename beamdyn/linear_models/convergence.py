@@ -148,7 +148,8 @@ def _with_error(
 ) -> Refined:
     """The value, with its distance from that of more modes and of a coarser discretization."""
     coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
-    error = _MARGIN * np.abs(evaluate(coarse) - value) + _ROUNDING * np.abs(value).max()
+    rounding = _ROUNDING * np.abs(value).max() + _MARGIN * model.discretization.rounding * np.abs(value)
+    error = _MARGIN * np.abs(evaluate(coarse) - value) + rounding
     truncation, compared = np.zeros(()), [str(coarse.discretization)]
     if model.modes is not None and larger is None:
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]
