@@ -29,6 +29,11 @@ _NAMES = {
     "scene.beam": ("Beam",),
     "scene.points": ("PointMass", "PointSpring", "TipMass"),
     "scene.damping": ("Damping",),
+    "loads.cycles": ("LoadCycles", "count_cycles"),
+    "loads.span_loads": ("LargestLoad", "SpanLoads"),
+    "loads.static_loads": ("StaticLoads", "static_loads"),
+    "loads.steady_loads": ("SteadyLoads", "steady_loads"),
+    "loads.transient_loads": ("TransientLoads", "transient_loads"),
     "scene.motion": (
         "Line",
         "Motion",
@@ -66,6 +71,13 @@ _NAMES = {
         "EquilibriumBranches",
         "equilibrium",
         "equilibrium_branches",
+    ),
+    "sensitivities.result": ("Sensitivities",),
+    "sensitivities.scene_numbers": ("SceneNumber",),
+    "sensitivities.sensitivities": (
+        "critical_speed_sensitivities",
+        "crossing_sensitivities",
+        "frequency_sensitivities",
     ),
     "spectrum.locus": ("Locus", "frequency_locus"),
     "spectrum.modes": ("Modes", "natural_modes"),
@@ -114,6 +126,11 @@ if TYPE_CHECKING:
     from beamdyn.linear_models.random_response import RandomResponse, random_response
     from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.linear_models.state_space import state_space
+    from beamdyn.loads.cycles import LoadCycles, count_cycles
+    from beamdyn.loads.span_loads import LargestLoad, SpanLoads
+    from beamdyn.loads.static_loads import StaticLoads, static_loads
+    from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
+    from beamdyn.loads.transient_loads import TransientLoads, transient_loads
     from beamdyn.modal.equilibrium import NoEquilibrium
     from beamdyn.scene.beam import Beam
     from beamdyn.scene.damping import Damping
@@ -137,6 +154,13 @@ if TYPE_CHECKING:
     from beamdyn.scene.points import PointMass, PointSpring, TipMass
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
+    from beamdyn.sensitivities.result import Sensitivities
+    from beamdyn.sensitivities.scene_numbers import SceneNumber
+    from beamdyn.sensitivities.sensitivities import (
+        critical_speed_sensitivities,
+        crossing_sensitivities,
+        frequency_sensitivities,
+    )
     from beamdyn.spectrum.backbone import Backbone, backbone
     from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.spectrum.critical import CriticalPoint, critical_point, critical_speed

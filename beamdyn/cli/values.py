@@ -178,6 +178,26 @@ def _member(text: str, number: str, unit: str) -> float:
     return parse_speed("--speeds", f"{number} {unit}")
 
 
+def parse_positions(text: str) -> list[float]:
+    """Positions along the beam [m] of ``--at``: a list with a unit at its end, such as "0, 10, 25 mm"."""
+    return [x for (x,) in _tuples("--at", text, 1, "0, 10, 25 mm")]
+
+
+def parse_points(text: str) -> list[list[float]]:
+    """Points of a section [m] of ``--points``: pairs with a unit at their end, such as "-0.1:0, 0.1:2 mm"."""
+    return _tuples("--points", text, 2, "-0.1:0, 0.1:0 mm")
+
+
+def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]]:
+    """Lengths [m] in a list of members of so many numbers, with one unit for all at the end."""
+    unit = _UNIT.search(text.strip())
+    members = text.strip()[: unit.start()].split(",") if unit else []
+    parts = [[number.strip() for number in member.split(":")] for member in members]
+    if unit is None or any(len(part) != size or not all(map(_NUMBER.fullmatch, part)) for part in parts):
+        raise ValueError(f'{option} = "{text}": give numbers and one unit at their end, e.g. "{example}"')
+    return [[parse_quantity(option, f"{number} {unit.group()}", "m") for number in part] for part in parts]
+
+
 def load_with(path: Path, physics: PhysicsOption = None) -> Scene:
     """Read a scene, with the physics of the option in place of its own if that is given."""
     from beamdyn.config import load_scene

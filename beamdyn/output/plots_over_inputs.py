@@ -33,3 +33,33 @@ def plot_over_input(
     order = np.argsort(x, kind="stable")
     curves(ax, x[order], rows[:, order], labels)
     return add_legend(ax) if any(labels) else ax
+
+
+def plot_bars(
+    names: Sequence[str], rows: np.ndarray, labels: Sequence[str], xlabel: str, ax: Axes | None = None
+) -> Axes:
+    """Draw horizontal bars of n names for k answers, the name with the longest bar on top.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The names, shape (n,).
+    rows : ndarray, shape (n, k)
+        Lengths; those that are not finite are left out.
+    labels : sequence of str
+        One an answer.
+    xlabel : str
+        Label of the axis.
+    ax : Axes, optional
+        Where to draw; a new one by default.
+    """
+    ax = set_up_axes(ax, xlabel, "")
+    finite = np.where(np.isfinite(rows), rows, 0.0)
+    order = np.argsort(np.abs(finite).max(axis=1, initial=0.0), kind="stable")
+    height = 0.8 / max(rows.shape[1], 1)
+    for k, label in enumerate(labels):
+        places = np.arange(len(names)) + (rows.shape[1] / 2 - k - 0.5) * height
+        ax.barh(places, finite[order, k], height, label=label)
+    ax.set_yticks(np.arange(len(names)), [str(names[i]) for i in order])
+    ax.axvline(0.0, color="0.4", linewidth=0.8)
+    return add_legend(ax)

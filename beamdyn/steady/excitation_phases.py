@@ -53,7 +53,8 @@ def periodic_system_of_each(
 ) -> PeriodicSystem:
     """Expand equations of the same terms at each speed: as `periodic_system`, for S sets of equations."""
     motion, first = check_steady_state(motion), equations[0]
-    spectra = _expand_quantities(first, motion, speeds)
+    used = {part.quantity for part in (*first.terms, *first.loads)}
+    spectra = expand_quantities(first, used, motion, speeds)
     mean = np.zeros((3, len(speeds), first.size, first.size))
     varying = []
     for order in range(3):
@@ -99,9 +100,16 @@ def check_steady_state(motion: Motion | None) -> Motion:
     return motion
 
 
-def _expand_quantities(equations: Equations, motion: Motion, speeds: np.ndarray) -> dict[str, np.ndarray]:
-    """Expand each quantity of the root's motion that the equations use in harmonics, shape (S, N, N)."""
-    used = {part.quantity for part in (*equations.terms, *equations.loads)}
+def expand_quantities(
+    equations: Equations, used: Iterable[str], motion: Motion, speeds: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Expand quantities of the root's motion at steady speeds in harmonics of the two phases, (S, N, N) each.
+
+    Raises
+    ------
+    ValueError
+        If the motion is not smooth in the phases.
+    """
     for N in _GRIDS:
         phase = 2 * np.pi * np.arange(N) / N
         angle, road, omega = np.broadcast_arrays(phase[:, None], phase, speeds[:, None, None])

@@ -39,6 +39,7 @@ COMMANDS = {
     "study": (beamdyn.cli, BLADE, ["--vary", "mount.radius=1:2:3 m"], 1),
     "steady": (beamdyn.cli, ROLLING, ["--speeds", "40:60:5 rad/s"], 1),
     "simulate": (beamdyn.cli, ROLLING, ["--t-end", "0.5 s", "--modes", "1"], 1),
+    "loads": (beamdyn.cli, ROLLING, ["--t-end", "0.2 s", "--modes", "1"], 1),
     "sweep": (
         beamdyn.cli,
         ROLLING,

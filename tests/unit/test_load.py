@@ -39,6 +39,9 @@ MAKERS = {
     "all modes": lambda d: bd.simulate(
         SHORT_SPIN_UP, 0.05, None, discretization={"ritz": bd.Ritz(6), "fem": bd.Fem(6)}[d]
     ),
+    "loads in equilibrium": lambda d: bd.static_loads(HARVESTER, [0.0, 50.0], discretization=d),
+    "loads of a transient": lambda d: bd.transient_loads(bd.simulate(SHORT_SPIN_UP, 0.1, 2), at=[0.0]),
+    "loads of a response": lambda d: bd.steady_loads(bd.steady_response(SHORT_SPIN_UP, [50.0], 2), at=[0.0]),
     "sweep": lambda d: bd.sweep(SHORT_SPIN_UP, [50.0, 53.0], AFTER_SHORT_SPIN_UP, modes=3, discretization=d),
     "bounds": lambda d: bd.frequency_bounds(HARVESTER, 50.0),
     "terms": lambda d: bd.terms(SHORT_SPIN_UP),

@@ -28,6 +28,7 @@ ANALYSES = {
     "locus": lambda scene: bd.frequency_locus(scene, [0.0, 100.0], 1),
     "critical speed": bd.critical_speed,
     "resonances": lambda scene: bd.resonance_speeds(replace(scene, gravity=9.81, motion=WHEEL), 100.0, 1),
+    "loads": lambda scene: bd.static_loads(scene, 100.0),
     "steady": lambda scene: bd.steady_response(replace(scene, motion=WHEEL), [100.0], 1),
 }
 WHEEL = bd.RollingWheel(

@@ -26,6 +26,7 @@ COMMANDS = {
     "resonances": (beams, "resonances", ROLLING, "--top-speed", "100 rad/s"),
     "steady": (beams, "steady", ROLLING, "--speeds", "20, 30 rad/s"),
     "simulate": (beams, "simulate", ROLLING, "--t-end", "0.2 s", "--modes", "2"),
+    "loads": (beams, "loads", SCENE, "--speed", "20 rad/s"),
     "sweep": (beams, "sweep", ROLLING, "--speeds", "10 rad/s", "--window", "0:0.1 s", "--modes", "2"),
     "tradeoff": (beams, "tradeoff", SCENE, "--budget", "0.1 s", "--modes", "1"),
     "drum": (brakes, "drum", str(EXAMPLES / "drum.toml")),

@@ -42,6 +42,8 @@ BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2))
 DAMPED = bd.Scene(BEAM, bd.Mount(0.2), damping_ratio=0.01)
 MOVING = bd.Scene(BEAM, bd.Mount(0.2), bd.RollingWheel(0.3, 20.0, bd.RoadWave(0.3, 0.01)))
+RUN, RESPONSE = bd.simulate(MOVING, 0.02, 2, 1e-3), bd.steady_response(MOVING, [5.0], 2)
+LOADS = bd.transient_loads(RUN, at=[0.0])
 
 
 def tabulated(stations, values):
@@ -159,6 +161,23 @@ CALLS = {
         {"scene": MOVING, "t_end": 0.02, "modes": 2, "tolerance": 1e-3, "method": "auto"}
         | {"discretization": "ritz", "initial": "rest", "t_eval": None},
     ),
+    "static_loads": (
+        bd.static_loads,
+        {"scene": SCENE, "speeds": 5.0, "at": [0.0], "points": [(0.0, 0.0)], "angle": 0.1}
+        | {"youngs_modulus": 1e9, "discretization": "ritz"},
+    ),
+    "transient_loads": (
+        bd.transient_loads,
+        {"run": RUN, "at": [0.0], "points": [(0.0, 0.0)], "t": [0.01], "youngs_modulus": 1e9},
+    ),
+    "steady_loads": (
+        bd.steady_loads,
+        {"response": RESPONSE, "at": [0.0], "points": [(0.0, 0.0)], "youngs_modulus": 1e9},
+    ),
+    "count_cycles": (
+        bd.count_cycles,
+        {"loads": LOADS, "quantity": "moment", "station": 0, "component": 0, "start": 0.0, "end": 0.02},
+    ),
     "sweep": (
         bd.sweep,
         {"scene": MOVING, "speeds": [5.0], "window": (0.0, 0.02), "t_end": None, "modes": 2}
@@ -214,6 +233,20 @@ CALLS = {
         bd.random_response,
         {"scene": DAMPED, "speed": 5.0, "psd": bd.PowerSpectrum([1, 2], [1, 1]), "input": "bending"}
         | {"output": "tip", "frequencies": [1.0], "modes": 2, "tolerance": 1e-3, "discretization": "ritz"},
+    ),
+    "frequency_sensitivities": (
+        bd.frequency_sensitivities,
+        {"scene": SCENE, "speed": 5.0, "modes": 2, "inputs": ["beam.length"], "discretization": "ritz"}
+        | {"tolerance": 0.1},
+    ),
+    "critical_speed_sensitivities": (
+        bd.critical_speed_sensitivities,
+        {"scene": SCENE, "inputs": ["beam.length"], "discretization": "ritz", "tolerance": 0.1},
+    ),
+    "crossing_sensitivities": (
+        bd.crossing_sensitivities,
+        {"scene": MOVING, "top_speed": 60.0, "modes": 2, "inputs": ["beam.length"], "order": 1}
+        | {"discretization": "ritz"},
     ),
     "terms": (bd.terms, {"scene": MOVING}),
     "tradeoff": (
@@ -279,7 +312,8 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere |= {"OmittedEffect"}  # in the terms of a scene
     made_elsewhere |= {"EquilibriumBranch", "JudgedEffect", "PhysicsChoice"}  # parts of results
     made_elsewhere |= {"LineCrossing", "Margin"}  # parts of a diagram
-    made_elsewhere |= {"VariedInput"}  # parts of studies
+    made_elsewhere |= {"LargestLoad"}  # parts of loads
+    made_elsewhere |= {"SceneNumber", "VariedInput"}  # parts of studies
     made_elsewhere |= {"IgnoredProperty", "ModePolynomial", "PropertyStep", "ShapeCheck"}  # parts of decks
     made_elsewhere |= {"ParametricTerm"}  # part of a random response
     made_elsewhere |= {"load"}  # reads files: tests/unit/test_load.py

@@ -1,0 +1,206 @@
+"""The command on loads along the span: in equilibrium, in a transient, in steady response."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, Literal
+
+from beamdyn.cli.program import app, deliver
+from beamdyn.cli.values import (
+    BasisSize,
+    Discretization,
+    PhysicsOption,
+    SceneFile,
+    Text,
+    load_moving,
+    load_with,
+    naming_option,
+    parse_points,
+    parse_positions,
+    parse_positive,
+    parse_quantity,
+    parse_speeds,
+    parse_window,
+    speed_or_final,
+)
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from beamdyn.loads.span_loads import SpanLoads
+    from beamdyn.scene.scene import Scene
+
+LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
+
+
+@app.command
+def loads(
+    scene: SceneFile,
+    /,
+    *,
+    speed: Text | None = None,
+    t_end: Text | None = None,
+    speeds: Text | None = None,
+    at: Text | None = None,
+    points: Text | None = None,
+    angle: Text | None = None,
+    window: Text | None = None,
+    cycles: LoadQuantity | None = None,
+    quantity: LoadQuantity = "moment",
+    modes: BasisSize = "auto",
+    tolerance: float = 1e-5,
+    discretization: Discretization = "ritz",
+    physics: PhysicsOption = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Forces, bending moments, strains and stresses along the span, from loads and inertia.
+
+    In equilibrium at a speed, with --t-end in a transient, with --speeds in steady response over speed.
+
+    Parameters
+    ----------
+    scene
+        The scene; a transient and steady response take its motion.
+    speed
+        Speed of the equilibrium with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the
+        scene's motion, or 0 without one.
+    t_end
+        In a transient: end of the run with its unit, e.g. "30 s".
+    speeds
+        In steady response: start:stop:count, e.g. "1:150:100 rad/s", or a list, e.g. "50, 55 rad/s".
+    at
+        Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of jumps.
+    points
+        Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, in which
+        the beam bends, and along the second. Default: the outermost.
+    angle
+        In equilibrium: angle of rotation at which gravity acts, with its unit, e.g. "90 deg"; default 0.
+    window
+        In a transient: the largest loads within this time window: start:end, e.g. "20:30 s".
+    cycles
+        In a transient: also count the cycles of this quantity, where it is largest (needs the extra fatigue).
+    quantity
+        What --plot draws along the span.
+    modes
+        Of a transient and steady response, as for simulate and steady.
+    tolerance
+        The same.
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
+    outputs
+        Output files.
+    """
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.tables.loads import loads_csv
+
+    outputs.check(scene)
+    _check_together(speed, t_end, speeds, angle, window, cycles)
+    question = Question.on_file(
+        "beamdyn loads", scene, speed=speed, t_end=t_end, speeds=speeds, at=at, points=points, angle=angle,
+        window=window, cycles=cycles, modes=modes, tolerance=tolerance, discretization=discretization,
+        physics=physics,
+    )  # fmt: skip
+    where: dict[str, Any] = {
+        "at": None if at is None else parse_positions(at),
+        "points": None if points is None else parse_points(points),
+    }
+    basis: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
+    with naming_option("at", "--at", at or ""), naming_option("points", "--points", points or ""):
+        if t_end is not None:
+            result, tables = _in_transient(load_moving(scene, physics), t_end, window, cycles, where, basis)
+        elif speeds is not None:
+            result, tables = _in_steady_response(load_with(scene, physics), speeds, where, basis)
+        else:
+            loaded = load_with(scene, physics)
+            result, tables = _in_equilibrium(loaded, speed, angle, where, discretization)
+    draw = on_axes(lambda ax: result.plot(ax, quantity))
+    deliver(result, outputs, question, tables, loads_csv(result), draw, _warnings(result), _refusal(result))
+
+
+def _check_together(
+    speed: str | None,
+    t_end: str | None,
+    speeds: str | None,
+    angle: str | None,
+    window: str | None,
+    cycles: str | None,
+) -> None:
+    """Refuse options that belong to different analyses."""
+    kinds = [name for name, given in (("--speed", speed), ("--t-end", t_end), ("--speeds", speeds)) if given]
+    if len(kinds) > 1:
+        raise ValueError(
+            f"{' and '.join(kinds)}: give one of them: --speed for the equilibrium, --t-end for a transient, "
+            "--speeds for steady response"
+        )
+    for name, value in (("--window", window), ("--cycles", cycles)):
+        if value is not None and t_end is None:
+            raise ValueError(f"{name} belongs to a transient: give --t-end, too")
+    if angle is not None and (t_end is not None or speeds is not None):
+        raise ValueError("--angle belongs to the equilibrium at a --speed: elsewhere the beam turns")
+
+
+def _in_equilibrium(
+    scene: Scene, speed: str | None, angle: str | None, where: dict[str, Any], discretization: Discretization
+) -> tuple[SpanLoads, list[RenderableType]]:
+    from beamdyn import static_loads
+    from beamdyn.tables.loads import static_loads_table
+
+    theta = 0.0 if angle is None else parse_quantity("--angle", angle, "rad")
+    given = speed_or_final(scene, speed)
+    result = static_loads(scene, given, angle=theta, discretization=discretization, **where)
+    return result, [static_loads_table(result)]
+
+
+def _in_transient(
+    scene: Scene,
+    t_end: str,
+    window: str | None,
+    cycles: LoadQuantity | None,
+    where: dict[str, Any],
+    basis: dict[str, Any],
+) -> tuple[SpanLoads, list[RenderableType]]:
+    from beamdyn import count_cycles, simulate, transient_loads
+    from beamdyn.tables.loads import cycles_table, transient_loads_table
+
+    if cycles is not None and find_spec("rainflow") is None:
+        raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")
+    end = parse_positive("--t-end", t_end, "s")
+    span = None if window is None else parse_window(window, end)
+    with naming_option("t_end", "--t-end", t_end):
+        run = simulate(scene, end, **basis)
+    result = transient_loads(run, **where)
+    tables: list[RenderableType] = [transient_loads_table(result, span)]
+    if cycles is not None:
+        ends = (None, None) if span is None else span
+        place = result.largest(cycles, None, *ends)
+        station = result.station_of(place)
+        tables.append(cycles_table(count_cycles(result, cycles, station, place.component, *ends)))
+    return result, tables
+
+
+def _in_steady_response(
+    scene: Scene, speeds: str, where: dict[str, Any], basis: dict[str, Any]
+) -> tuple[SpanLoads, list[RenderableType]]:
+    from beamdyn import steady_loads, steady_response
+    from beamdyn.tables.loads import steady_loads_table
+
+    result = steady_loads(steady_response(scene, parse_speeds(speeds), **basis), **where)
+    return result, [steady_loads_table(result)]
+
+
+def _warnings(result: SpanLoads) -> list[str]:
+    from beamdyn.cautions import warnings_of
+
+    return warnings_of(result)
+
+
+def _refusal(result: SpanLoads) -> str:
+    """Why there are no loads at any speed; empty where there are."""
+    import numpy as np
+
+    if np.isfinite(result.moment).any():
+        return ""
+    return f"at none of {len(result.cases)} speeds is there a steady response"

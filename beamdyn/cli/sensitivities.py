@@ -1,0 +1,112 @@
+"""The command of sensitivities: which number of a scene matters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from beamdyn.cli.program import app, deliver
+from beamdyn.cli.values import (
+    Discretization,
+    ModeCount,
+    Order,
+    PhysicsOption,
+    SceneFile,
+    Text,
+    load_moving,
+    load_with,
+    parse_positive,
+    speed_or_final,
+)
+from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+
+if TYPE_CHECKING:
+    from beamdyn.scene.scene import Scene
+    from beamdyn.sensitivities.result import Sensitivities
+
+Answer = Literal["frequencies", "critical_speed", "crossings"]
+
+
+@app.command
+def sensitivities(
+    scene: SceneFile,
+    /,
+    *,
+    what: Answer = "frequencies",
+    speed: Text | None = None,
+    modes: ModeCount = 3,
+    order: Order = 1,
+    inputs: tuple[str, ...] = (),
+    discretization: Discretization = "ritz",
+    tolerance: float | None = None,
+    physics: PhysicsOption = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Derivatives of frequencies, of the critical speed or of resonance speeds by every number of the scene.
+
+    For example: beamdyn sensitivities scene.toml --speed "50 rad/s" --inputs beam.thickness --inputs speed
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    what
+        frequencies; critical_speed, at which the beam buckles; or crossings, the speeds at which modes meet
+        lines of the excitation.
+    speed
+        Speed of frequencies with its unit, top speed of crossings; default: the final speed of the scene's
+        motion, or 0 without one.
+    modes
+        Number of modes, from the lowest.
+    order
+        Of crossings: 1: the lines of the load and of the stiffness; more: those of interactions.
+    inputs
+        Numbers by their names in the file, such as beam.thickness, or speed; all if not given.
+    discretization
+        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
+    tolerance
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+    physics
+        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
+    outputs
+        Output files.
+    """
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.edge.wording import of_file
+    from beamdyn.tables.sensitivities import sensitivities_csv, sensitivities_table
+
+    outputs.check(scene)
+    asked = {
+        "what": what,
+        "speed": speed,
+        "modes": modes,
+        "order": order,
+        "inputs": ", ".join(inputs) or None,
+    }
+    options = {"discretization": discretization, "tolerance": tolerance, "physics": physics}
+    question = Question.on_file("beamdyn sensitivities", scene, **asked, **options)
+    loaded = load_moving(scene, physics) if what == "crossings" else load_with(scene, physics)
+    with of_file({}):
+        result = _solve(loaded, what, speed, modes, order, inputs or None, discretization, tolerance)
+    tables, rows = [sensitivities_table(result)], sensitivities_csv(result)
+    deliver(result, outputs, question, tables, rows, on_axes(result.plot), result.warnings)
+
+
+def _solve(
+    scene: Scene,
+    what: Answer,
+    speed: str | None,
+    modes: int,
+    order: int,
+    inputs: tuple[str, ...] | None,
+    discretization: Discretization,
+    tolerance: float | None,
+) -> Sensitivities:
+    from beamdyn import critical_speed_sensitivities, crossing_sensitivities, frequency_sensitivities
+
+    if what == "frequencies":
+        at = speed_or_final(scene, speed)
+        return frequency_sensitivities(scene, at, modes, inputs, discretization, tolerance)
+    if what == "critical_speed":
+        return critical_speed_sensitivities(scene, inputs, discretization, tolerance)
+    top = speed_or_final(scene, None) if speed is None else parse_positive("--speed", speed, "rad/s")
+    return crossing_sensitivities(scene, top, modes, inputs, order, discretization)

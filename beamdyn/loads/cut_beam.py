@@ -1,0 +1,179 @@
+"""Virtual displacements of a beam that is cut at stations.
+
+The principle of virtual work gives the force or moment with which the part outboard of a cut acts on the part
+inboard, if the part outboard moves as a rigid body while the rest stays: along the beam, across it, or by a
+rotation about the cut.  These displacements stand here beside the trial functions of a discretization, so
+that the fields (`beamdyn.equations.fields`) write all their terms for them, too: no physics is written twice.
+
+A rotation about the cut is a kink.  Its curvature, a delta function at the cut, is kept in all terms but the
+product of two curvatures: the work of the bending moment there is what is sought.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.legendre import gauss_points_on, gauss_rule
+from beamdyn.equations.arc_quadrature import Cells
+from beamdyn.equations.discretization import RootConditions, Space, Spaces
+from beamdyn.equations.sampled_space import SampledSpace
+from beamdyn.loads.stations import Stations
+from beamdyn.scene.profile import Profile
+
+_TOUCHING = 1e-12  # distance over the length at which a mass stands at a station
+
+
+@dataclass(frozen=True)
+class CutQuadrature:
+    """Gauss rule on the cells between element ends, breakpoints and stations, then the stations themselves.
+
+    Parameters
+    ----------
+    stations : Stations
+        The cuts.
+    cells : Cells
+        Cells of the discretization, with points that integrate its products.
+    """
+
+    stations: Stations
+    cells: Cells
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Points on [0, 1] of the rule, then those of the stations, shape (k + S,)."""
+        return np.concatenate([gauss_points_on(self._ends, self.cells.points).ravel(), self.stations.xi])
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Weights of the rule, then 1 for each station, where only delta functions differ from 0."""
+        _, w = gauss_rule(self.cells.points)
+        inside = (np.diff(self._ends)[:, None] / 2 * w).ravel()
+        return np.concatenate([inside, np.ones(len(self.stations.xi))])
+
+    @property
+    def _ends(self) -> np.ndarray:
+        return np.unique(np.concatenate([self.cells.ends, self.stations.xi]))
+
+
+@dataclass(frozen=True)
+class CutSpace(SampledSpace):
+    """Trial functions of a space, then rotations about each cut, if the space has slopes, then translations.
+
+    Parameters
+    ----------
+    space : Space or None
+        The space; None if there are no trial functions.
+    derivatives : int
+        Highest order of derivatives: with 2, the displacements include rotations.
+    quadrature : CutQuadrature
+        Stations and quadrature rule.
+    length : float
+        Length of the beam [m].
+    """
+
+    space: Space | None
+    derivatives: int
+    quadrature: CutQuadrature
+    length: float
+
+    @property
+    def trials(self) -> int:
+        """Number of trial functions, before the virtual displacements."""
+        return 0 if self.space is None else self.space.size
+
+    @property
+    def points(self) -> np.ndarray:
+        """Points of the rule, and the stations."""
+        return self.quadrature.points
+
+    @property
+    def rule(self) -> np.ndarray:
+        """Weights of the rule, and 1 at the stations."""
+        return self.quadrature.weights
+
+    @property
+    def coarse(self) -> None:
+        """None: nothing is solved in this space."""
+        return None
+
+    @cached_property
+    def samples(self) -> list[np.ndarray]:
+        """Values and derivatives at the points; at the stations of the displacements only delta functions."""
+        count, values = len(self.quadrature.stations.xi), []
+        for order in range(self.derivatives + 1):
+            sampled = self.evaluate(self.points, order)
+            sampled[self.trials :, -count:] = 0.0
+            values.append(sampled)
+        if self.derivatives == 2:
+            values[2][self.trials : self.trials + count, -count:] = self.length * np.eye(count)
+        return values
+
+    def end(self, order: int) -> np.ndarray:
+        """Evaluate the `order`-th derivatives at the tip."""
+        return self.evaluate(np.ones(1), order)[:, 0]
+
+    def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
+        """Evaluate the `order`-th derivatives by x/L at xi (k,), without delta functions: shape (n, k)."""
+        cut, moved = self.quadrature.stations.xi[:, None], self._are_outboard(xi)
+        flat = np.zeros_like(moved)
+        parts = [] if self.space is None else [self.space.evaluate(xi, order)]
+        if self.derivatives == 2:
+            parts.append((self.length * (xi - cut) * moved, self.length * moved, flat)[order])
+        return np.concatenate([*parts, moved if order == 0 else flat])
+
+    def _are_outboard(self, xi: np.ndarray) -> np.ndarray:
+        """1 for points xi (k,) that belong to the part outboard of each cut, else 0: shape (S, k)."""
+        stations = self.quadrature.stations
+        least = stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
+        return (np.asarray(xi) > least[:, None]).astype(float)
+
+    def gram(self, weight: Profile, order: int) -> np.ndarray:
+        """Integrate the weight times the `order`-th derivatives of functions i and j."""
+        return self.product(self, weight, (order, order))
+
+    def product(self, columns: CutSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
+        """Integrate the weight times derivatives of functions i of this space and j of another."""
+        rule = self.weights(weight)
+        if orders == (2, 2):
+            rule[-len(self.quadrature.stations.xi) :] = 0.0
+        return (self.samples[orders[0]] * rule) @ columns.samples[orders[1]].T
+
+
+@dataclass(frozen=True)
+class CutSpaces:
+    """Function spaces of a beam that is cut at stations.
+
+    Parameters
+    ----------
+    spaces : Spaces
+        Function spaces of the beam.
+    quadrature : CutQuadrature
+        Stations and quadrature rule.
+    length : float
+        Length of the beam [m].
+    without : str
+        Stiffness against which the model has no trial functions: "axial_stiffness" without stretch.
+    """
+
+    spaces: Spaces
+    quadrature: CutQuadrature
+    length: float
+    without: str
+    _built: dict[RootConditions, CutSpace] = field(default_factory=dict, repr=False)
+
+    def functions(self, conditions: RootConditions) -> CutSpace:
+        """Trial functions that satisfy conditions at the root, and the virtual displacements."""
+        if conditions not in self._built:
+            space = None if conditions.stiffness == self.without else self.spaces.functions(conditions)
+            built = CutSpace(space, conditions.derivatives, self.quadrature, self.length)
+            self._built[conditions] = built
+        return self._built[conditions]
+
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+        return self.functions(rows).product(self.functions(columns), weight, orders)

@@ -1,0 +1,164 @@
+"""Lines of loads along the span in steady response: harmonics of the phases of rotation and road."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.loads.load_rows import LoadRows, span_rows
+from beamdyn.loads.section_points import Outputs
+from beamdyn.loads.stations import Stations
+from beamdyn.steady.excitation_phases import check_steady_state, expand_quantities
+from beamdyn.steady.harmonic_balance import (
+    Pair,
+    convolution_matrix,
+    generate_harmonics,
+    largest_over_phases,
+    list_harmonics,
+    solve_harmonic_balance,
+)
+from beamdyn.steady.response import SteadyResponse
+from beamdyn.steady.vibration import Vibration, vibration_of
+
+_BATCH = 2000  # sums of lines whose largest values are sought at once
+_MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
+_NEGLIGIBLE = 1e-12  # of the tip, over the sum of all lines: its harmonics of one interaction more are kept
+
+
+@dataclass(frozen=True)
+class LoadLines:
+    """Outputs at stations as sums of lines Re(a exp(i (j theta + k chi))).
+
+    Parameters
+    ----------
+    harmonics : ndarray of int, shape (l, 2)
+        j and k of each line; of a harmonic and its opposite, the one of positive frequency.
+    amplitude : ndarray of complex, shape (C, S, K, l)
+        Amplitudes a at C speeds, S stations, of K outputs; nan where there is no steady response.
+    of_harmonics : ndarray, shape (C, S, K)
+        Estimated error by the harmonics left out.
+    """
+
+    harmonics: np.ndarray
+    amplitude: np.ndarray
+    of_harmonics: np.ndarray
+
+    @cached_property
+    def largest(self) -> np.ndarray:
+        """Largest magnitudes over both phases: shape (C, S, K)."""
+        flat = self.amplitude.reshape(-1, 1, len(self.harmonics))
+        found, known = np.full(len(flat), np.nan), np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
+        for some in np.array_split(known, 1 + len(known) // _BATCH):
+            found[some] = largest_over_phases(flat[some], self.harmonics)
+        return found.reshape(self.amplitude.shape[:-1])
+
+    def distance_from(self, other: LoadLines) -> np.ndarray:
+        """Sum over the lines of the distances of the amplitudes from those of another solution (C, S, K).
+
+        Infinite where one of the two alone has a steady response.
+        """
+        names = [*dict.fromkeys([*map(tuple, self.harmonics), *map(tuple, other.harmonics)])]
+        difference = np.abs(self._over(names) - other._over(names)).sum(axis=-1)
+        known = [np.isfinite(each.amplitude).all(axis=-1) for each in (self, other)]
+        return np.where(known[0] ^ known[1], np.inf, difference)
+
+    def _over(self, names: list[tuple[int, ...]]) -> np.ndarray:
+        """Amplitudes over the lines of these names, 0 for those that are missing."""
+        found = np.zeros((*self.amplitude.shape[:-1], len(names)), dtype=complex)
+        found[..., [names.index(tuple(h)) for h in self.harmonics]] = self.amplitude
+        return found
+
+
+def lines_of_response(
+    response: SteadyResponse, stations: Stations, outputs: Outputs | None = None
+) -> LoadLines:
+    """Lines of the outputs at stations of a steady response, or of the forces and moments there."""
+    request, speeds = response.request, response.speeds
+    model, motion = request.model, check_steady_state(request.scene.motion)
+    equations = model.modal_equations(request.basis)
+    rows = span_rows(model.scene, model.discretization, equations, stations).in_motion(equations)
+    rows = rows if outputs is None else rows.through(outputs.matrix)
+    vibration = vibration_of(model, request.basis, motion, speeds)
+    pairs, q, truncated = _solve(vibration, equations, response)
+    rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
+    used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
+    spectra = expand_quantities(equations, used, motion, speeds)
+    union = _harmonics_of_loads(rows, spectra, pairs)
+    fine, rough = (_expand(rows, spectra, union, pairs, rates, each) for each in (q, truncated))
+    fine[~response.stable] = np.nan
+    kappa = motion.road_multiple or 0.0
+    forward = [i for i, h in enumerate(union) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
+    harmonics = np.array([union[i] for i in forward], dtype=int).reshape(-1, 2)
+    amplitude = fine[..., forward] * np.where(harmonics.any(axis=1), 2.0, 1.0)
+    return LoadLines(harmonics, amplitude, np.abs(fine - rough).sum(axis=-1))
+
+
+def _solve(
+    vibration: Vibration, equations: Equations, response: SteadyResponse
+) -> tuple[list[Pair], np.ndarray, np.ndarray]:
+    """Harmonics (H) of the coordinates (C, H, n), those of one interaction more than in the response.
+
+    Also the coordinates without these further harmonics, by whose distance their error is estimated.
+    """
+    coupling = set().union(*(system.coupling for system, _ in vibration.parts))
+    levels = generate_harmonics(_harmonics_that_matter(response), coupling, 1)
+    pairs = [h for level in levels for h in level]
+    q = np.zeros((2, len(response.speeds), len(pairs), equations.size), dtype=complex)
+    stable = np.flatnonzero(response.stable)
+    for system, places in vibration.parts if pairs else ():
+        for some in np.array_split(
+            stable, 1 + len(stable) * (len(pairs) * len(places)) ** 2 // _MOST_ENTRIES
+        ):
+            solved = solve_harmonic_balance(system[some], levels)
+            for each, solution in zip(q, solved if len(levels) > 1 else (solved[0], solved[0]), strict=True):
+                each[np.ix_(some, np.arange(len(pairs)), places)] = solution
+    return pairs, q[0], q[1]
+
+
+def _harmonics_that_matter(response: SteadyResponse) -> list[Pair]:
+    """Harmonics of the response, and their opposites, without those that are below rounding at all speeds."""
+    size = np.abs(response.line_amplitude) + np.abs(response.line_amplitude_across)
+    matter = (np.nan_to_num(size) > _NEGLIGIBLE * np.nan_to_num(response.bound)[:, None]).any(axis=0)
+    both = ((sign * int(j), sign * int(k)) for j, k in response.harmonics[matter] for sign in (1, -1))
+    return [*dict.fromkeys(both)]
+
+
+def _harmonics_of_loads(rows: LoadRows, spectra: dict[str, np.ndarray], pairs: list[Pair]) -> list[Pair]:
+    """Harmonics of the loads: those of the coordinates, of the root's motion, and of their products."""
+    found = set(pairs) | {(0, 0)}
+    for quantity in rows.load:
+        found |= list_harmonics(spectra[quantity])
+    for quantity in (*rows.position, *rows.velocity):
+        found |= set(_sums(list_harmonics(spectra[quantity]), pairs))
+    return sorted(found)
+
+
+def _sums(first: set[Pair], second: list[Pair]) -> Iterator[Pair]:
+    return ((a + j, b + k) for a, b in first for j, k in second)
+
+
+def _expand(
+    rows: LoadRows,
+    spectra: dict[str, np.ndarray],
+    union: list[Pair],
+    pairs: list[Pair],
+    rates: np.ndarray,
+    q: np.ndarray,
+) -> np.ndarray:
+    """Complex harmonics of the outputs (C, S, K, U), over a list of harmonics that includes the pairs."""
+    everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
+    everywhere[:, [union.index(h) for h in pairs]] = q
+    velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere
+    total = np.zeros((len(rates), *rows.shape, len(union)), dtype=complex)
+    static = union.index((0, 0))
+    for quantity, load in rows.load.items():
+        total += np.einsum("cu,sk->csku", convolution_matrix(spectra[quantity], union)[:, :, static], load)
+    for by_quantity, state in ((rows.position, everywhere), (rows.velocity, velocity)):
+        for quantity, row in by_quantity.items():
+            product = convolution_matrix(spectra[quantity], union) @ state
+            total += np.einsum("cun,skn->csku", product, row, optimize=True)
+    return total

@@ -1,0 +1,156 @@
+"""Loads at stations on the path of a transient: at any time, their largest magnitudes, and their errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.pickling import FieldsOnly
+from beamdyn.loads.load_rows import LoadRows, span_rows
+from beamdyn.loads.load_time_error import time_errors_of_rows
+from beamdyn.loads.mode_error import mode_error, through, with_neighbours
+from beamdyn.loads.section_points import Outputs
+from beamdyn.loads.stations import Stations
+from beamdyn.transient.simulate import Transient
+from beamdyn.transient.system import ModalSystem
+
+_COMPARED = 4000  # times at which two runs are compared; at most twice as many
+_BATCH = 500  # times at once
+_ROUNDING = 1e-12  # relative to the largest along the span
+_REFINEMENTS, _FINE = 3, 17  # of a maximum, each on a grid so many times as fine
+
+
+@dataclass(frozen=True)
+class LoadPath(FieldsOnly):
+    """Outputs at stations as functions of the time of a run.
+
+    Parameters
+    ----------
+    run : Transient
+        The run, of a straight beam.
+    stations : Stations
+        The stations, S of them.
+    given : Outputs, optional
+        What is stated of each, K outputs; None if only the loads are wanted.
+    """
+
+    run: Transient
+    stations: Stations
+    given: Outputs | None = None
+
+    @property
+    def outputs(self) -> Outputs:
+        """The outputs of each station."""
+        assert self.given is not None
+        return self.given
+
+    @cached_property
+    def rows(self) -> LoadRows:
+        """The outputs by the state of the run."""
+        return self.loads.through(self.outputs.matrix)
+
+    @cached_property
+    def loads(self) -> LoadRows:
+        """Forces and moments by the state of the run."""
+        equations, model = self._system.equations, self.run.request.model
+        return span_rows(self.run.scene, model.discretization, equations, self.stations).in_motion(equations)
+
+    @property
+    def _system(self) -> ModalSystem:
+        assert isinstance(self.run.system, ModalSystem)
+        return self.run.system
+
+    def at(self, t: np.ndarray) -> np.ndarray:
+        """Outputs at times t [s] (T,): shape (T, S, K)."""
+        return self.rows.at(self._system.root(t), *self.run.path.at(t))
+
+    def series_of(self, station: int, output: int, t: np.ndarray) -> np.ndarray:
+        """One output of one station at times t [s] (T,): shape (T,)."""
+        single = self.rows.chosen(np.array([station]), np.array([output]))
+        return self._each_at(single, t[None])[0]
+
+    def loads_at(self, t: np.ndarray) -> np.ndarray:
+        """Forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
+        return self.loads.at(self._system.root(t), *self.run.path.at(t))
+
+    # Largest magnitudes ---------------------------------------------------------------------------
+
+    def peaks(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+        """Values of largest magnitude from start to end [s], and their times [s]: shapes (S, K)."""
+        values, times = self._largest_samples(start, end)
+        station, component = (index.ravel() for index in np.indices(values.shape))
+        single = self.rows.chosen(station, component)
+        t, half_width = times.ravel()[:, None], self._longest_gap
+        found = values.ravel()[:, None]
+        for _ in range(_REFINEMENTS):
+            near = np.clip(t + np.linspace(-half_width, half_width, 2 * _FINE + 1), start, end)
+            sampled = self._each_at(single, near)
+            best = np.abs(sampled).argmax(axis=1)[:, None]
+            t, found = (np.take_along_axis(each, best, axis=1) for each in (near, sampled))
+            half_width /= _FINE
+        return found.reshape(values.shape), t.reshape(values.shape)
+
+    @property
+    def _longest_gap(self) -> float:
+        return float(np.diff(self.run.path.samples[0]).max())
+
+    def _largest_samples(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+        t = self.run.path.samples[0]
+        t = np.concatenate([[start], t[(t > start) & (t < end)], [end]])
+        best, times = np.zeros(self.rows.shape), np.full(self.rows.shape, start)
+        for some in _batches(t):
+            values = self.at(some)
+            k = np.abs(values).argmax(axis=0)[None]
+            largest = np.take_along_axis(values, k, axis=0)[0]
+            larger = np.abs(largest) > np.abs(best)
+            best, times = np.where(larger, largest, best), np.where(larger, some[k[0]], times)
+        return best, times
+
+    def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
+        """Single outputs (O, 1) at times of their own, t (O, T): shape (O, T)."""
+        root = self._system.root(t)
+        states = (each.reshape(*t.shape, -1) for each in self.run.path.at(t.ravel()))
+        total = np.zeros(t.shape)
+        for quantity, value in single.load.items():
+            total += getattr(root, quantity) * value
+        for rows, state in zip((single.position, single.velocity), states, strict=True):
+            for quantity, row in rows.items():
+                total += getattr(root, quantity) * np.einsum("otn,on->ot", state, row[:, 0])
+        return total
+
+    # Errors ---------------------------------------------------------------------------------------
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """Estimated errors (S, K) over the whole run: of the modes left out, and of time integration."""
+        if self.run.refined is None:
+            return np.full(self.rows.shape, np.inf)
+        everywhere = with_neighbours(self.stations)
+        distance, largest = _compare(*(LoadPath(run, everywhere) for run in (self.run, self.run.refined)))
+        along_span = largest.max(axis=0)
+        basis = self.run.request.basis
+        of_modes = mode_error(distance, along_span, self.stations, self.outputs, basis)
+        return of_modes + through(self.outputs, self._time_errors + _ROUNDING * along_span)
+
+    @property
+    def _time_errors(self) -> np.ndarray:
+        """Time-integration errors of the loads (S, 1 + 2 d)."""
+        return time_errors_of_rows(self.loads, self._system, self.run.path, self.run.time_error)
+
+
+def _compare(path: LoadPath, other: LoadPath) -> tuple[np.ndarray, np.ndarray]:
+    """Largest distance of the loads of two runs over time, and their largest magnitude: (S, 1 + 2 d)."""
+    distance, largest = np.zeros((2, *path.loads.shape))
+    t = path.run.path.samples[0]
+    for some in _batches(t[:: 1 + len(t) // _COMPARED]):
+        values = path.loads_at(some)
+        distance = np.maximum(distance, np.abs(values - other.loads_at(some)).max(axis=0))
+        largest = np.maximum(largest, np.abs(values).max(axis=0))
+    return distance, largest
+
+
+def _batches(t: np.ndarray) -> Iterator[np.ndarray]:
+    return (t[k : k + _BATCH] for k in range(0, len(t), _BATCH))

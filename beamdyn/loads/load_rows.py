@@ -1,0 +1,226 @@
+"""Loads at stations as linear functions of the state, by virtual work on a beam that is cut there.
+
+With a rigid displacement w of the part outboard of a cut (`beamdyn.loads.cut_beam`), the load R that does
+work on it is
+
+    R = f[w] - m[q'', w] - g[q', w] - k[q, w],
+
+with the loads f of the root's motion and gravity, and the forms m, g, k of mass, gyroscopic terms and
+geometric stiffness: the loads and the inertia of the part outboard, and the lever arms that the deflection
+gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of
+motion of the kept coordinates, so that R is the moment of the kept shapes and the static one of all others,
+as in the mode-acceleration method: Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section
+11.4.
+Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam in proportion to its mass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from beamdyn.equations.arc_quadrature import Cells
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.fields import FIELDS
+from beamdyn.equations.fields.field import FieldEquations
+from beamdyn.equations.fields.stretch import Stretch
+from beamdyn.equations.root_motion import Quantity, RootMotion
+from beamdyn.loads.cut_beam import CutQuadrature, CutSpace, CutSpaces
+from beamdyn.loads.stations import Stations
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import weight_degree
+
+ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
+
+_FIELD_OF_DIRECTION = "bending", "second bending"
+_DAMPING = {field.damping_name for field in FIELDS}
+
+
+@dataclass(frozen=True)
+class LoadRows:
+    """Loads at S stations, of K components each, as linear functions of the state.
+
+    The components are the axial force, the shear force in each modelled direction, and the bending moment in
+    each; after `through`, others.
+
+    Parameters
+    ----------
+    load : dict of str to ndarray, shape (S, K)
+        Load by each quantity of the root's motion on the beam at rest.
+    position, velocity, acceleration : dict of str to ndarray, shape (S, K, n)
+        Load per coordinate and its derivatives, by each quantity of the root's motion.
+    """
+
+    load: ByQuantity
+    position: ByQuantity
+    velocity: ByQuantity
+    acceleration: ByQuantity
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers S of stations and K of components."""
+        return next(iter(self.load.values())).shape  # pyright: ignore[reportReturnType]
+
+    def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Loads at T times, with coordinates q and velocities v (T, n): shape (T, S, K)."""
+        total = np.zeros((len(q), *self.shape))
+        for quantity, values in self.load.items():
+            total += getattr(root, quantity)[:, None, None] * values
+        for rows, state in ((self.position, q), (self.velocity, v)):
+            for quantity, row in rows.items():
+                total += getattr(root, quantity)[:, None, None] * np.moveaxis(row @ state.T, -1, 0)
+        return total
+
+    def chosen(self, station: np.ndarray, component: np.ndarray) -> LoadRows:
+        """Rows of O single loads as those of O stations with one component."""
+
+        def pick(by_quantity: ByQuantity) -> ByQuantity:
+            return {name: row[station, component][:, None] for name, row in by_quantity.items()}
+
+        return LoadRows(pick(self.load), pick(self.position), pick(self.velocity), pick(self.acceleration))
+
+    def through(self, matrix: np.ndarray) -> LoadRows:
+        """Rows of P quantities that are linear in the loads of their station: matrix (S, P, K)."""
+
+        def turned(by_quantity: ByQuantity) -> ByQuantity:
+            return {name: np.einsum("spk,sk...->sp...", matrix, row) for name, row in by_quantity.items()}
+
+        each = (self.load, self.position, self.velocity, self.acceleration)
+        return LoadRows(*map(turned, each))
+
+    def in_motion(self, equations: Equations) -> LoadRows:
+        """Rows without accelerations, which the equations of motion give."""
+        terms = tuple(term for term in equations.terms if term.name not in _DAMPING)
+        undamped = replace(equations, terms=terms)
+        K, G, M = undamped.matrices
+        assert set(M) == {"unity"} and set(self.acceleration) <= {"unity"}
+        S, components = self.shape
+        inertia = self.acceleration.get("unity", np.zeros((S, components, equations.size)))
+        A = np.linalg.solve(M["unity"].T, inertia.reshape(S * components, -1).T).T.reshape(inertia.shape)
+        return LoadRows(
+            _subtract(self.load, {name: -(A @ f) for name, f in undamped.vectors.items()}),
+            _subtract(self.position, {name: A @ matrix for name, matrix in K.items()}),
+            _subtract(self.velocity, {name: A @ matrix for name, matrix in G.items()}),
+            {},
+        )
+
+
+def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
+    names: dict[Quantity, None] = dict.fromkeys([*first, *second])
+    return {name: np.asarray(first.get(name, 0.0) - second.get(name, 0.0)) for name in names}
+
+
+# Assembly by virtual work -------------------------------------------------------------------------
+
+
+def span_rows(
+    scene: Scene, discretization: Discretization, equations: Equations, stations: Stations
+) -> LoadRows:
+    """Loads at stations by the coordinates of given equations.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, of a straight beam.
+    discretization : Discretization
+        Its discretization.
+    equations : Equations
+        Equations of the scene in this discretization, as they are or reduced.
+    stations : Stations
+        The stations, S of them.
+
+    Returns
+    -------
+    LoadRows
+        With 1 + 2 d components, d being the number of planes: the axial force [N], tension positive; the
+        shear forces [N] in each direction across the deflected axis; the bending moments [N m], positive if
+        they bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
+    """
+    beam = scene.modelled_beam
+    cells = discretization.cells(beam)
+    quadrature = CutQuadrature(stations, Cells(cells.ends, cells.points + weight_degree(beam) // 2 + 1))
+    without = "" if scene.physics.stretch else "axial_stiffness"
+    spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
+    stretched = Stretch().complete(replace(scene, damping_ratio=0.0))  # its equation has the axial force
+    assembled = {f.name: f.assemble(stretched, spaces) for f in FIELDS if f.is_modelled(stretched)}
+    parts = [*_displacements(assembled, equations.planes)]
+    rows = _gather([_rows_of(assembled, equations, *part) for part in parts])
+    return _across_deflected_axis(rows, equations, stations, beam.length)
+
+
+def _displacements(assembled: Mapping[str, FieldEquations], planes: int) -> Iterator[tuple[str, slice]]:
+    """Field and virtual displacements of each component: along the beam, across it, rotations."""
+    for field in (Stretch.name, *_FIELD_OF_DIRECTION[:planes]):
+        yield field, _translations(assembled[field].space)
+    for field in _FIELD_OF_DIRECTION[:planes]:
+        yield field, _rotations(assembled[field].space)
+
+
+def _rotations(space: object) -> slice:
+    assert isinstance(space, CutSpace)
+    return slice(space.trials, space.trials + len(space.quadrature.stations.xi))
+
+
+def _translations(space: object) -> slice:
+    assert isinstance(space, CutSpace)
+    return slice(space.size - len(space.quadrature.stations.xi), space.size)
+
+
+def _rows_of(
+    assembled: Mapping[str, FieldEquations], equations: Equations, field: str, moved: slice
+) -> LoadRows:
+    """Work of all loads and terms on the displacements of one field: rows of S stations, without K."""
+    count = moved.stop - moved.start
+    load: ByQuantity = {}
+    by_order: tuple[ByQuantity, ...] = ({}, {}, {})
+    for each in assembled.values():
+        for f in (f for f in each.loads if f.rows == field and f.factor):
+            load[f.quantity] = load.get(f.quantity, np.zeros(count)) + f.factor * f.vector[moved]
+        for term in (t for t in each.terms if t.rows == field and t.factor and t.columns in equations.shapes):
+            shape = equations.shapes[term.columns]
+            total = by_order[term.order].setdefault(term.quantity, np.zeros((count, equations.size)))
+            kept = term.matrix[moved, : len(shape.matrix)] @ shape.matrix
+            total[:, equations.blocks[shape.block]] -= term.factor * kept
+    return LoadRows(load, *by_order)
+
+
+def _gather(components: list[LoadRows]) -> LoadRows:
+    """Stack the rows of K components along a new second axis."""
+
+    def stack(parts: list[ByQuantity]) -> ByQuantity:
+        names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
+        return {name: np.stack(_filled([part.get(name) for part in parts]), axis=1) for name in names}
+
+    return LoadRows(
+        stack([c.load for c in components]),
+        stack([c.position for c in components]),
+        stack([c.velocity for c in components]),
+        stack([c.acceleration for c in components]),
+    )
+
+
+def _filled(rows: list[np.ndarray | None]) -> list[np.ndarray]:
+    """Zeros in place of what is missing."""
+    like = next(row for row in rows if row is not None)
+    return [np.zeros_like(like) if row is None else row for row in rows]
+
+
+def _across_deflected_axis(
+    rows: LoadRows, equations: Equations, stations: Stations, length: float
+) -> LoadRows:
+    """Take from the forces in fixed directions what the axial force contributes by the slope of the axis."""
+    position = dict(rows.position)
+    for quantity, load in rows.load.items():
+        tension = load[:, 0]
+        if not tension.any():
+            continue
+        of_quantity = position.get(quantity, np.zeros((*rows.shape, equations.size))).copy()
+        for direction in range(equations.planes):
+            slope = equations.deflection(stations.xi, 1, direction).T / length
+            of_quantity[:, 1 + direction] -= tension[:, None] * slope
+        position[quantity] = of_quantity
+    return replace(rows, position=position)

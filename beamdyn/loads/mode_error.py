@@ -1,0 +1,67 @@
+"""Error of loads by the modes left out, from their distance from a solution with more modes.
+
+The modes that a larger model adds vibrate in waves along the span: at the nodes of a wave the distance is
+small by chance, while other modes are not.  So the distance at a station is the largest within half a wave of
+the first mode left out, to either side.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.loads.section_points import Outputs
+from beamdyn.loads.stations import Stations
+from beamdyn.modal.modal_basis import ModalBasis
+
+_MARGIN = 3.0  # error over the distance: moments of modes fall as k^-3 after a sudden load
+_MARGIN_OF_FORCES = 4.0  # shear forces as k^-2: those left out are 3 times those that half as many more add
+_LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
+_BETWEEN = 21  # stations besides those asked for
+
+
+def with_neighbours(stations: Stations) -> Stations:
+    """The stations, then others evenly along the beam, at which distances are judged too."""
+    more = np.linspace(0, 1, _BETWEEN)
+    return Stations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
+
+
+def mode_error(
+    distance: np.ndarray, along_span: np.ndarray, stations: Stations, outputs: Outputs, basis: ModalBasis
+) -> np.ndarray:
+    """Errors of outputs (..., S, K) from distances of loads (..., N, 1 + 2 d).
+
+    They are infinite where the distance is too large to judge by.
+
+    Parameters
+    ----------
+    distance : ndarray, shape (..., N, 1 + 2 d)
+        Distance of the loads from those of more modes, at the N stations of `with_neighbours`.
+    along_span : ndarray, shape (..., 1 + 2 d)
+        Largest magnitude of the loads along the span.
+    stations : Stations
+        The S stations asked for.
+    outputs : Outputs
+        Outputs there.
+    basis : ModalBasis
+        The modes kept.
+    """
+    everywhere = with_neighbours(stations).xi
+    half_wave = 1 / (_count_modes(basis) + 0.5)
+    near = np.abs(stations.xi[:, None] - everywhere) <= half_wave
+    nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
+    planes = (distance.shape[-1] - 1) // 2
+    margins = np.repeat([_MARGIN, _MARGIN_OF_FORCES, _MARGIN], [1, planes, planes])
+    too_large = through(outputs, nearby) > _LIMIT * through(outputs, along_span[..., None, :])
+    return np.where(too_large, np.inf, through(outputs, margins * nearby))
+
+
+def through(outputs: Outputs, errors: np.ndarray) -> np.ndarray:
+    """Errors of outputs (..., S, K) from those of the loads (..., S, 1 + 2 d), which add up."""
+    weights = np.abs(outputs.matrix)
+    with np.errstate(invalid="ignore"):  # what is infinite does not matter where it has no weight
+        return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)
+
+
+def _count_modes(basis: ModalBasis) -> float:
+    """Number of modes of a field; infinite where all functions of a discretization are kept."""
+    return np.inf if basis.modes is None else basis.modes

@@ -1,0 +1,214 @@
+"""What every result on loads along the span has: the stations, the loads there, and their errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue, count, one_of
+from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.directions import modelled_directions
+from beamdyn.loads.section_points import QUANTITIES, Sections
+from beamdyn.loads.stations import Stations
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}
+
+
+@dataclass(frozen=True)
+class LargestLoad:
+    """The largest magnitude of a quantity along the span, and where it is.
+
+    Parameters
+    ----------
+    quantity : str
+        "force", "moment", "curvature", "strain" or "stress".
+    value : float
+        The value there, with its sign where that is known [N, N m, 1/m, 1, Pa].
+    error : float
+        Estimated error of the value [same unit].
+    x : float
+        Position along the beam [m].
+    inboard : bool
+        Whether that is just inboard of the position, where something jumps there.
+    component : int
+        Index of the direction, of the force, or of the point of the section.
+    case : float
+        Time [s] or speed [rad/s].
+    """
+
+    quantity: str
+    value: float
+    error: float
+    x: float
+    inboard: bool
+    component: int
+    case: float
+
+
+@dataclass(frozen=True)
+class SpanLoads(Result):
+    """Forces, moments, curvatures, strains and stresses at stations along the span.
+
+    C is the number of times or speeds, S that of stations, d that of modelled planes of bending (1 or 2), P
+    that of points of the section.  Loads are those of the part outboard of a station on the part inboard,
+    about its deflected axis; they follow from the loads and the inertia outboard, not from a curvature.
+
+    Parameters
+    ----------
+    x : ndarray, shape (S,)
+        Stations [m].  One that occurs twice has two sides, the inboard one first: a section jumps there, or a
+        mass stands there.
+    inboard : ndarray of bool, shape (S,)
+        Whether the station is just inboard of its position.
+    points : ndarray, shape (S, P, 2)
+        Points of each section [m]: along its first direction, in which `bending_stiffness` counts, and along
+        the second.
+    force : ndarray, shape (C, S, 1 + d)
+        Axial force, tension positive, then shear force along the bending direction at the root and, with two
+        planes, across it [N].
+    moment : ndarray, shape (C, S, d)
+        Bending moment in each of these directions [N m], positive if it bends towards positive deflection.
+    curvature : ndarray, shape (C, S, d)
+        Curvature in each direction of the section, which the twist turns [1/m].
+    strain : ndarray, shape (C, S, P)
+        Axial strain at the points.
+    stress : ndarray, shape (C, S, P)
+        Axial stress at the points [Pa]; nan if Young's modulus is not known.
+    force_error, moment_error, curvature_error, strain_error, stress_error : ndarray
+        Estimated errors; of a transient one for the whole run, without the first axis.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was computed.
+    """
+
+    x: np.ndarray
+    inboard: np.ndarray
+    points: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    curvature: np.ndarray
+    strain: np.ndarray
+    stress: np.ndarray
+    force_error: np.ndarray
+    moment_error: np.ndarray
+    curvature_error: np.ndarray
+    strain_error: np.ndarray
+    stress_error: np.ndarray
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    case: ClassVar[str]  # what the first axis of the arrays is, with its unit
+
+    @property
+    def cases(self) -> np.ndarray:
+        """Times [s] or speeds [rad/s], shape (C,)."""
+        raise NotImplementedError
+
+    def values(self, quantity: str) -> np.ndarray:
+        """A quantity by its name (C, S, k)."""
+        one_of("quantity", quantity, QUANTITIES)
+        return getattr(self, quantity)
+
+    def error_of(self, quantity: str) -> np.ndarray:
+        """Its error, as an array that broadcasts against the values."""
+        one_of("quantity", quantity, QUANTITIES)
+        return getattr(self, f"{quantity}_error")
+
+    def components(self, quantity: str) -> tuple[str, ...]:
+        """Names of the components of a quantity."""
+        one_of("quantity", quantity, QUANTITIES)
+        if quantity in ("strain", "stress"):
+            return tuple(f"point {k + 1}" for k in range(self.points.shape[1]))
+        directions = modelled_directions(self.scene)
+        if quantity == "curvature":
+            return ("first direction of the section", "second direction of the section")[: len(directions)]
+        return ("axial", *directions) if quantity == "force" else directions
+
+    def largest(self, quantity: str = "strain", component: int | None = None) -> LargestLoad:
+        """Find the largest magnitude of a quantity over all cases, stations and components.
+
+        Parameters
+        ----------
+        quantity : {"strain", "stress", "curvature", "moment", "force"}
+            The quantity.
+        component : int, optional
+            One component only, such as 0 of the force for the axial one.
+
+        Returns
+        -------
+        LargestLoad
+
+        Raises
+        ------
+        ValueError
+            If there are no such values: no points of the section, or no component of that number.
+        """
+        chosen = self.check_component(quantity, component)
+        self.check_known(quantity)
+        values = self.values(quantity)[..., chosen]
+        size = np.where(np.isnan(values), -1.0, np.abs(values))
+        c, s, k = np.unravel_index(int(size.argmax()), size.shape)
+        error = np.broadcast_to(self.error_of(quantity)[..., chosen], size.shape)[c, s, k]
+        return self.located(
+            quantity, float(values[c, s, k]), float(error), int(s), chosen[k], float(self.cases[c])
+        )
+
+    def station_of(self, found: LargestLoad) -> int:
+        """Index of the station of a value."""
+        return int(np.flatnonzero((self.x == found.x) & (self.inboard == found.inboard))[0])
+
+    def check_known(self, quantity: str) -> None:
+        """Refuse a quantity of which the result has no value."""
+        if not np.isfinite(self.values(quantity)).any():
+            remedy = _REMEDIES.get(quantity, "")
+            raise InvalidValue("quantity", quantity, f"the result has no {quantity}", remedy)
+
+    def check_component(self, quantity: str, component: int | None) -> list[int]:
+        """Indices of the components that are asked for."""
+        size = self.values(quantity).shape[-1]
+        return list(range(size)) if component is None else [count("component", component, 0, size - 1)]
+
+    def located(
+        self, quantity: str, value: float, error: float, station: int, component: int, case: float
+    ) -> LargestLoad:
+        """A value with its place."""
+        at = float(self.x[station]), bool(self.inboard[station])
+        return LargestLoad(quantity, value, error, *at, component, case)
+
+    def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
+        """Draw a quantity along the span: of few cases, else the range in which it lies."""
+        from beamdyn.output.plots_along_span import plot_along_span
+
+        one_of("quantity", quantity, QUANTITIES)
+        unit = UNITS[quantity]
+        label = f"{quantity} [{unit}]" if unit else quantity
+        labels = self.components(quantity)
+        return plot_along_span(self.x, self.values(quantity), labels, label, ax)
+
+
+_REMEDIES = {
+    "strain": "give the beam an outer_fibre, or points of the section",
+    "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",
+}
+
+
+def placed(scene: Scene, stations: Stations, sections: Sections) -> dict[str, Any]:
+    """The fields of all results that say where, as arguments of their class."""
+    x = stations.xi * scene.beam.length
+    return {"x": x, "inboard": stations.inboard, "points": sections.points, "scene": scene}
+
+
+def refuse_large_deflection(scene: Scene) -> None:
+    """Refuse a scene of large deflection, to which virtual work on the straight beam does not apply."""
+    if scene.physics.large_deflection:
+        bound = "loads along the span of a beam with large deflection are not computed"
+        remedy = "leave large_deflection out where the deflection is small"
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)

@@ -1,0 +1,170 @@
+"""Loads along the span in equilibrium at steady speeds: centrifugal forces and gravity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import ClassVar
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.announced import announced
+from beamdyn.common.checks import ascending, real
+from beamdyn.common.results import Provenance
+from beamdyn.loads.load_rows import span_rows
+from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
+from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
+from beamdyn.loads.stations import Positions, Stations, stations_at
+from beamdyn.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modal.equilibrium import NoEquilibrium
+from beamdyn.modal.model import Model
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
+
+_MODES = 3  # of which the model is accurate: loads in equilibrium need no more
+_SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
+_ROUNDING = 1e-12  # relative to the largest along the span
+_MARGIN = 1.5  # of the error over the distance from the coarser model
+
+
+@dataclass(frozen=True)
+class StaticLoads(SpanLoads):
+    """Loads along the span in equilibrium at C steady speeds.
+
+    The fields are those of `SpanLoads` and, besides:
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (C,)
+        Speeds [rad/s].
+    angle : float
+        Angle of rotation at which gravity acts [rad].
+    tip : ndarray, shape (C, d)
+        Deflection of the tip in each modelled direction [m].
+    """
+
+    speeds: np.ndarray
+    angle: float
+    tip: np.ndarray
+
+    case: ClassVar[str] = "speed [rad/s]"
+
+    @property
+    def cases(self) -> np.ndarray:
+        """The speeds [rad/s]."""
+        return self.speeds
+
+
+@announced
+def static_loads(
+    scene: Scene,
+    speeds: float | Sequence[float] | np.ndarray = 0.0,
+    at: Positions | None = None,
+    points: SectionPoints | None = None,
+    angle: float = 0.0,
+    youngs_modulus: float | None = None,
+    discretization: DiscretizationChoice = "ritz",
+) -> StaticLoads:
+    """Compute the loads along the span in equilibrium at steady speeds, about a fixed centre.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.  Gravity acts as it does at the `angle` of rotation: at a speed
+        other than 0 it varies, which is the matter of `transient_loads` and `steady_loads`.
+    speeds : float or sequence of float
+        Speeds [rad/s], ascending.
+    at : sequence of float, optional
+        Stations [m]; by default 21 evenly along the beam, and both sides of each jump.  A position that is
+        given twice stands for both sides of it; alone for the outboard one.
+    points : sequence of (float, float), optional
+        Points of the section at which strain and stress are wanted [m], along its first direction and along
+        the second; by default the outer fibres, or the corners of a rectangle that bends in two planes.
+    angle : float
+        Angle of rotation [rad].
+    youngs_modulus : float, optional
+        Young's modulus [Pa] for the stress; known of beams made by `Beam.rectangular`.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    StaticLoads
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, a point lies outside the section, or large deflection is modelled.
+    NoEquilibrium
+        An ArithmeticError: if rotation or its weight buckles the straight beam, or turns freely about its
+        root.
+    """
+    start = perf_counter()
+    check_scene(scene)
+    refuse_large_deflection(scene)
+    speeds = ascending("speeds", speeds)
+    check_speeds(speeds)
+    theta = real("angle", angle, "rad")
+    stations = stations_at(scene.modelled_beam, at)
+    sections = sections_at(scene, stations, points, youngs_modulus)
+    model = choose_model(scene, discretization, speeds, _MODES)
+    outputs = Outputs.of_sections(sections)
+    values, tip = _solve(model, stations, outputs, speeds, theta)
+    error = _error(values, _solve(model.coarser, stations, outputs, speeds, theta)[0])
+    return StaticLoads(
+        **placed(scene, stations, sections),
+        **outputs.split(values),
+        **outputs.split(error, "_error"),
+        warnings=(*sections.notes, *warn_of_left_out(scene), *_warn_of_tip(tip, scene, speeds)),
+        provenance=Provenance(
+            __version__,
+            str(model.discretization),
+            str(model.coarser.discretization),
+            perf_counter() - start,
+        ),
+        speeds=speeds,
+        angle=theta,
+        tip=tip,
+    )
+
+
+def _solve(
+    model: Model, stations: Stations, outputs: Outputs, speeds: np.ndarray, theta: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Outputs (C, S, K) in equilibrium at each speed, and the deflection of the tip (C, d)."""
+    equations = model.equations
+    rows = span_rows(model.scene, model.discretization, equations, stations).through(outputs.matrix)
+    root = equations.root(_at_angle(speeds, theta))
+    q = _equilibria(equations.matrix(0, root), equations.load(root), speeds)
+    return rows.at(root, q, np.zeros_like(q)), q @ equations.tips.T
+
+
+def _at_angle(speeds: np.ndarray, theta: float) -> MotionSample:
+    steady = MotionSample.steady(speeds)
+    return replace(steady, angle=np.full(len(speeds), theta))
+
+
+def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
+    """Coordinates (C, n) in equilibrium: K (C, n, n) must be positive definite."""
+    size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
+    scaled = K / (size[:, :, None] * size[:, None, :])
+    least = np.linalg.eigvalsh((scaled + scaled.swapaxes(1, 2)) / 2)[:, 0]
+    if (lost := least <= _SINGULAR).any():
+        raise NoEquilibrium(
+            f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: rotation or its "
+            "weight buckles it there or before, or it turns freely about its root"
+        )
+    return np.linalg.solve(scaled, (load / size)[..., None])[..., 0] / size
+
+
+def _error(values: np.ndarray, coarse: np.ndarray) -> np.ndarray:
+    """Error of values (C, S, K) by their distance from those of a coarser model, and of rounding."""
+    largest = np.abs(values).max(axis=1, keepdims=True)
+    return _MARGIN * np.abs(values - coarse) + _ROUNDING * largest
+
+
+def _warn_of_tip(tip: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[str]:
+    yield from warn_of_static_deflection(np.hypot.reduce(np.abs(tip), axis=1), scene.beam.length, speeds)

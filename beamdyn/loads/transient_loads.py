@@ -1,0 +1,186 @@
+"""Loads along the span during a transient."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import InvalidValue, ascending, kind, real
+from beamdyn.common.results import Provenance
+from beamdyn.loads.load_path import LoadPath
+from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
+from beamdyn.loads.span_loads import UNITS, LargestLoad, SpanLoads, placed, refuse_large_deflection
+from beamdyn.loads.stations import Positions, stations_at
+from beamdyn.transient.simulate import Transient
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MOST_TIMES = 2000  # of the result by default
+
+
+@dataclass(frozen=True)
+class TransientLoads(SpanLoads):
+    """Loads along the span at C times of a transient.
+
+    The fields are those of `SpanLoads` and, besides:
+
+    Parameters
+    ----------
+    t : ndarray, shape (C,)
+        Times [s].
+
+    Notes
+    -----
+    The errors, of shape (S, k), hold for the whole run.  They are infinite if there is no larger model to
+    compare with or the distance from it is too large to judge by, and nan for the methods of `solve_ivp`,
+    whose time-integration error is not known.
+    """
+
+    t: np.ndarray
+    path: LoadPath = field(repr=False)
+
+    case: ClassVar[str] = "time [s]"
+
+    @property
+    def cases(self) -> np.ndarray:
+        """The times [s]."""
+        return self.t
+
+    @property
+    def run(self) -> Transient:
+        """The transient."""
+        return self.path.run
+
+    def at(self, quantity: str, t: np.ndarray | Sequence[float]) -> np.ndarray:
+        """A quantity at times t [s] (T,) of the run, ascending: shape (T, S, k)."""
+        self.check_component(quantity, None)
+        return self.path.at(_times_in(self.run, t))[..., self.path.outputs.places[quantity]]
+
+    def peaks(
+        self, quantity: str = "strain", start: float | None = None, end: float | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Values of largest magnitude from `start` to `end` [s], also between the times of the result.
+
+        Returns
+        -------
+        values, times : ndarray, shape (S, k)
+            Each value with its sign, and when it is reached [s].
+        """
+        self.check_component(quantity, None)
+        place = self.path.outputs.places[quantity]
+        values, times = self.path.peaks(*window_in(self.run, start, end))
+        return values[:, place], times[:, place]
+
+    def largest(
+        self,
+        quantity: str = "strain",
+        component: int | None = None,
+        start: float | None = None,
+        end: float | None = None,
+    ) -> LargestLoad:
+        """Find the largest magnitude of a quantity from `start` to `end` [s], also between the times.
+
+        Parameters
+        ----------
+        quantity, component
+            As for `SpanLoads.largest`.
+        start, end : float, optional
+            The window [s]; the whole run if not given.
+
+        Returns
+        -------
+        LargestLoad
+        """
+        chosen = self.check_component(quantity, component)
+        self.check_known(quantity)
+        values, times = (each[:, chosen] for each in self.peaks(quantity, start, end))
+        s, k = np.unravel_index(int(np.abs(values).argmax()), values.shape)
+        error = float(self.error_of(quantity)[s, chosen[k]])
+        return self.located(quantity, float(values[s, k]), error, int(s), chosen[k], float(times[s, k]))
+
+    def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
+        """Draw a quantity over time at the station of an index, such as the root's bending moment."""
+        from beamdyn.output.plots_along_span import plot_load_over_time
+
+        values, labels = self.values(quantity)[:, station], self.components(quantity)
+        label = f"{quantity} at {self.x[station]:.6g} m [{UNITS[quantity] or '-'}]"
+        return plot_load_over_time(self.t, values, labels, label, ax)
+
+
+def transient_loads(
+    run: Transient,
+    at: Positions | None = None,
+    points: SectionPoints | None = None,
+    t: np.ndarray | Sequence[float] | None = None,
+    youngs_modulus: float | None = None,
+) -> TransientLoads:
+    """Compute the loads along the span during a transient, from its loads and inertia.
+
+    Parameters
+    ----------
+    run : Transient
+        The transient, of `simulate`.
+    at, points, youngs_modulus
+        As for `static_loads`.
+    t : sequence of float, optional
+        Times of the result [s], ascending; by default those of the run, or at most 2000 of them.  The
+        largest values (`largest`, `peaks`) and the errors are those of the run, whatever these times are.
+
+    Returns
+    -------
+    TransientLoads
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, a point lies outside the section, or the run is one of large
+        deflection.
+    """
+    start = perf_counter()
+    kind("run", run, Transient, "simulate makes one")
+    scene = run.scene
+    refuse_large_deflection(scene)
+    stations = stations_at(scene.modelled_beam, at)
+    sections = sections_at(scene, stations, points, youngs_modulus)
+    path = LoadPath(run, stations, Outputs.of_sections(sections))
+    times = run.t[:: 1 + (len(run.t) - 1) // _MOST_TIMES] if t is None else _times_in(run, t)
+    return TransientLoads(
+        **placed(scene, stations, sections),
+        **path.outputs.split(path.at(times)),
+        **path.outputs.split(path.error, "_error"),
+        warnings=(*sections.notes, *run.warnings),
+        provenance=Provenance(
+            __version__,
+            run.provenance.method,
+            "" if run.refined is None else run.refined.provenance.method,
+            perf_counter() - start,
+        ),
+        t=times,
+        path=path,
+    )
+
+
+def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
+    """Times (T,) [s] that lie in the run."""
+    times = ascending("t", t)
+    if not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
+        bound = f"times must lie in the run, from {run.path.start:g} to {run.path.end:g} s"
+        raise InvalidValue("t", t, bound, unit="s")
+    return times
+
+
+def window_in(run: Transient, start: float | None, end: float | None) -> tuple[float, float]:
+    """A time window [s] of a run, which is the whole run if it is not given."""
+    path = run.path
+    first = path.start if start is None else real("start", start, "s")
+    last = path.end if end is None else real("end", end, "s")
+    if not path.start <= first < last <= path.end * (1 + 1e-12):
+        bound = f"the window must lie in the run, {path.start:g} ... {path.end:g} s, and end after its start"
+        raise InvalidValue("start, end", (first, last), bound)
+    return first, last

@@ -1,0 +1,1 @@
+"""How frequencies, critical speeds and crossings change with the numbers of a scene."""

@@ -1,0 +1,76 @@
+"""Derivatives of matrices that depend on a number as a polynomial, a quotient of them or a sine.
+
+The matrices are evaluated at eight places near the number, and the polynomial through these values is
+differentiated.  For places within 1 % it is exact to rounding: the first term that it lacks is of order
+0.01^8.  Eigenvalues, which have far fewer digits, are not differenced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TypeVar
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.sensitivities.scene_numbers import SceneNumber
+
+PLACES = 8
+
+Evaluated = TypeVar("Evaluated")
+
+
+def evaluate_nearby(
+    number: SceneNumber, evaluate: Callable[[float], Evaluated]
+) -> tuple[list[Evaluated], np.ndarray]:
+    """Evaluate something around a number, and give the weights of its derivative there.
+
+    Where the values on one side are refused, those on the other alone are taken.
+
+    Parameters
+    ----------
+    number : SceneNumber
+        The number.
+    evaluate : callable
+        Function of the number's value.
+
+    Returns
+    -------
+    values : list
+        What was evaluated, at `PLACES` places.
+    weights : ndarray, shape (PLACES,)
+        The derivative is their sum times the values [1 / unit of the number].
+
+    Raises
+    ------
+    InvalidValue
+        If the values on both sides are refused.
+    """
+    refused: InvalidValue | None = None
+    for low, high in _intervals(number):
+        nodes = (low + high) / 2 - (high - low) / 2 * np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
+        try:
+            return [evaluate(float(node)) for node in nodes], _weights(nodes, number.value)
+        except InvalidValue as error:
+            refused = error
+    assert refused is not None
+    raise refused
+
+
+def _intervals(number: SceneNumber) -> Iterator[tuple[float, float]]:
+    """Around the number, above it, and below it; then nearer, where other numbers of the scene limit it."""
+    for step in (number.step, 1e-2 * number.step, 1e-4 * number.step):
+        low, high = number.value - step, number.value + step
+        if low >= number.least:
+            yield low, high
+        yield number.value, high
+        if low >= number.least:
+            yield low, number.value
+
+
+def _weights(nodes: np.ndarray, at: float) -> np.ndarray:
+    """Weights of the derivative of the interpolating polynomial at a place, which may be a node's."""
+    scale = np.abs(nodes - at).max()
+    t = (nodes - at) / scale
+    powers = np.vander(t, increasing=True).T
+    return np.linalg.solve(powers, np.eye(len(t))[1]) / scale

@@ -1,0 +1,167 @@
+"""The numbers of a scene that an answer may depend on, with their values and the steps to take of them."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.described import descriptions
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import Profile, as_profile, mean
+from beamdyn.scene.rectangle import Rectangle, rectangle_of
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.inputs import SCALE
+
+_STEP = 0.01  # of a value, or of the size of its kind
+_PROPERTIES = {
+    "mass_per_length": "kg/m",
+    "bending_stiffness": "N m2",
+    "second_bending_stiffness": "N m2",
+    "axial_stiffness": "N",
+    "shear_stiffness": "N",
+    "second_shear_stiffness": "N",
+    "rotary_inertia": "kg m",
+    "second_rotary_inertia": "kg m",
+}
+
+
+@dataclass(frozen=True)
+class SceneNumber:
+    """A number of a scene.
+
+    Parameters
+    ----------
+    name : str
+        Its name in scene files, such as "beam.thickness"; "beam.scale.mass_per_length" is a factor of a
+        property that varies along the beam.
+    unit : str
+        Its SI unit.
+    value : float
+        Its value [unit].
+    step : float
+        Largest change within which the equations are evaluated for a derivative [unit].
+    least : float
+        Smallest value that it may have [unit].
+    """
+
+    name: str
+    unit: str
+    value: float
+    step: float
+    least: float = -math.inf
+
+
+def check_names(inputs: object) -> tuple[str, ...] | None:
+    """The names of numbers as they were given to an analysis; None for all."""
+    if inputs is None:
+        return None
+    good = isinstance(inputs, list | tuple) and inputs and all(isinstance(name, str) for name in inputs)
+    if not good:
+        raise InvalidValue("inputs", inputs, 'give names in a list, such as ["beam.thickness"]')
+    assert isinstance(inputs, list | tuple)
+    return tuple(dict.fromkeys(inputs))
+
+
+def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneNumber, ...]:
+    """The numbers of a scene, all or those that are named.
+
+    Raises
+    ------
+    InvalidValue
+        If a name is none of theirs.
+    """
+    found = {each.name: each for each in _all(scene)}
+    if names is None:
+        return tuple(found.values())
+    for name in names:
+        if name not in found:
+            near = difflib.get_close_matches(str(name), found, n=1)
+            remedy = f"give {near[0] if near else ', '.join(found)}"
+            raise InvalidValue("inputs", name, "it is no number of this scene", remedy)
+    return tuple(found[name] for name in names)
+
+
+def _all(scene: Scene) -> Iterator[SceneNumber]:
+    yield _relative("beam.length", "m", scene.beam.length)
+    yield from _of_section(scene)
+    yield from _of_twist(scene.modelled_beam)
+    yield from _of_tip(scene.beam)
+    yield from _of_mount(scene)
+    if scene.damping_ratio:
+        yield _relative("model.damping_ratio", "", scene.damping_ratio)
+
+
+def _relative(name: str, unit: str, value: float) -> SceneNumber:
+    return SceneNumber(name, unit, value, _STEP * abs(value), 0.0)
+
+
+def _of_section(scene: Scene) -> Iterator[SceneNumber]:
+    """Sides and material of a rectangular section; else properties, or factors of those that vary."""
+    section = rectangle_of(scene.beam)
+    if section is not None and isinstance(section.width, float):
+        sides = {name: as_profile(name, getattr(section, name)) for name in ("width", "thickness")}
+        if all(map(_is_constant, sides.values())):
+            yield from (_relative(f"beam.{name}", "m", _at_root(side)) for name, side in sides.items())
+            yield from _of_material(scene, section)
+            return
+    yield from _of_properties(scene)
+
+
+def _of_material(scene: Scene, section: Rectangle) -> Iterator[SceneNumber]:
+    yield _relative("beam.youngs_modulus", "Pa", section.youngs_modulus)
+    yield _relative("beam.density", "kg/m3", section.density)
+    if scene.physics.shear and section.poissons_ratio is not None:
+        yield SceneNumber("beam.poissons_ratio", "", section.poissons_ratio, _STEP)
+
+
+def _of_properties(scene: Scene) -> Iterator[SceneNumber]:
+    """The properties that are modelled: axial stiffness is for the stretch alone."""
+    for name, unit in _PROPERTIES.items():
+        profile = getattr(scene.modelled_beam, name)
+        if profile is not None and (name != "axial_stiffness" or scene.physics.stretch):
+            if _is_constant(profile):
+                yield _relative(f"beam.{name}", unit, _at_root(profile))
+            else:
+                yield _relative(f"{SCALE}{name}", "", 1.0)
+
+
+def _of_twist(beam: Beam) -> Iterator[SceneNumber]:
+    if beam.twist is not None and _is_constant(beam.twist):
+        yield SceneNumber("beam.twist", "rad", _at_root(beam.twist), _STEP)
+
+
+def _is_constant(profile: Profile) -> bool:
+    return profile.degree == 0 and len({*map(tuple, profile.coefficients)}) == 1
+
+
+def _at_root(profile: Profile) -> float:
+    return float(profile.end_values()[0][0])
+
+
+def _of_tip(beam: Beam) -> Iterator[SceneNumber]:
+    """Numbers of the tip body; its steps are of the beam's size where they are small."""
+    if beam.tip is None:
+        return
+    L, mass = beam.length, mean(beam.mass_per_length) * beam.length
+    sizes = {"kg": mass, "m": L, "kg m2": mass * L**2}
+    for name, found in descriptions(TipMass).items():
+        if (value := getattr(beam.tip, name)) is not None:
+            least = 0.0 if found.unit != "m" else -math.inf
+            step = _STEP * max(abs(value), sizes[found.unit])
+            yield SceneNumber(f"beam.tip.{name}", found.unit, value, step, least)
+
+
+def _of_mount(scene: Scene) -> Iterator[SceneNumber]:
+    for name, found in descriptions(Mount).items():
+        value = getattr(scene.mount, name)
+        if found.unit == "rad":
+            if name != "precone" or value:
+                yield SceneNumber(f"mount.{name}", "rad", value, _STEP)
+        elif name == "radius":
+            yield SceneNumber("mount.radius", "m", value, _STEP * max(value, scene.beam.length), 0.0)
+        elif math.isfinite(value) and (name == "root_stiffness" or scene.physics.planes == 2):
+            yield _relative(f"mount.{name}", found.unit, value)

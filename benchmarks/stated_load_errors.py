@@ -1,0 +1,147 @@
+"""Whether the stated errors of loads along the span cover the true ones, in random transients.
+
+Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics] [--save FILE].  Random scenes in motion
+as in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary inertia and
+springs in all combinations.  The reference has twice as many modes at three speeds, at least 24 shapes, in a
+large basis, and finer steps: both errors together, of modes and of time.  Modes contribute to shear
+forces as k^-2 after a sudden load, so that the reference itself has a part of the error there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+import beamdyn as bd
+from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
+from beamdyn.transient.simulate import Transient
+from benchmarks.resumable import Cases, add_options
+from benchmarks.rows import Row, show
+from benchmarks.stated_transient_errors import random_physics_run, random_run
+
+_BOUND, _MOST_OVER = 0.99, 10.0
+_FUNCTIONS = 120  # of the reference
+_TIMES = 1000  # at which loads are compared
+_MORE, _MANY = 2, 8  # modes of the reference over those of the run at each of its speeds, and at least
+_ROUNDING = 1e-8  # of the reference, over the largest along the span
+_FINER, _FINEST = 1e-2, 1e-9  # tolerance of its steps over that of the run, and at least
+_QUANTITIES = "force", "moment", "strain"
+_STATIONS = np.linspace(0, 0.9, 7)  # over the length; at the tip all loads but a body's vanish
+SEED = 18
+
+
+@dataclass(frozen=True)
+class Case:
+    """One random run: stated and true errors of each component, or why it was refused.
+
+    Errors are over the largest of the component along the span, at the station with the largest true error
+    over the stated one; the over-estimate is that of the largest along the span.
+    """
+
+    number: int
+    stated: dict[str, float]
+    true: dict[str, float]
+    over: dict[str, float]
+    refusal: str = ""
+
+
+def of_few_modes(rng: np.random.Generator, draw: Callable[[np.random.Generator], dict]) -> dict:
+    """Arguments of `simulate` as drawn, with one to six modes: errors of "auto" are those of such a basis."""
+    return draw(rng) | {"modes": int(rng.integers(1, 7))}
+
+
+def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] = random_run) -> list[Case]:
+    """Stated and true errors of the run with this number."""
+    given = of_few_modes(np.random.default_rng([seed, number]), draw)
+    try:
+        run = bd.simulate(**given)
+        loads = bd.transient_loads(run, at=_STATIONS * run.scene.beam.length, t=_times(run))
+        exact = bd.transient_loads(_reference(run), at=loads.x, t=loads.t)
+    except (ValueError, ArithmeticError) as error:
+        return [Case(number, {}, {}, {}, str(error))]
+    found = dict(_errors(loads, exact))
+    stated, true, over = ({name: each[which] for name, each in found.items()} for which in range(3))
+    return [Case(number, stated, true, over)]
+
+
+def _times(run: Transient) -> np.ndarray:
+    return np.linspace(run.path.start, run.path.end, _TIMES)
+
+
+def _reference(run: Transient) -> Transient:
+    """The same run with many more modes, integrated nearly without error."""
+    ends = find_speed_range(run.request.motion, run.path.end)
+    speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
+    modes = max(_MANY, _MORE * (run.request.basis.modes or 0))
+    basis, large = ModalBasis(modes, speeds), bd.Ritz(_FUNCTIONS)
+    tolerance = max(_FINEST, run.request.tolerance * _FINER)
+    return replace(run.request, discretization=large, basis=basis, tolerance=tolerance, t_eval=None).run()
+
+
+def _errors(loads: bd.TransientLoads, exact: bd.TransientLoads) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Stated and true error, and the over-estimate, of each component that is not zero."""
+    for quantity in _QUANTITIES:
+        difference = np.abs(loads.values(quantity) - exact.values(quantity)).max(axis=0)
+        stated, largest = loads.error_of(quantity), np.abs(exact.values(quantity)).max(axis=(0, 1))
+        for k in np.flatnonzero(largest > 0):
+            worst = (difference[:, k] / np.maximum(stated[:, k], 1e-300)).argmax()
+            over = stated[:, k].max() / max(difference[:, k].max(), 1e-300)
+            pair = stated[worst, k] / largest[k], difference[worst, k] / largest[k]
+            yield f"{quantity} {k}", (float(pair[0]), float(pair[1]), float(over))
+
+
+def summarize(cases: Sequence[Case]) -> Iterator[Row]:
+    """Share of the true errors that the stated ones cover, and the over-estimate; what was refused."""
+    answered = [case for case in cases if not case.refusal]
+    yield "random transients", str(len(cases)), "500"
+    yield "refused", str(len(cases) - len(answered)), ""
+    names = dict.fromkeys(name.split()[0] for case in answered for name in case.true)
+    for quantity in names:
+        pairs = [
+            (case, name, case.stated[name], case.true[name], case.over[name])
+            for case in answered
+            for name in case.true
+            if name.startswith(quantity)
+        ]
+        stated, true, over = (np.array([pair[which] for pair in pairs]) for which in (2, 3, 4))
+        covered = stated + _ROUNDING >= true
+        known = (true > _ROUNDING) & np.isfinite(stated)
+        yield f"errors of {quantity} covered", f"{covered.mean():.1%} of {len(pairs)}", f"{_BOUND:.0%}"
+        yield "... not known (infinite)", f"{np.isinf(stated).mean():.1%}", ""
+        yield "... median over-estimate", f"{np.median(over[known]):.1f}", f"{_MOST_OVER:g}"
+        yield "... largest true error, over the largest along the span", f"{true.max():.1e}", ""
+        for (case, name, high, low, _), hit in zip(pairs, covered, strict=True):
+            if not hit:
+                yield f"... not covered: run {case.number}, {name}", f"{low:.1e} > {high:.1e}", ""
+    for case in cases:
+        if case.refusal:
+            yield f"refused: run {case.number}", case.refusal, ""
+
+
+def measure_sample() -> Iterator[Row]:
+    """The first 12 runs."""
+    yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(12)))
+
+
+PARTS = (measure_sample,)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_options(parser, scenes=500, seed=SEED)
+    parser.add_argument("--physics", action="store_true", help="with all physics in all combinations")
+    given = parser.parse_args()
+    draw = random_physics_run if given.physics else random_run
+    runs = Cases(partial(measure, seed=given.seed, draw=draw), Case).run(given)
+    show("stated errors of loads along the span", lambda: summarize(runs))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,202 @@
+"""Derivatives by the numbers of a scene: closed forms, differences, other methods, and what has none."""
+
+import math
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.common.announced import unannounced
+from beamdyn.studies.inputs import scene_of
+from benchmarks.cases.reference.of_scene import exact_critical_speed
+from benchmarks.sensitivities import by_collocation, by_differences, compare
+
+BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 2e11, "density": 7850.0}
+TIPPED = bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-9))
+OBLIQUE = bd.Scene(TIPPED, bd.Mount(0.215, 0.7, 0.3))
+STRIP = bd.Beam.rectangular(0.6, 0.06, 0.012, 210e9, 7850.0, poissons_ratio=0.3, twist=0.4)
+TWISTED = bd.Scene(
+    STRIP,
+    bd.Mount(0.5, math.pi, 0.3, root_stiffness=5e4),
+    physics=bd.Physics(planes=2, shear=True, rotary_inertia=True),
+)
+WHEEL = bd.RollingWheel(0.3, bd.SpinUp(55.0, 10.0), bd.RoadWave(0.3, 0.01))
+
+
+def test_exponents_of_a_uniform_beam_at_rest():
+    """The frequency is c h / L^2 (E / rho)^(1/2), whatever the width, radius and angles."""
+    found = bd.frequency_sensitivities(bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2, 0.3)), 0.0, 4)
+    exponents = {"length": -2.0, "width": 0.0, "thickness": 1.0, "youngs_modulus": 0.5, "density": -0.5}
+    names = [each.name for each in found.inputs]
+    for name, exponent in exponents.items():
+        row = found.relative[names.index(f"beam.{name}")]
+        np.testing.assert_allclose(row, exponent, rtol=0, atol=1e-11)  # rounding of integrals, some 1e-12
+    for name in ("mount.radius", "mount.setting_angle", "mount.bending_angle", "speed"):
+        assert np.abs(found.by(name) / found.value).max() < 1e-10
+
+
+def test_dimensions_add_up():
+    """Scaling all lengths, masses or times scales frequencies (Buckingham), at speed, with a tip body."""
+    found = bd.frequency_sensitivities(OBLIQUE, 50.0)
+    powers = {"m": (1, 0, 0), "m2": (2, 0, 0), "Pa": (-1, 1, -2), "kg/m3": (-3, 1, 0), "kg": (0, 1, 0)}
+    powers |= {"kg m2": (2, 1, 0), "rad": (0, 0, 0), "rad/s": (0, 0, -1), "": (0, 0, 0)}
+    table = np.array([powers[each.unit] for each in found.inputs])
+    np.testing.assert_allclose(table.T @ found.relative, np.outer([0, 0, -1], np.ones(3)), rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["beam.length", "beam.tip.mass", "mount.setting_angle"])
+def test_derivatives_are_those_of_40_digit_frequencies(name):
+    found = bd.frequency_sensitivities(OBLIQUE, 50.0, 3, [name])
+    (number,) = found.inputs
+    reference, doubt = by_differences(OBLIQUE, 50.0, number)
+    assert (np.abs(found.by(name) - reference) <= found.error[0] + doubt).all()
+    np.testing.assert_allclose(found.by(name), reference, rtol=1e-9)  # the digits that frequencies promise
+
+
+@pytest.mark.parametrize("name", ["beam.twist", "beam.poissons_ratio", "mount.root_stiffness"])
+def test_derivatives_in_two_planes_are_those_of_collocation(name):
+    found = bd.frequency_sensitivities(TWISTED, 40.0, 3, [name])
+    reference, doubt = by_collocation(TWISTED, 40.0, found.inputs[0])
+    assert (np.abs(found.by(name) - reference) <= found.error[0] + doubt).all()
+    np.testing.assert_allclose(found.by(name), reference, rtol=1e-8)  # collocation is good to 1e-10 over 0.01
+
+
+def differences(scene, number, solve):
+    """Of fourth order, over a tenth of the steps at which the equations are evaluated."""
+    h = number.step / 10
+    rows = [solve(scene_of(scene, {number.name: number.value + k * h})) for k in (-2, -1, 1, 2)]
+    return (rows[0] - 8 * rows[1] + 8 * rows[2] - rows[3]) / (12 * h)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+@pytest.mark.parametrize("name", ["beam.thickness", "mount.precone", "mount.radius"])
+def test_gyroscopic_and_damped_modes(name, damping):
+    mount = bd.Mount(0.5, math.pi, 0.3, precone=0.2)
+    scene = bd.Scene(STRIP, mount, damping_ratio=damping, physics=bd.Physics(planes=2))
+    found = bd.frequency_sensitivities(scene, 60.0, 3, [name])
+    basis = found.provenance.method
+    assert "Ritz" in basis
+    reference = differences(scene, found.inputs[0], lambda s: bd.natural_modes(s, 60.0, 3).frequency)
+    # of the differences: 1e-3 to the fourth power, and 1e-12 of a frequency over a thousandth of the number
+    np.testing.assert_allclose(found.by(name), reference, rtol=1e-7)
+
+
+def test_speed():
+    found = bd.frequency_sensitivities(TWISTED, 40.0, 3, ["speed"])
+    rows = [bd.natural_modes(TWISTED, 40.0 + k * 0.1, 3).frequency for k in (-2, -1, 1, 2)]
+    reference = (rows[0] - 8 * rows[1] + 8 * rows[2] - rows[3]) / 1.2
+    np.testing.assert_allclose(found.by("speed"), reference, rtol=1e-8)  # of the differences
+
+
+def test_critical_speed_is_that_of_power_series():
+    scene = bd.Scene(TIPPED, bd.Mount(0.215))
+    found = bd.critical_speed_sensitivities(scene, ["beam.thickness", "mount.radius"])
+    for number, derivative, error in zip(found.inputs, found.derivative, found.error, strict=True):
+        reference = differences(scene, number, lambda s: np.array([float(exact_critical_speed(s))]))
+        # 16 digits of the speed over a thousandth of the number, and the fourth power of that
+        np.testing.assert_allclose(derivative, reference, rtol=1e-9)
+        assert error[0] < 1e-9 * abs(derivative[0])
+
+
+def test_crossings():
+    scene = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.215), WHEEL, gravity=9.81)
+    found = bd.crossing_sensitivities(scene, 150.0, 2, ["beam.length", "mount.radius"])
+    assert len(found.answers) >= 4 and any("parametric" in each for each in found.answers)
+
+    def speeds(s):
+        return np.array([c.speed for c in bd.resonance_speeds(s, 150.0, 2)])
+
+    for number in found.inputs:
+        np.testing.assert_allclose(found.by(number.name), differences(scene, number, speeds), rtol=1e-7)
+
+
+@pytest.mark.parametrize("functions", [5, 7, 9])
+def test_stated_errors_of_coarse_bases_cover(functions):
+    fine = bd.frequency_sensitivities(OBLIQUE, 50.0)
+    coarse = bd.frequency_sensitivities(OBLIQUE, 50.0, discretization=bd.Ritz(functions))
+    apart = np.abs(fine.derivative - coarse.derivative)
+    assert (apart <= coarse.error + fine.error).all()
+    assert apart.max() > 1e-9 * np.abs(fine.derivative).max()  # else it shows nothing
+
+
+def test_elements_agree():
+    ritz, fem = (
+        bd.frequency_sensitivities(OBLIQUE, 50.0, 2, discretization=name) for name in ("ritz", "fem")
+    )
+    assert (np.abs(fem.derivative - ritz.derivative) <= fem.error + ritz.error).all()
+    largest = np.abs(ritz.relative).max(axis=1) > 0.01
+    assert largest.sum() >= 7
+    np.testing.assert_allclose(fem.relative[largest], ritz.relative[largest], rtol=0, atol=1e-6)
+
+
+@pytest.mark.slow  # half a minute each
+@pytest.mark.parametrize("seed", [2, 7])
+def test_random_scenes(seed):
+    error, stated = compare(seed)
+    assert error.max() < 1e-8
+    assert (error <= stated).all()
+
+
+# What has no derivative ---------------------------------------------------------------------------
+
+
+def test_modes_that_cross_have_none():
+    square = bd.Beam.rectangular(1.0, 0.01, 0.01, 2e11, 7850.0)
+    scene = bd.Scene(square, bd.Mount(), physics=bd.Physics(planes=2))
+    found = bd.frequency_sensitivities(scene, 0.0, 2)
+    assert np.isnan(found.derivative).all() and np.isinf(found.error).all()
+    assert any("crossing" in each for each in found.warnings)
+
+
+def test_a_number_that_cannot_change_alone_has_none():
+    body = bd.TipMass(
+        0.1, 0.0, 1e-4, 1e-4, 0.0
+    )  # slender along the beam: neither moment may grow or shrink alone
+    scene = bd.Scene(bd.Beam.rectangular(1.0, 0.05, 0.01, 2e11, 7850.0, tip=body), bd.Mount(0.5))
+    found = bd.frequency_sensitivities(scene, 5.0)
+    assert np.isnan(found.by("beam.tip.inertia")).all()
+    assert np.isfinite(found.by("beam.tip.mass")).all()
+    assert any("beam.tip.inertia cannot change alone" in each for each in found.warnings)
+
+
+def test_a_mode_that_diverges_has_none():
+    scene = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.215))
+    with unannounced():
+        found = bd.frequency_sensitivities(scene, 200.0, 2)
+    assert np.isnan(found.derivative[:, 0]).all() and np.isfinite(found.derivative[:, 1]).all()
+    assert any("does not vibrate" in each for each in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: bd.frequency_sensitivities(OBLIQUE, inputs=["beam.thicknes"]), "beam.thickness"),
+        (lambda: bd.frequency_sensitivities(OBLIQUE, inputs="beam.length"), "in a list"),
+        (
+            lambda: bd.critical_speed_sensitivities(bd.Scene(TIPPED, bd.Mount(0.2, math.pi))),
+            "no critical speed",
+        ),
+        (
+            lambda: bd.frequency_sensitivities(
+                bd.Scene(TIPPED, bd.Mount(0.2, math.pi), physics=bd.Physics(large_deflection=True))
+            ),
+            "large_deflection",
+        ),
+    ],
+)
+def test_refusals(call, said):
+    with pytest.raises(ValueError, match=said):
+        call()
+
+
+# The result ---------------------------------------------------------------------------------------
+
+
+def test_result_is_saved_drawn_and_read(tmp_path):
+    found = bd.frequency_sensitivities(OBLIQUE, 50.0, 2, ["beam.thickness", "speed"])
+    found.save(tmp_path / "s.json")
+    again = bd.load(tmp_path / "s.json")
+    np.testing.assert_array_equal(again.derivative, found.derivative)
+    assert [text.get_text() for text in found.plot().get_yticklabels()] == ["speed", "beam.thickness"]
+    with pytest.raises(ValueError, match=r"beam\.thickness, speed"):
+        found.by("mount.radius")

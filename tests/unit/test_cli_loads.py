@@ -1,0 +1,96 @@
+"""The command `beamdyn loads`: three analyses, their files, options that do not go together."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ROLLING, PATCHED = str(EXAMPLES / "rolling_harvester.toml"), str(EXAMPLES / "patched.toml")
+
+
+@pytest.fixture
+def run(capsys):
+    def called(*arguments):
+        code = main(["loads", *map(str, arguments)])
+        out, err = capsys.readouterr()
+        return code, out, err
+
+    return called
+
+
+def test_equilibrium_is_printed_and_written(run, tmp_path):
+    files = [tmp_path / f"loads.{kind}" for kind in ("json", "csv", "png")]
+    code, out, _ = run(
+        PATCHED, "--speed", "50 rad/s", "--json", files[0], "--csv", files[1], "--plot", files[2]
+    )
+    assert code == DONE
+    expected = bd.static_loads(bd.load_scene(PATCHED), 50.0)
+    assert "24-" in out and "24+" in out  # both sides of the patch's end
+    assert f"{expected.moment[0, 0, 0]:.6g}"[:7] in out
+    back = bd.load(files[0])
+    assert back.moment == pytest.approx(expected.moment, rel=1e-12)
+    assert json.loads(files[0].read_text())["moment_error"]
+    rows = [*csv.DictReader(files[1].read_text().splitlines())]
+    assert len(rows) == len(expected.x)
+    assert float(rows[0]["moment_N_m"]) == expected.moment[0, 0, 0]
+    assert float(rows[0]["error_of_moment_N_m"]) == expected.moment_error[0, 0, 0]
+    assert files[2].stat().st_size > 1000
+
+
+def test_transient_within_a_window_with_cycles(run):
+    pytest.importorskip("rainflow", reason="cycle counts are the extra fatigue")
+    options = ("--t-end", "0.3 s", "--modes", "2", "--window", "0.1:0.3 s", "--at", "0, 20 mm")
+    code, out, _ = run(ROLLING, *options, "--cycles", "strain")
+    assert code == DONE
+    transient = bd.transient_loads(bd.simulate(bd.load_scene(ROLLING), 0.3, 2), at=[0.0, 0.02])
+    largest = transient.largest("moment", start=0.1, end=0.3)
+    assert f"at {largest.case:.6g} s" in out
+    assert "Cycles of strain at 0 mm, 0.1 to 0.3 s" in out
+
+
+def test_cycles_without_the_package_that_counts_are_refused_at_once(run, monkeypatch):
+    monkeypatch.setattr("beamdyn.cli.loads.find_spec", lambda name: None)
+    code, _, err = run(ROLLING, "--t-end", "1e9 s", "--cycles", "strain")
+    assert code == BAD_INPUT
+    assert "beamdyn[fatigue]" in err
+
+
+def test_steady_response_over_speed(run, tmp_path):
+    path = tmp_path / "steady.csv"
+    code, out, _ = run(
+        ROLLING, "--speeds", "30, 40 rad/s", "--modes", "2", "--points", "-0.1:0, 0.05:1 mm", "--at", "0 mm",
+        "--csv", path,
+    )  # fmt: skip
+    assert code == DONE
+    assert "where the bending moment is largest" in out
+    rows = [*csv.DictReader(path.read_text().splitlines())]
+    assert [float(row["speed_rad_per_s"]) for row in rows] == [30.0, 40.0]
+    assert np.isfinite([float(row["strain_2"]) for row in rows]).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "said"),
+    [
+        (("--speed", "5 rad/s", "--t-end", "1 s"), BAD_INPUT, "give one of them"),
+        (("--cycles", "strain"), BAD_INPUT, "--cycles belongs to a transient"),
+        (("--speeds", "5 rad/s", "--angle", "90 deg"), BAD_INPUT, "--angle belongs to the equilibrium"),
+        (("--at", "80 mm"), BAD_INPUT, "stations lie from the root"),
+        (("--at", "10"), BAD_INPUT, "one unit at their end"),
+        (("--points", "0.3:0 mm"), BAD_INPUT, '--points = "0.3:0 mm": it lies outside the section'),
+        (("--points", "0.3 mm"), BAD_INPUT, "-0.1:0, 0.1:0 mm"),
+        (("--speed", "500 rad/s"), NO_ANSWER, "no stable equilibrium at 500 rad/s"),
+        (("--speeds", "500 rad/s", "--modes", "2"), NO_ANSWER, "at none of 1 speeds"),
+    ],
+)
+def test_mistakes(run, options, code, said):
+    found, _, err = run(ROLLING, *options)
+    assert found == code
+    assert said in " ".join(err.split())
