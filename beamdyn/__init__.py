@@ -26,12 +26,14 @@ _NAMES = {
     "equations.ritz": ("Ritz",),
     "equations.left_out": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
+    "scene.beam": ("Beam",),
+    "scene.points": ("PointMass", "PointSpring", "TipMass"),
+    "scene.damping": ("Damping",),
     "loads.cycles": ("LoadCycles", "count_cycles"),
     "loads.span_loads": ("LargestLoad", "SpanLoads"),
     "loads.static_loads": ("StaticLoads", "static_loads"),
     "loads.steady_loads": ("SteadyLoads", "steady_loads"),
     "loads.transient_loads": ("TransientLoads", "transient_loads"),
-    "scene.beam": ("Beam", "PointMass", "TipMass"),
     "scene.motion": (
         "Line",
         "Motion",
@@ -41,10 +43,19 @@ _NAMES = {
         "Rotation",
         "RotationFunction",
         "SampledRotation",
+        "SampledTranslation",
         "SpinUp",
         "SteadyRotation",
         "UserMotion",
     ),
+    "linear_models.excitations": ("BaseMotion", "PointForce"),
+    "linear_models.frequency_response": ("FrequencyResponse", "frequency_response"),
+    "linear_models.matrices": ("Matrices", "matrices"),
+    "linear_models.observations": ("AccelerationAt", "DeflectionAt", "MomentAtRoot", "StrainAtRoot"),
+    "linear_models.parametric": ("ParametricTerm",),
+    "linear_models.random_response": ("RandomResponse", "random_response"),
+    "linear_models.spectra": ("PowerSpectrum", "RoadRoughness"),
+    "linear_models.state_space": ("state_space",),
     "modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
@@ -107,13 +118,22 @@ if TYPE_CHECKING:
     from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
+    from beamdyn.linear_models.excitations import BaseMotion, PointForce
+    from beamdyn.linear_models.frequency_response import FrequencyResponse, frequency_response
+    from beamdyn.linear_models.matrices import Matrices, matrices
+    from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
+    from beamdyn.linear_models.parametric import ParametricTerm
+    from beamdyn.linear_models.random_response import RandomResponse, random_response
+    from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
+    from beamdyn.linear_models.state_space import state_space
     from beamdyn.loads.cycles import LoadCycles, count_cycles
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
     from beamdyn.loads.transient_loads import TransientLoads, transient_loads
     from beamdyn.modal.equilibrium import NoEquilibrium
-    from beamdyn.scene.beam import Beam, PointMass, TipMass
+    from beamdyn.scene.beam import Beam
+    from beamdyn.scene.damping import Damping
     from beamdyn.scene.motion import (
         Line,
         Motion,
@@ -123,6 +143,7 @@ if TYPE_CHECKING:
         Rotation,
         RotationFunction,
         SampledRotation,
+        SampledTranslation,
         SpinUp,
         SteadyRotation,
         UserMotion,
@@ -130,6 +151,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.mount import Mount
     from beamdyn.scene.physics import Physics
     from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
+    from beamdyn.scene.points import PointMass, PointSpring, TipMass
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.scene import Scene
     from beamdyn.sensitivities.result import Sensitivities

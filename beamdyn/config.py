@@ -10,9 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from numpy.polynomial import Polynomial
-from pydantic import BaseModel, BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
-from pydantic_core import CoreSchema, core_schema
+from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.columns import read_columns
@@ -21,9 +19,12 @@ from beamdyn.common.edge.csv_columns import CsvTable, check_places, read_csv
 from beamdyn.common.edge.data_text import DataText, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
-from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.wording import of_file
-from beamdyn.scene.beam import Beam, PointMass, TipMass
+from beamdyn.property_inputs import BREAKPOINT, Along, Metres, Position, Varying
+from beamdyn.record_files import with_record_file
+from beamdyn.scene.beam import Beam, PointMass, PointSpring, TipMass
+from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
@@ -34,7 +35,7 @@ __all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
-    """Read a scene from a TOML file, and the CSV file of its stations if it names one.
+    """Read a scene from a TOML file, and the CSV files of its stations and its motion if it names some.
 
     Parameters
     ----------
@@ -51,15 +52,14 @@ def load_scene(path: str | PathLike[str]) -> Scene:
         If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
         the CSV file is named by its line.
     """
-    text = read(path)
     try:
-        data = parse(text, str(path))
+        data = parse(read(path), str(path))
     except ConfigError as error:
         if Path(path).suffix.lower() == ".toml":
             raise
         hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
         raise ConfigError(str(path), ["; ".join([*error.mistakes, hint])]) from None
-    return scene_from_dict(_with_station_file(data, Path(path).parent), str(path))
+    return scene_from_dict(with_record_file(_with_station_file(data, Path(path).parent), path), str(path))
 
 
 def parse_scene(text: str, source: str = "scene") -> Scene:
@@ -86,7 +86,8 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     Parameters
     ----------
     data : mapping
-        Tables "beam" and "mount", and where wanted "motion", "model" and "physics", as tomllib reads them.
+        Tables "beam" and "mount", and where wanted "motion", "model", "damping" and "physics", as
+        tomllib reads them.
     source : str
         Name of its origin, for messages.
 
@@ -96,76 +97,6 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
         If it does not describe a scene; the message lists all mistakes.
     """
     return validated(SceneInput, data, source).core
-
-
-# Kinds of values ----------------------------------------------------------------------------------
-
-
-Along = float | Polynomial | Table  # a property along the beam
-
-
-class Metres(float):
-    """A position given as a length, which becomes a fraction when the length of the beam is known."""
-
-
-class Position(Quantity):
-    """A position along the beam: a bare fraction x/L or a length with its unit."""
-
-    def convert(self, given: object) -> float:
-        """A fraction, or `Metres`."""
-        return Metres(quantity(given, "m")) if isinstance(given, str) else super().convert(given)
-
-
-_STATION = Position(meaning="position along the beam, as a fraction x/L or a length")
-_BREAKPOINT = Position(meaning="places where a property jumps or has a kink, as fractions x/L or lengths")
-
-
-class Varying(Quantity):
-    """A quantity that is constant, a polynomial in x/L or a table over stations."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        constant = core_schema.no_info_plain_validator_function(self.parse)
-        coefficient = core_schema.no_info_plain_validator_function(self.convert)
-        station = core_schema.no_info_plain_validator_function(_STATION.parse)
-        return core_schema.tagged_union_schema(
-            {
-                "<constant>": constant,
-                "<polynomial>": _table(_polynomial, polynomial=coefficient),
-                "<table>": _table(_stations, stations=station, values=constant),
-                "<column>": core_schema.is_instance_schema(Table),
-            },
-            discriminator=_kind_of_variation,
-            custom_error_type="variation",
-            custom_error_message="give a number with a unit, { polynomial = [...] } in powers of x/L, "
-            "or { stations = [...], values = [...] }",
-        )
-
-
-def _table(build: Any, **lists: CoreSchema) -> CoreSchema:
-    """Schema of an inline table of lists, from which something is built."""
-    fields = {
-        name: core_schema.typed_dict_field(core_schema.list_schema(item, strict=True, min_length=1))
-        for name, item in lists.items()
-    }
-    table = core_schema.typed_dict_schema(fields, extra_behavior="forbid")
-    return core_schema.no_info_after_validator_function(build, table)
-
-
-def _polynomial(given: dict[str, list[float]]) -> Polynomial:
-    return Polynomial(given["polynomial"])
-
-
-def _stations(given: dict[str, list[float]]) -> Table:
-    return Table(tuple(given["stations"]), tuple(given["values"]))
-
-
-def _kind_of_variation(given: Any) -> str | None:
-    if isinstance(given, Table):  # a column of beam.stations
-        return "<column>"
-    if not isinstance(given, dict):
-        return None if isinstance(given, list) else "<constant>"
-    kinds = {"<polynomial>": {"polynomial"}, "<table>": {"stations", "values"}}
-    return next((kind for kind, keys in kinds.items() if keys & given.keys()), None)
 
 
 # Tables of the file -------------------------------------------------------------------------------
@@ -212,17 +143,23 @@ def _auto_as_table(given: Any) -> Any:
     return {AUTO_NAME: True}
 
 
-def _in_a_list(given: Any) -> Any:
-    """Refuse one table where there may be several."""
-    if isinstance(given, Mapping):
-        raise InvalidInput("", dict(given), "give a table [[beam.point_mass]] in two brackets, one for each")
-    return given
+def _in_a_list(key: str) -> BeforeValidator:
+    """A validator that refuses one table where there may be several."""
+
+    def refuse_one(given: Any) -> Any:
+        if isinstance(given, Mapping):
+            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets, one for each")
+        return given
+
+    return BeforeValidator(refuse_one)
 
 
 if TYPE_CHECKING:
-    _TipInput = _PointMassInput = _MountInput = _MotionInput = _PhysicsInput = CoreSection
+    _TipInput = _PointMassInput = _PointSpringInput = _MountInput = CoreSection
+    _MotionInput = _PhysicsInput = _DampingInput = CoreSection
 else:
     _TipInput, _PointMassInput, _MountInput = map(section_of, (TipMass, PointMass, Mount))
+    _PointSpringInput, _DampingInput = map(section_of, (PointSpring, Damping))
     _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
     _MotionInput = one_of_kinds(MOTIONS)
 
@@ -230,7 +167,7 @@ else:
 class _BeamInput(CoreSection):
     length: Annotated[float, Quantity("m", "L", "length", above=0)]
     tip: _TipInput | None = None
-    breakpoints: list[Annotated[float, _BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
+    breakpoints: list[Annotated[float, BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
     stations: Annotated[
         list[list[Any]] | None,
         Field(
@@ -242,16 +179,18 @@ class _BeamInput(CoreSection):
         Along | None,
         Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
     ] = None
-    point_mass: Annotated[list[_PointMassInput], BeforeValidator(_in_a_list)] = []  # noqa: RUF012  (the same)
+    point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
+    point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
 
     @property
     def _arguments(self) -> dict[str, Any]:
         """What the constructors of `Beam` take."""
-        others = ("stations", "point_mass")
+        others = ("stations", "point_mass", "point_spring")
         given = {name: value for name, value in self if value is not None and name not in others}
         given = {name: _to_fractions(value, self.length) for name, value in given.items()}
-        lumps = tuple(lump.core for lump in self.point_mass)
-        return given | {"tip": self.tip and self.tip.core, "point_masses": lumps}
+        points = {"point_masses": self.point_mass, "point_springs": self.point_spring}
+        made = {name: tuple(point.core for point in tables) for name, tables in points.items()}
+        return given | {"tip": self.tip and self.tip.core} | made
 
 
 class RectangularInput(_BeamInput):
@@ -269,7 +208,7 @@ class RectangularInput(_BeamInput):
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        with _of_stations(self.stations), _of_point_masses():
+        with _of_stations(self.stations), _of_points():
             return Beam.rectangular(**self._arguments)
 
 
@@ -307,7 +246,7 @@ class StiffnessInput(_BeamInput):
     @cached_property
     def core(self) -> Beam:
         """The beam."""
-        with _of_stations(self.stations), _of_point_masses(), _naming_missing_key(StiffnessInput):
+        with _of_stations(self.stations), _of_points(), _naming_missing_key(StiffnessInput):
             return Beam.from_stiffness(**self._arguments)
 
 
@@ -322,12 +261,13 @@ def _to_fractions(given: Any, length: float) -> Any:
 
 
 @contextmanager
-def _of_point_masses() -> Iterator[None]:
-    """Within it, what the core says about a point mass is said of its table."""
+def _of_points() -> Iterator[None]:
+    """Within it, what the core says about a point mass or spring is said of its table."""
     try:
         yield
     except InvalidValue as error:
-        raise replace(error, field=error.field.replace("point_masses[", "point_mass[")) from None
+        field = error.field.replace("point_masses[", "point_mass[")
+        raise replace(error, field=field.replace("point_springs[", "point_spring[")) from None
 
 
 @contextmanager
@@ -481,12 +421,13 @@ class ModelInput(Section):
 
 
 class SceneInput(CoreSection):
-    """A scene: the tables [beam], [mount], and where wanted [motion], [model] and [physics]."""
+    """A scene: the tables [beam], [mount], and where wanted [motion], [model], [damping] and [physics]."""
 
     beam: BeamInput
     mount: _MountInput
     motion: _MotionInput | None = None
     model: ModelInput = ModelInput()
+    damping: _DampingInput = _DampingInput()
     physics: Annotated[_PhysicsInput, BeforeValidator(_auto_as_table)] = _PhysicsInput()
 
     @cached_property
@@ -494,6 +435,5 @@ class SceneInput(CoreSection):
         """The scene."""
         motion = self.motion and self.motion.core
         with _naming_missing_key(type(self.beam)):
-            return Scene(
-                self.beam.core, self.mount.core, motion, **dict(self.model), physics=self.physics.core
-            )
+            made = {"physics": self.physics.core, "damping": self.damping.core}
+            return Scene(self.beam.core, self.mount.core, motion, **dict(self.model), **made)

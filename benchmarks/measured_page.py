@@ -23,6 +23,7 @@ from benchmarks import (
     frequencies,
     motions,
     ratios,
+    responses,
     screens,
     stated_frequency_errors,
     stated_load_errors,
@@ -40,6 +41,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "measured.md"
 SECTIONS = {
     "Frequencies": frequencies,
     "Many designs": study,
+    "Responses": responses,
     "Transients": transient,
     "Transients of records, ringing and abrupt motions": motions,
     "Steady response": steady,

@@ -19,14 +19,17 @@ from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_f
 from beamdyn.scene.scene import Scene
 
 # On the form of each screen, in this order.
-TABLES = ("options", "mount", "beam", "motion", "model", "physics")
+TABLES = ("options", "mount", "beam", "motion", "model", "damping", "physics")
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
 )
 # Lists of tables, and what they are.
-_LISTS = {"beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }'}
+_LISTS = {
+    "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
+    "beam.point_spring": 'springs along the beam, each such as { position = "20 mm", stiffness = "10 N/m" }',
+}
 _FASTEST = 10  # times the first natural frequency at rest
 
 

@@ -118,7 +118,7 @@ class SweepCase:
         ValueError
             If the beam is not damped: then the amplitude at a resonance has no bound.
         """
-        if self.scene.damping_ratio == 0 and len(self.crossings):
+        if not self.scene.is_damped and len(self.crossings):
             bound = "without damping the amplitude at a resonance has no bound"
             advice = "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
             raise InvalidValue("model.damping_ratio", 0.0, bound, advice)

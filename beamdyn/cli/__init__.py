@@ -6,6 +6,7 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
     equilibria,
     frequencies,
     interactive,
+    linear_models,
     loads,
     published,
     sensitivities,

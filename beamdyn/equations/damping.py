@@ -8,8 +8,12 @@ from beamdyn.common.triangular import solve_lower, solve_lower_transposed
 from beamdyn.equations.rounding import BACKWARD
 
 
-def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarray:
-    """Damping matrix [kg/s] with which every mode of (K, M) has a damping ratio of 1.
+def modal_damping(
+    M: np.ndarray, K: np.ndarray, shift: float = 0.0, ratios: np.ndarray | None = None
+) -> np.ndarray:
+    """Damping matrix [kg/s] with which every mode of (K, M) has a damping ratio of 1, or its own (n,).
+
+    Own ratios are in order of frequency.
 
     C = 2 L (B - shift B^2)^(1/2) L^T with K + shift M = L L^T and B = L^-1 M L^-T; the shift [1/s2] makes
     a singular stiffness positive definite.
@@ -18,7 +22,8 @@ def modal_damping(M: np.ndarray, K: np.ndarray, shift: float = 0.0) -> np.ndarra
     compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
     unshifted = _quotients(K, solve_lower_transposed(L, U)) if shift else 1.0
-    root = (U * np.sqrt(np.maximum(mu * unshifted, 0))) @ U.T
+    of_modes = 1.0 if ratios is None else ratios[::-1]  # mu ascends as frequencies descend
+    root = (U * (of_modes * np.sqrt(np.maximum(mu * unshifted, 0)))) @ U.T
     return 2 * L @ root @ L.T
 
 

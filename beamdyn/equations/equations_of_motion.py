@@ -371,9 +371,9 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
     )
     if turning := [name for name, field in fields.items() if field.turns_at_root]:
         equations = replace(equations, shift=_find_lowest_clamped(equations, turning))
-    if not scene.damping_ratio:
+    if not scene.is_damped:
         return equations
-    return replace(equations, terms=(*equations.terms, *_damping(equations, scene.damping_ratio)))
+    return replace(equations, terms=(*equations.terms, *_damping(equations, scene)))
 
 
 def _find_lowest_clamped(equations: Equations, turning: list[str]) -> float:
@@ -384,13 +384,48 @@ def _find_lowest_clamped(equations: Equations, turning: list[str]) -> float:
     return float(1 / scipy.linalg.eigh(M, K, eigvals_only=True)[-1])
 
 
-def _damping(equations: Equations, ratio: float) -> Iterator[Term]:
-    """Yield the terms that give every mode at rest of each set of coupled fields a damping ratio."""
-    pencil, names = equations.steady(), {field.name: field.damping_name for field in FIELDS}
-    for fields in equations.coupled:
-        part = pencil.part(equations.places(fields))
-        C = modal_damping(part.M, part.K0, part.shift)
+def _damping(equations: Equations, scene: Scene) -> Iterator[Term]:
+    """Yield the terms of all that damps a scene."""
+    names = {field.name: field.damping_name for field in FIELDS}
+    damping = scene.damping
+    if scene.damping_ratio or any(damping.ratios):
+        yield from _damping_of_modes(equations, scene, names)
+    factors = {2: damping.mass_factor, 0: damping.stiffness_factor}
+    for term in equations.terms:
+        if term.quantity == "unity" and factors.get(term.order):
+            name, factor = names[term.rows], factors[term.order] * term.factor
+            yield replace(term, name=name, order=1, factor=factor)
+    if damping.tip_damper:
+        yield from _tip_damper(equations, damping.tip_damper, names)
+
+
+def _damping_of_modes(equations: Equations, scene: Scene, names: Mapping[str, str]) -> Iterator[Term]:
+    """Yield the terms that give modes at rest their damping ratio: all of them one, or each its own."""
+    pencil, sets = equations.steady(), equations.coupled
+    parts = [pencil.part(equations.places(fields)) for fields in sets]
+    ranks = _ranks(parts) if scene.damping.ratios else [None] * len(parts)
+    of_modes = np.array(scene.damping.ratios_of(equations.size))
+    for fields, part, rank in zip(sets, parts, ranks, strict=True):
+        C = modal_damping(part.M, part.K0, part.shift, None if rank is None else of_modes[rank])
         ends = np.cumsum([equations.blocks[name].stop - equations.blocks[name].start for name in fields])[:-1]
         for row, blocks in zip(fields, np.split(C, ends), strict=True):
             for column, block in zip(fields, np.split(blocks, ends, axis=1), strict=True):
-                yield Term(names.get(row, "damping"), row, column, 1, block, factor=ratio)
+                yield Term(names[row], row, column, 1, block, factor=scene.damping_ratio or 1.0)
+
+
+def _ranks(parts: Sequence[SteadyPencil]) -> list[np.ndarray]:
+    """Place of each mode at rest of each set among those of all, in order of frequency, from 0."""
+    compliance = [
+        scipy.linalg.eigh(part.M, part.K0 + part.shift * part.M, eigvals_only=True)[::-1] for part in parts
+    ]
+    rank = np.argsort(np.argsort(-np.concatenate(compliance), kind="stable"))
+    return np.split(rank, np.cumsum([len(each) for each in compliance])[:-1])
+
+
+def _tip_damper(equations: Equations, damper: float, names: Mapping[str, str]) -> Iterator[Term]:
+    """Yield the terms of a damper at the tip, against the whole deflection in each direction."""
+    tips = {name: (d.direction, d.space.end(0)) for name, d in equations.deflections.items()}
+    for row, (direction, tip) in tips.items():
+        for column, (other, tip_of_other) in tips.items():
+            if direction == other:
+                yield Term(names[row], row, column, 1, np.outer(tip, tip_of_other), factor=damper)

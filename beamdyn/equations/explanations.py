@@ -233,7 +233,8 @@ PRECONED = Condition(lambda s: s.scene.mount.precone != 0, "no precone: the beam
 BOTH = Condition(lambda s: s.scene.physics.planes == 2, "the beam bends in one plane")
 SOFTENED = Condition(lambda s: PRECONED.is_met(s) or IN_PLANE.is_met(s), IN_PLANE.otherwise)
 TILTED = Condition(lambda s: PRECONED.is_met(s) or OUT_OF_PLANE.is_met(s), OUT_OF_PLANE.otherwise)
-DAMPED = Condition(lambda s: s.scene.damping_ratio > 0, "no damping: the damping ratio is 0")
+DAMPED = Condition(lambda s: s.scene.is_damped, "no damping: the damping ratio is 0")
+ON_POINTS = Condition(lambda s: bool(s.scene.beam.point_springs), "no springs along the beam")
 TIP_BODY = Condition(lambda s: s.scene.beam.tip is not None, "no tip body")
 TIP_INERTIA = Condition(
     _has_different_inertias,

@@ -98,7 +98,7 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def polynomials(self) -> PiecewisePolynomials:
         """Polynomials on the parts of the beam between point masses."""
-        return PiecewisePolynomials(merge_breakpoints(np.concatenate([[0.0], self.beam.lumps[0], [1.0]])))
+        return PiecewisePolynomials(merge_breakpoints(np.concatenate([[0.0], self.beam.points, [1.0]])))
 
     @cached_property
     def cells(self) -> np.ndarray:

@@ -100,15 +100,75 @@ def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float])
     }
 
 
+@dataclass(frozen=True)
+class StaticLoad:
+    """A constant load on the beam at steady speed, and the deflection under it.
+
+    Parameters
+    ----------
+    accelerations : dict of str to complex
+        Quantities of the root's motion, beside those of the steady rotation.
+    force : tuple of (float, int), optional
+        Position x/L and direction of a unit force.
+    deflection : ndarray, shape (n,)
+        Coordinates of all functions of the discretization under the load.
+    """
+
+    accelerations: Mapping[Quantity, complex]
+    force: tuple[float, int] | None
+    deflection: np.ndarray
+
+
+def static_moment(
+    scene: Scene, discretization: Discretization, equations: Equations, root: RootMotion, load: StaticLoad
+) -> complex:
+    """Bending moment at the root by a static load [N m], from forces alone.
+
+    Parameters
+    ----------
+    scene, discretization
+        As for `root_moment`.
+    equations : Equations
+        Equations of the scene in all functions of the discretization.
+    root : RootMotion
+        The root's motion at the steady speed.
+    load : StaticLoad
+        The load, and what it does.
+    """
+    twist, total = scene.modelled_beam.root_twist, 0.0 + 0.0j
+    for about, factor in enumerate([math.cos(twist), math.sin(twist)][: equations.planes]):
+        if scene.mount.root_stiffnesses[about] == 0:
+            continue
+        full = _freed(scene, discretization, about)
+        rotation = _rotation(full, full.blocks[_field_of(equations, about)])
+        given = load.accelerations.items()
+        pushed = sum((a * full.vectors.get(name, 0.0) for name, a in given), np.zeros(full.size))
+        if load.force is not None:
+            pushed = pushed + full.deflection(np.array(load.force[:1]), direction=load.force[1])[:, 0]
+        held = full.matrix(0, root) @ _embed(full, equations) @ load.deflection
+        total += factor * scene.beam.length * (rotation @ (pushed - held))
+    return complex(total)
+
+
+def _freed(scene: Scene, discretization: Discretization, direction: int) -> Equations:
+    """Equations of the scene with a root that turns freely in one direction."""
+    hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
+    local = replace(scene.damping, ratios=())  # damping of modes does no work on the test function
+    freed = replace(scene, damping_ratio=0.0, damping=local, mount=replace(scene.mount, **hinges))
+    return assemble_over(freed, discretization.spaces(scene.modelled_beam))
+
+
+def _field_of(equations: Equations, direction: int) -> str:
+    """Name of the field that bends in a direction."""
+    return next(n for n, d in equations.deflections.items() if d.direction == direction)
+
+
 def _moment(scene: Scene, discretization: Discretization, equations: Equations, direction: int) -> RootMoment:
     """Moment that holds the root, or that of its spring, by virtual work of a rotation."""
     spring = scene.mount.root_stiffnesses[direction]
     if spring == 0:
         return RootMoment({}, {}, {})
-    name = next(n for n, d in equations.deflections.items() if d.direction == direction)
-    hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
-    freed = replace(scene, damping_ratio=0.0, mount=replace(scene.mount, **hinges))
-    full = assemble_over(freed, discretization.spaces(scene.modelled_beam))
+    full, name = _freed(scene, discretization, direction), _field_of(equations, direction)
     kept = _embed(full, equations)
     rotation, share = _orthogonal_rotation(full, kept, full.blocks[name])
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
@@ -137,15 +197,19 @@ def _embed(full: Equations, equations: Equations) -> np.ndarray:
 
 
 def _orthogonal_rotation(full: Equations, kept: np.ndarray, field: slice) -> tuple[np.ndarray, np.ndarray]:
-    """Rigid rotation x/L about the root, minus its projection by the mass on the kept shapes; and that.
-
-    It is the deflection without elastic energy; its only coordinate with a slope at the root is the first
-    of its field.
-    """
-    first, others = field.start, np.arange(field.start + 1, field.stop)
-    K, M = full.matrices[0]["unity"], full.matrices[2]["unity"]
-    rotation = np.zeros(full.size)
-    rotation[first] = 1.0
-    rotation[others] = -np.linalg.solve(K[np.ix_(others, others)], K[others, first])
+    """Rigid rotation x/L about the root, minus its projection by the mass on the kept shapes; and that."""
+    M, rotation = full.matrices[2]["unity"], _rotation(full, field)
     share = np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rotation)
     return rotation - kept @ share, share
+
+
+def _rotation(full: Equations, field: slice) -> np.ndarray:
+    """Rigid rotation x/L about the root: the deflection without elastic energy.
+
+    Its only coordinate with a slope at the root is the first of its field.
+    """
+    first, others = field.start, np.arange(field.start + 1, field.stop)
+    K, rotation = full.matrices[0]["unity"], np.zeros(full.size)
+    rotation[first] = 1.0
+    rotation[others] = -np.linalg.solve(K[np.ix_(others, others)], K[others, first])
+    return rotation

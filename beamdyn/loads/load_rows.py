@@ -22,6 +22,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
@@ -140,6 +141,7 @@ def span_rows(
         shear forces [N] in each direction across the deflected axis; the bending moments [N m], positive if
         they bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
     """
+    _refuse_uncovered(scene)
     beam = scene.modelled_beam
     cells = discretization.cells(beam)
     quadrature = CutQuadrature(stations, Cells(cells.ends, cells.points + weight_degree(beam) // 2 + 1))
@@ -224,3 +226,13 @@ def _across_deflected_axis(
             of_quantity[:, 1 + direction] -= tension[:, None] * slope
         position[quantity] = of_quantity
     return replace(rows, position=position)
+
+
+def _refuse_uncovered(scene: Scene) -> None:
+    """Refuse forces along the span beyond inertia: of springs, and of damping that is not by modes."""
+    bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
+    if scene.beam.point_springs:
+        raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
+    for name in ("mass_factor", "stiffness_factor", "tip_damper"):
+        if value := getattr(scene.damping, name):
+            raise InvalidValue(f"damping.{name}", value, bound, remedy)

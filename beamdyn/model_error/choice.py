@@ -115,9 +115,9 @@ def choose_physics(
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
 
-    undamped = replace(scene, damping_ratio=0.0)  # damped modes take long to find, and change alike
+    undamped = scene.undamped  # damped modes take long to find, and change alike
     chosen = choose_by(undamped, judge, count, tolerance, some, straight)
-    return replace(chosen, damping_ratio=scene.damping_ratio)
+    return replace(chosen, damping_ratio=scene.damping_ratio, damping=scene.damping)
 
 
 def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, tolerance: float) -> Scene:

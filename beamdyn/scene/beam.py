@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Annotated
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.checks import (
     InvalidValue,
     kind,
-    not_negative,
     positive,
     real,
     refuse,
@@ -20,9 +19,10 @@ from beamdyn.common.checks import (
     several,
     size,
 )
-from beamdyn.common.described import Described
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.scene.direction import direction_of
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
+from beamdyn.scene.points import PointMass, PointSpring, TipMass
 from beamdyn.scene.profile import (
     Profile,
     Property,
@@ -33,104 +33,6 @@ from beamdyn.scene.profile import (
 )
 
 _ROUNDING = 1e-12  # of a position, relative to the length: the distance at which breakpoints merge
-
-
-@dataclass(frozen=True)
-class TipMass:
-    """A rigid body at the tip.
-
-    Parameters
-    ----------
-    mass : float
-        Mass [kg].
-    offset : float
-        Distance of its centre of gravity beyond the end of the beam [m]; negative is inboard.
-    inertia : float
-        Moment of inertia about its centre of gravity, about the axis of bending [kg m2].
-    transverse_inertia : float, optional
-        Moment of inertia about the direction in which the beam bends [kg m2]; `inertia` if not given,
-        as for a body slender along the beam.
-    axial_inertia : float
-        Moment of inertia about the beam axis [kg m2].
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, the mass or an inertia is negative, or one moment of inertia exceeds the
-        sum of the other two.
-    """
-
-    mass: Annotated[float, Described("kg", "m_t", "mass", least=0)]
-    offset: Annotated[
-        float, Described("m", "e", "distance of its centre of gravity beyond the end of the beam")
-    ] = 0.0
-    inertia: Annotated[
-        float, Described("kg m2", "J_n", "moment of inertia about the axis of bending", least=0)
-    ] = 0.0
-    transverse_inertia: Annotated[
-        float | None,
-        Described("kg m2", "J_e", "moment of inertia about the direction of bending; else inertia", least=0),
-    ] = None
-    axial_inertia: Annotated[
-        float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)
-    ] = 0.0
-
-    def __post_init__(self) -> None:
-        mass, offset = not_negative("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
-        set_fields(self, mass=mass, offset=offset)
-        required = ("inertia", "axial_inertia")
-        given = () if self.transverse_inertia is None else ("transverse_inertia",)
-        for name in (*required, *given):
-            set_fields(self, **{name: not_negative(f"tip.{name}", getattr(self, name), "kg m2")})
-        self._check_inertias()
-
-    def _check_inertias(self) -> None:
-        """Refuse a moment of inertia beyond the sum of the other two, which no rigid body has."""
-        moments = {
-            "inertia": self.inertia,
-            "transverse_inertia": self.inertia_about_bending_direction,
-            "axial_inertia": self.axial_inertia,
-        }
-        largest = max(moments, key=lambda name: moments[name])
-        value = moments.pop(largest)
-        bound = f"in a rigid body it is at most the sum of the other two, {' + '.join(moments)} = {{limit}}"
-        total = sum(moments.values())
-        bad = value > total * (1 + 1e-12)
-        refuse(bad, f"tip.{largest}", value, "kg m2", bound, "check all three", limit=total)
-
-    @property
-    def inertia_about_bending_direction(self) -> float:
-        """Moment of inertia about the direction of bending [kg m2]: `transverse_inertia` or its default."""
-        return self.inertia if self.transverse_inertia is None else self.transverse_inertia
-
-
-@dataclass(frozen=True)
-class PointMass:
-    """A mass at a point of the beam, on its axis: without moments of inertia of its own.
-
-    Parameters
-    ----------
-    position : float
-        Distance from the root along the beam [m], above 0 and at most the length: one at the tip is a
-        `TipMass` without offset and inertia.
-    mass : float
-        Mass [kg].
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, the position is not positive, or the mass is negative.
-    """
-
-    position: Annotated[
-        float, Described("m", "x_k", "distance from the root along the beam, at most its length", above=0)
-    ]
-    mass: Annotated[float, Described("kg", "m_k", "mass", least=0)]
-
-    def __post_init__(self) -> None:
-        remedy = "it is the distance from the root, where a mass would not move"
-        position = positive("point_mass.position", self.position, "m", remedy)
-        set_fields(self, position=position, mass=not_negative("point_mass.mass", self.mass, "kg"))
 
 
 @dataclass(frozen=True)
@@ -163,6 +65,8 @@ class Beam(FieldsOnly):
         Rotary inertia of the section per length, rho I [kg m] over x/L, for bending in either direction.
     point_masses : sequence of PointMass
         Point masses along the beam; those at one place add up.
+    point_springs : sequence of PointSpring
+        Springs that hold points of the beam to the carrier; those at one place add up.
     """
 
     length: float
@@ -178,6 +82,7 @@ class Beam(FieldsOnly):
     rotary_inertia: Profile | None = None
     second_rotary_inertia: Profile | None = None
     point_masses: Sequence[PointMass] = ()
+    point_springs: Sequence[PointSpring] = ()
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
@@ -197,7 +102,8 @@ class Beam(FieldsOnly):
         if self.tip is not None and self.length + self.tip.offset < 0:
             bound, remedy = "it puts the body behind the root", "give an offset above {limit}"
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
-        set_fields(self, point_masses=_check_point_masses(self.point_masses, self.length))
+        for name, wanted in (("point_masses", PointMass), ("point_springs", PointSpring)):
+            set_fields(self, **{name: _check_points(name, getattr(self, name), wanted, self.length)})
 
     @classmethod
     def rectangular(
@@ -212,6 +118,7 @@ class Beam(FieldsOnly):
         twist: Property | None = None,
         poissons_ratio: float | None = None,
         point_masses: Sequence[PointMass] = (),
+        point_springs: Sequence[PointSpring] = (),
     ) -> Beam:
         """Build a beam of rectangular section that bends in the direction of its thickness.
 
@@ -240,6 +147,8 @@ class Beam(FieldsOnly):
             335-340.
         point_masses : sequence of PointMass
             Point masses along the beam; those at one place add up.
+        point_springs : sequence of PointSpring
+            Springs that hold points of the beam to the carrier; those at one place add up.
 
         Returns
         -------
@@ -283,6 +192,7 @@ class Beam(FieldsOnly):
             rotary_inertia=flat.scaled(rho / 12),
             second_rotary_inertia=edge.scaled(rho / 12),
             point_masses=point_masses,
+            point_springs=point_springs,
         )
 
     @classmethod
@@ -302,6 +212,7 @@ class Beam(FieldsOnly):
         rotary_inertia: Property | None = None,
         second_rotary_inertia: Property | None = None,
         point_masses: Sequence[PointMass] = (),
+        point_springs: Sequence[PointSpring] = (),
     ) -> Beam:
         """Build a beam of any section from its stiffness and mass.
 
@@ -332,6 +243,8 @@ class Beam(FieldsOnly):
             rho I [kg m], rotary inertia of the section per length for bending in either direction.
         point_masses : sequence of PointMass
             Point masses along the beam; those at one place add up.
+        point_springs : sequence of PointSpring
+            Springs that hold points of the beam to the carrier; those at one place add up.
 
         Returns
         -------
@@ -370,6 +283,7 @@ class Beam(FieldsOnly):
             rotary_inertia=profile("rotary_inertia", rotary_inertia),
             second_rotary_inertia=profile("second_rotary_inertia", second_rotary_inertia),
             point_masses=point_masses,
+            point_springs=point_springs,
         )
         warn_of_stiffness(
             beam.length,
@@ -394,7 +308,7 @@ class Beam(FieldsOnly):
         names = (name for name in OPTIONAL_PROPERTIES if name != "outer_fibre")
         profiles = (self.mass_per_length, self.bending_stiffness, *(getattr(self, name) for name in names))
         ends = np.array([b for p in profiles if p is not None for b in p.breakpoints])
-        return merge_breakpoints(np.concatenate([ends, self.lumps[0]]))
+        return merge_breakpoints(np.concatenate([ends, self.points]))
 
     @cached_property
     def lumps(self) -> tuple[np.ndarray, np.ndarray]:
@@ -402,6 +316,17 @@ class Beam(FieldsOnly):
         heavy = [(lump.position, lump.mass) for lump in self.point_masses if lump.mass]
         position, mass = np.array(heavy, dtype=float).reshape(-1, 2).T
         return np.minimum(position / self.length, 1.0), mass
+
+    def springs(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
+        """Positions x/L (k,) of the point springs in a direction, 0 or 1, and the stiffnesses (k,) [N/m]."""
+        found = [s for s in self.point_springs if s.stiffness and direction_of(s.direction) == direction]
+        position, stiffness = np.array([(s.position, s.stiffness) for s in found]).reshape(-1, 2).T
+        return np.minimum(position / self.length, 1.0), stiffness
+
+    @property
+    def points(self) -> np.ndarray:
+        """Positions x/L of point masses and point springs, at which the shear force jumps."""
+        return np.concatenate([self.lumps[0], self.springs(0)[0], self.springs(1)[0]])
 
     @property
     def root_twist(self) -> float:
@@ -434,14 +359,18 @@ def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float
     return axial_stiffness.scaled(10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu)))
 
 
-def _check_point_masses(given: object, length: float) -> tuple[PointMass, ...]:
-    """The point masses as a tuple; refuse what is none, and one beyond the tip."""
-    lumps = several("point_masses", given, PointMass, "PointMass(position, mass) makes one")
-    for k, lump in enumerate(lumps):
-        beyond, name = lump.position > length * (1 + _ROUNDING), f"point_masses[{k}].position"
-        bound, remedy = "it must be at most {limit}, the length", "a body beyond the tip is a TipMass"
-        refuse(beyond, name, lump.position, "m", bound, remedy, limit=length)
-    return lumps
+_MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
+_BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
+
+
+def _check_points(name: str, given: object, wanted: type, length: float) -> tuple[Any, ...]:
+    """Point masses or springs as a tuple; refuse what is none, and one beyond the tip."""
+    points = several(name, given, wanted, f"{_MADE[wanted]} makes one")
+    for k, point in enumerate(points):
+        beyond, field = point.position > length * (1 + _ROUNDING), f"{name}[{k}].position"
+        bound = "it must be at most {limit}, the length"
+        refuse(beyond, field, point.position, "m", bound, _BEYOND[wanted], limit=length)
+    return points
 
 
 def _check_section(length: float, width: Profile, thickness: Profile) -> None:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Literal
 
 from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse, set_fields
 from beamdyn.scene.beam import Beam
+from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
+from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount, exact_cos_sin
 from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics
@@ -39,6 +41,8 @@ class Scene:
         exceeds its tolerance, and its result says which.
     physics_choice : PhysicsChoice, optional
         How the physics was chosen: analyses set it in the scene of their result.
+    damping : Damping
+        Further damping: ratios mode by mode, Rayleigh's factors, a damper at the tip.
 
     Raises
     ------
@@ -54,6 +58,7 @@ class Scene:
     gravity: float = 0.0
     physics: Physics = Physics()
     physics_choice: PhysicsChoice | None = field(default=None, repr=False, compare=False)
+    damping: Damping = NO_DAMPING
 
     if TYPE_CHECKING:  # the word "auto" is accepted, but what is read is a Physics
 
@@ -66,6 +71,7 @@ class Scene:
             gravity: float = 0.0,
             physics: Physics | Literal["auto"] = Physics(),
             physics_choice: PhysicsChoice | None = None,
+            damping: Damping = NO_DAMPING,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -77,6 +83,8 @@ class Scene:
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
         set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
+        kind("damping", self.damping, Damping, "Damping(tip_damper=0.1) sets a damper at the tip")
+        check_one_kind_of_ratios(ratio, self.damping)
         if isinstance(self.physics, str) and self.physics == AUTO_NAME:
             set_fields(self, physics=AUTO)
         elif isinstance(self.physics, AutomaticPhysics) and self.physics != AUTO:
@@ -88,6 +96,17 @@ class Scene:
         _check_properties(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
+        _check_point_springs(self)
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether anything damps the vibration."""
+        return bool(self.damping_ratio) or self.damping.damps
+
+    @property
+    def undamped(self) -> Scene:
+        """The scene without damping."""
+        return replace(self, damping_ratio=0.0, damping=NO_DAMPING)
 
     @property
     def chooses_physics(self) -> bool:
@@ -102,7 +121,9 @@ class Scene:
     @property
     def is_slender_beam_in_one_plane(self) -> bool:
         """Whether the model is a clamped Euler-Bernoulli beam in one plane, to which some theorems apply."""
-        return self.physics in _SLENDER and self.mount.root_stiffness == math.inf
+        return (
+            self.physics in _SLENDER and self.mount.root_stiffness == math.inf and not self.beam.point_springs
+        )
 
 
 def check_scene(scene: object) -> None:
@@ -121,6 +142,14 @@ def _check_large_deflection(scene: Scene) -> None:
     if scene.mount.root_stiffness == 0:
         bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
         raise InvalidValue("mount.root_stiffness", 0.0, bound, "give a soft one", "N m/rad")
+    if scene.beam.point_springs:
+        bound = "with physics.large_deflection there are none: they would keep their direction"
+        remedy = "leave large_deflection out where the deflection is small"
+        raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
+    if scene.damping.tip_damper:
+        bound = "with physics.large_deflection there is none: the tip also moves along the beam"
+        remedy = "give damping.ratios, or leave large_deflection out"
+        raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
     if scene.mount.precone:
         bound = (
             "with physics.large_deflection there is none: precone bends a beam out of one plane of bending"
@@ -148,6 +177,24 @@ def _check_springs(mount: Mount, beam: Beam) -> None:
             bound = "it must be at most {limit}, 1e16 EI/L of the beam: rounding hides the turn beyond"
             remedy = "leave it out: the root is clamped"
             refuse(spring > stiffest, f"mount.{name}", spring, "N m/rad", bound, remedy, limit=stiffest)
+
+
+# Springs along the beam ---------------------------------------------------------------------------
+
+_STIFFEST_POINT = 1e9  # spring over EI/L^3 of the beam: beyond, rounding hides the deflection that it allows
+
+
+def _check_point_springs(scene: Scene) -> None:
+    """Refuse springs that rounding does not tell from supports, and those in a rigid direction."""
+    beam = scene.beam
+    for k, spring in enumerate(beam.point_springs):
+        stiffest = _STIFFEST_POINT * mean(beam.bending_stiffness) / beam.length**3
+        bound = "it must be at most {limit}, 1e9 EI/L^3 of the beam"
+        name = f"point_springs[{k}].stiffness"
+        refuse(spring.stiffness > stiffest, name, spring.stiffness, "N/m", bound, "soften it", limit=stiffest)
+        if spring.direction == ACROSS and scene.physics.planes == 1:
+            bound, remedy = "a beam of one plane is rigid in this direction", "give physics.planes = 2"
+            raise InvalidValue(f"point_springs[{k}].direction", ACROSS, bound, remedy)
 
 
 # Properties that the physics needs ----------------------------------------------------------------

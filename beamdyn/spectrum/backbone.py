@@ -83,7 +83,7 @@ def backbone(
     check_scene(scene)
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
-    scene = replace(scene, physics=replace(scene.physics, large_deflection=True), damping_ratio=0.0)
+    scene = replace(scene.undamped, physics=replace(scene.physics, large_deflection=True))
     solution = solve_to_tolerance(scene, discretization, speeds, mode)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):

@@ -31,7 +31,8 @@ in either.  A tip body has J_e - J_1 out of the plane, of the axes of its sectio
 
 **Shear** frees the slope of the sections, hence D, from that of the deflection: F is the same.
 
-**Springs** at the root are stiffness, and change nothing.  At a hinge, a rigid turn u = x has no stiffness:
+**Springs** at the root or along the beam are stiffness, and change nothing.  At a hinge without springs along
+the beam, a rigid turn u = x has no stiffness:
 
     F(x) = s^2 (I_0 + J_e - J_1 - int rho I) - a S_1,  I_0 = int rho A x^2 + m (L + eps)^2,
 
@@ -248,7 +249,8 @@ def _inward(scene: Scene) -> float:
 def _least_turning(scene: Scene) -> float:
     """Least of the form F over rigid turns about a hinge, of unit angle [kg m2]; inf without a hinge."""
     springs = scene.mount.root_stiffnesses[: scene.physics.planes]
-    hinges = np.flatnonzero(np.array(springs) == 0)
+    held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]  # by springs
+    hinges = np.flatnonzero((np.array(springs) == 0) & ~np.array(held))
     if not hinges.size:
         return math.inf
     tip = scene.beam.tip or TipMass(0.0)

@@ -61,6 +61,10 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
             raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
     if scene.damping_ratio:
         raise InvalidValue("damping_ratio", scene.damping_ratio, bound, "give 0")
+    if scene.damping.damps:
+        raise InvalidValue("damping", scene.damping, bound, "leave it out")
+    if scene.beam.point_springs:
+        raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, "leave them out")
     springs = {name: getattr(scene.mount, name) for name in _SPRINGS[: scene.physics.planes]}
     for name, value in springs.items():
         if math.isfinite(value):

@@ -101,7 +101,7 @@ def setting_angle_limits(
         raise InvalidValue("precone", scene.mount.precone, bound, "leave it out", "rad")
     top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
     unresolved, scene = scene, plain_physics(scene)
-    scene = replace(scene, physics=replace(scene.physics, stretch=False), damping_ratio=0.0)
+    scene = replace(scene.undamped, physics=replace(scene.physics, stretch=False))
     speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = choose_model(tangential, discretization, speeds, 1)

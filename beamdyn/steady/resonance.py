@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations_with_replacement
 from time import perf_counter
@@ -191,7 +191,7 @@ def resonance_speeds(
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
-    scene = choose_physics(replace(scene, damping_ratio=0.0), [0.0, top], modes)
+    scene = choose_physics(scene.undamped, [0.0, top], modes)
     model = _choose_resolved(scene, discretization, np.array([0.0, top]), modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)

@@ -171,6 +171,7 @@ def _rectangular(beam: Beam, given: Mapping[str, float]) -> Beam:
         "tip": beam.tip,
         "twist": beam.twist,
         "point_masses": beam.point_masses,
+        "point_springs": beam.point_springs,
         "breakpoints": beam.breakpoints[1:-1],
     }
     return Beam.rectangular(**{**own, **arguments, **given})

@@ -83,7 +83,8 @@ def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
     plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
     lumped = bool(scene.beam.point_masses) and bool(names & _POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
-    return plain and apart and not scene.mount.precone and not lumped and names <= SIMILAR
+    beyond = scene.mount.precone or scene.beam.point_springs or scene.damping.damps
+    return plain and apart and not beyond and not lumped and names <= SIMILAR
 
 
 @dataclass(frozen=True)

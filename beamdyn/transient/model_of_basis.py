@@ -37,7 +37,7 @@ def choose_for_basis(
         straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
         return Model(scene, choose_for_basis(straight, discretization, basis, target).discretization)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
-    if plain or not scene.damping_ratio:
+    if plain or not scene.is_damped:
         return choose_model(scene, discretization, speeds, modes, target)
-    undamped = choose_model(replace(scene, damping_ratio=0.0), discretization, speeds, modes, target)
+    undamped = choose_model(scene.undamped, discretization, speeds, modes, target)
     return Model(scene, undamped.discretization)

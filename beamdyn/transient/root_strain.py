@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment
 from beamdyn.scene.scene import Scene
@@ -43,6 +44,11 @@ class RootStrain:
         beam, root = scene.beam, np.zeros(1)
         if beam.outer_fibre is None:
             raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
+        if scene.damping.stiffness_factor:
+            bound = "the strain of a material that damps is not a function of the moment alone"
+            remedy = "give damping.ratios, or ask frequency_response"
+            factor = scene.damping.stiffness_factor
+            raise InvalidValue("damping.stiffness_factor", factor, bound, remedy, "s")
         per_moment = beam.outer_fibre(root)[0] / beam.bending_stiffness(root)[0]
         return cls(system, root_moment(scene, discretization, system.equations), float(per_moment))
 

@@ -468,7 +468,7 @@ def test_rolling():
         (
             "motion",
             {"kind": "odd", "speed": "1 rpm"},
-            "motion.kind = \"odd\": give 'steady', 'spin_up', 'sampled' or 'rolling'",
+            "motion.kind = \"odd\": give 'steady', 'spin_up', 'sampled', 'rolling' or 'sampled_translation'",
         ),
         ("motion", {"kind": [1]}, "motion.kind = [1]: give 'steady'"),
         ("motion", 55, "motion = 55: give a table"),
@@ -551,7 +551,7 @@ def test_rolling():
         ("beam.twist", 10, 'beam.twist = 10: give a unit, e.g. "10 rad" or "10 deg"'),
         ("beam.twist", {"polynomial": ["0 deg", 5]}, "beam.twist.polynomial[1] = 5: give a unit, e.g."),
         ("modle", {}, "modle: unknown key; did you mean model?"),
-        (" ", 1, " : unknown key; known are beam, mount, motion, model, physics"),
+        (" ", 1, " : unknown key; known are beam, mount, motion, model, damping, physics"),
     ],
 )
 def test_mistake_names_key_value_and_remedy(path, value, message):
@@ -746,4 +746,4 @@ def test_every_input_of_a_scene_is_described():
 
 def test_choices_are_described():
     kinds = [found.choices for found in describe(SceneInput) if found.path == "motion.kind"]
-    assert kinds == [("steady",), ("spin_up",), ("sampled",), ("rolling",)]
+    assert kinds == [("steady",), ("spin_up",), ("sampled",), ("rolling",), ("sampled_translation",)]

@@ -22,6 +22,10 @@ class Section(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
+class SiNumber(float):
+    """A number in SI that a file has given with its unit elsewhere, such as in the head of a column."""
+
+
 @dataclass(frozen=True)
 class Quantity(Described):
     """A number of a file, for ``Annotated[float, Quantity("m", "L", "length")]``.
@@ -42,6 +46,8 @@ class Quantity(Described):
 
     def convert(self, given: object) -> float:
         """Convert to SI without checking the bounds."""
+        if isinstance(given, SiNumber):
+            return float(given)
         if self.infinite and given in ("inf", math.inf):
             return math.inf
         return quantity(given, self.unit) if self.unit else _plain(given)

@@ -135,13 +135,18 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
 
 
 def _named_by(scene: Path) -> list[Path]:
-    """The file that a scene file names as its stations, if it is a scene file and names one."""
+    """The files that a scene file names as its stations or a record, if it is a scene file and names some."""
     try:
-        beam = tomllib.loads(scene.read_text(encoding="utf-8-sig")).get("beam")
+        tables = tomllib.loads(scene.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError, RecursionError):  # what it is instead is said when it is read
         return []
-    named = beam.get("stations") if isinstance(beam, dict) else None
-    return [scene.parent / named] if isinstance(named, str) else []
+    named = []
+    for *path, key in (("beam", "stations"), ("motion", "file"), ("motion", "rotation", "file")):
+        table: object = tables
+        for name in path:
+            table = table.get(name) if isinstance(table, dict) else None
+        named.append(table.get(key) if isinstance(table, dict) else None)
+    return [scene.parent / name for name in named if isinstance(name, str)]
 
 
 def _check_is_no_input(option: str, path: Path, inputs: Iterable[str | Path]) -> None:

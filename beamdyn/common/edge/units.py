@@ -18,7 +18,9 @@ if TYPE_CHECKING:  # pint costs 0.3 s: it is loaded with the first quantity
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?[1-9])?"
 _SEPARATOR = r"(?:\s*[*/]\s*|\s+)"
-_TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*)?)\s*", re.ASCII)
+# "1/s" stands after a blank: 0.51/s would have two meanings.
+_UNITS = rf"(?<=\s)1/{_FACTOR}|{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*"
+_TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNITS})?)\s*", re.ASCII)
 _NO_NUMBER = re.compile(r"\s*[+-]?(nan|inf)", re.IGNORECASE)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
 _PLAIN = str.maketrans({"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*"})
@@ -33,6 +35,7 @@ _KINDS = {
     "kg m": "rotary inertia per length",
     "kg m2": "moment of inertia",
     "s": "time",
+    "1/s": "rate",
     "Hz": "frequency",
     "rad": "angle",
     "rad/s": "angular speed",
@@ -41,6 +44,7 @@ _KINDS = {
     "m/s2": "acceleration",
     "N": "force",
     "N/m": "stiffness",
+    "N s/m": "damping",
     "N m": "moment",
     "N m/rad": "stiffness against rotation",
     "N m2": "bending stiffness",
@@ -159,7 +163,7 @@ def _parse(unit: str) -> Unit | None:
     from pint.errors import PintError
 
     try:
-        return _registry().Unit(_POWER.sub(r"**\1", unit))
+        return _registry().Unit(_POWER.sub(r"**\1", f"{unit[2:]}-1" if unit.startswith("1/") else unit))
     except PintError:
         return None
 

@@ -14,7 +14,7 @@ from beamdyn.equations.discretization import CLAMPED, HINGED, RootConditions
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Term
 from beamdyn.equations.fields.transverse import Pair, TransverseField, term_of
-from beamdyn.scene.beam import TipMass
+from beamdyn.scene.beam import PointSpring, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
@@ -41,7 +41,9 @@ class Bending(TransverseField):
         """Add a tip body, damping, springs at the root, and angles at which no term vanishes."""
         body = TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5)
         mount = Mount(1.0, math.pi, 1.0, root_stiffness=1.0, second_root_stiffness=1.0, precone=0.5)
-        return replace(scene, beam=replace(scene.beam, tip=body), mount=mount, damping_ratio=0.5)
+        springs = (PointSpring(scene.beam.length, scene.beam.bending_stiffness(np.zeros(1))[0]),)
+        beam = replace(scene.beam, tip=body, point_springs=springs)
+        return replace(scene.undamped, beam=beam, mount=mount, damping_ratio=0.5)
 
     def conditions(self, mount: Mount) -> RootConditions:
         """Clamped, or hinged where a spring holds the root."""

@@ -49,7 +49,7 @@ class Stretch(Field):
             "the precone turns the beam out of the plane of rotation",
             (why.TURNS, why.PRECONED, why.OUT_OF_PLANE),
         ),
-        "axial damping": Explanation("2 ζ Λ q1'", "the damping ratio is not 0", (why.DAMPED,)),
+        "axial damping": Explanation("C q1'", "the beam is damped", (why.DAMPED,)),
         "centrifugal stretching": Explanation("ω² Q1", "the carrier turns", (why.TURNS,)),
         "axial root acceleration": Explanation("-aO1 P1", why.say_tension, (why.TENSIONED,)),
     }

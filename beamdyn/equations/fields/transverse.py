@@ -220,7 +220,8 @@ class TransverseField(Field):
             (why.OBLIQUE, why.TURNS),
         ),
         "tension by root acceleration": Explanation("-aO1 KGA q2", why.say_tension, (why.TENSIONED,)),
-        "damping": Explanation("2 ζ Λ q2'", "the damping ratio is not 0", (why.DAMPED,)),
+        "point springs": Explanation("k t tᵀ q2", "springs hold points of the beam", (why.ON_POINTS,)),
+        "damping": Explanation("C q2'", "the beam is damped", (why.DAMPED,)),
         "angular acceleration": Explanation("ω' c Q2", "the speed varies", (why.ACCELERATES, why.IN_PLANE)),
         "root acceleration": Explanation("-(c aO2 + s aO3) P2", why.say_static_load, (why.LOADED,)),
         "Coriolis coupling of planes": Explanation(
@@ -264,6 +265,7 @@ class TransverseField(Field):
     def _terms_with(self, pair: Pair) -> Iterator[Term]:
         yield from _mass(pair)
         yield from self.own_stiffness(pair)
+        yield from _springs(pair)
         yield from _tension(pair)
         yield from _spin(pair)
         yield from _euler_of_turned(pair)
@@ -292,6 +294,16 @@ def _mass(pair: Pair) -> Iterator[Term]:
     sections = section_tensor(pair.rows.beam, "rotary_inertia").get((i, j))
     if pair.rotate and sections is not None:
         yield Term("rotary inertia of sections", *names, 2, pair.integrate(sections, 1))
+
+
+def _springs(pair: Pair) -> Iterator[Term]:
+    """Stiffness of springs along the beam, against the whole deflection."""
+    if pair.rows.direction != pair.columns.direction:
+        return
+    xi, stiffness = pair.rows.beam.springs(pair.rows.direction)
+    if stiffness.size:
+        matrix = (pair.rows.space.evaluate(xi) * stiffness) @ pair.columns.space.evaluate(xi).T
+        yield term_of("point springs", pair, matrix)
 
 
 def _tension(pair: Pair) -> Iterator[Term]:

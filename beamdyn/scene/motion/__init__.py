@@ -7,6 +7,7 @@ is accurate to 1.5e-8 rad.  At a jump, a motion takes the values after it.
 
 from beamdyn.scene.motion.base import Line, Motion, MotionSample
 from beamdyn.scene.motion.checks import check_consistent, check_picklable
+from beamdyn.scene.motion.records import SampledTranslation
 from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
 from beamdyn.scene.motion.rotations import (
     Rotation,
@@ -21,6 +22,7 @@ KINDS: dict[str, type[Motion]] = {
     "spin_up": SpinUp,
     "sampled": SampledRotation,
     "rolling": RollingWheel,
+    "sampled_translation": SampledTranslation,
 }
 """Motions by the kind that names them in files and forms; the first is the default."""
 
@@ -34,6 +36,7 @@ __all__ = [
     "Rotation",
     "RotationFunction",
     "SampledRotation",
+    "SampledTranslation",
     "SpinUp",
     "SteadyRotation",
     "UserMotion",

@@ -1,0 +1,163 @@
+"""How many modes a linear model needs, and the error of what is computed with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue, count, within
+from beamdyn.linear_models.choice import model_at_speed
+from beamdyn.linear_models.model_at_speed import ModelAtSpeed
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+
+Evaluation = Callable[[ModelAtSpeed], np.ndarray]
+
+_FIRST = 4  # modes of the first basis of "auto"
+_ACCURATE = 8  # modes for which its functions are chosen, at least
+_MOST = 40  # of the last
+_MARGIN = 2.0  # error over the distance from a coarser discretization
+_MARGIN_OF_MODES = 4.0  # error over the distance from twice as many modes, which may agree by chance
+_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
+_ROUNDING = 1e-12  # of the largest value
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A value with its error, of the model with enough modes.
+
+    Parameters
+    ----------
+    model : ModelAtSpeed
+        The model.
+    value, error : ndarray
+        The value and its estimated error, of one shape.
+    truncation : float
+        Largest error by the modes left out.
+    method, compared_with : str
+        The model, and those that the error was estimated by.
+    """
+
+    model: ModelAtSpeed
+    value: np.ndarray
+    error: np.ndarray
+    truncation: float
+    method: str
+    compared_with: str
+
+
+def refine(
+    scene: Scene,
+    speed: float,
+    top: float,
+    modes: int | str | None,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+    evaluate: Evaluation,
+    most: int,
+) -> Refined:
+    """Evaluate with all functions where they are few, else with as many modes as the tolerance needs.
+
+    Parameters
+    ----------
+    scene, speed, discretization
+        As for `model_at_speed`.
+    top : float
+        Highest angular frequency at which the beam answers [rad/s], which the functions resolve.
+    modes : int, "auto" or None
+        Number of modes; "auto": all functions up to `most`, else the fewest modes with which the error meets
+        the tolerance; None: all functions.
+    tolerance : float
+        Truncation error aimed at, relative to the largest value.
+    evaluate : callable
+        The value by a model.
+    most : int
+        Number of functions up to which all are kept.
+    """
+    tolerance = within("tolerance", tolerance, 1e-14, 0.1)
+    if modes is None:
+        model = model_at_speed(scene, speed, None, discretization)
+        return _with_error(model, evaluate(model), None, evaluate)
+    if not (isinstance(modes, str) and modes == "auto"):
+        size = count("modes", modes, remedy='or "auto", or None, which keeps all functions')
+        model = model_at_speed(scene, speed, size, discretization)
+        larger = _all_of(model, most) or _larger(model, discretization)
+        return _with_error(model, evaluate(model), larger, evaluate)
+    model = _resolving(scene, speed, top, discretization)
+    if (whole := _all_of(model, most)) is not None:
+        return _with_error(whole, evaluate(whole), None, evaluate)
+    return _add_modes(replace(model, modes=_FIRST), tolerance, discretization, evaluate)
+
+
+def _resolving(scene: Scene, speed: float, top: float, discretization: DiscretizationChoice) -> ModelAtSpeed:
+    """The model with functions for modes up to an angular frequency [rad/s], within limits."""
+    modes = _ACCURATE
+    while True:
+        model = model_at_speed(scene, speed, modes, discretization)
+        named = isinstance(discretization, str)
+        if not named or modes >= _MOST or np.sqrt(np.abs(model.K).max()) > top:
+            return model
+        modes = min(_MOST, 2 * modes)
+
+
+def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
+    """The model with all functions, unless they are many or some have no mass of their own."""
+    whole = replace(model, modes=None)
+    if whole.equations.size > most:
+        return None
+    values = np.linalg.eigvalsh(whole.M)
+    return whole if values[0] > _MASSLESS * values[-1] else None
+
+
+def _add_modes(
+    model: ModelAtSpeed, tolerance: float, discretization: DiscretizationChoice, evaluate: Evaluation
+) -> Refined:
+    """Add modes until the error meets the tolerance."""
+    value = evaluate(model)
+    while (larger := _larger(model, discretization)) is not None:
+        finer = evaluate(larger)
+        settled = np.abs(finer - value).max() <= tolerance / _MARGIN_OF_MODES * np.abs(finer).max()
+        if settled or (larger.modes or 0) >= _MOST:
+            return _with_error(model, value, larger, evaluate, finer)
+        model, value = larger, finer
+    return _with_error(model, value, None, evaluate)
+
+
+def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
+    """The model with twice as many modes; None if the discretization has too few."""
+    assert model.modes is not None
+    modes, coarser = 2 * model.modes, model.model.coarser.equations
+    if all(len(coarser.places(names)) >= modes for names in coarser.coupled):
+        return replace(model, modes=modes)
+    if not isinstance(discretization, str):
+        return None
+    try:
+        return model_at_speed(model.scene, model.speed, modes, discretization)
+    except InvalidValue:
+        return None
+
+
+def _with_error(
+    model: ModelAtSpeed,
+    value: np.ndarray,
+    larger: ModelAtSpeed | None,
+    evaluate: Evaluation,
+    finer: np.ndarray | None = None,
+) -> Refined:
+    """The value, with its distance from that of more modes and of a coarser discretization."""
+    coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
+    rounding = _ROUNDING * np.abs(value).max() + _MARGIN * model.discretization.rounding * np.abs(value)
+    error = _MARGIN * np.abs(evaluate(coarse) - value) + rounding
+    truncation, compared = np.zeros(()), [str(coarse.discretization)]
+    if model.modes is not None and larger is None:
+        truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]
+    elif larger is not None:
+        finer = evaluate(larger) if finer is None else finer
+        more = "all functions" if larger.modes is None else f"{larger.modes} modes"
+        truncation, compared = _MARGIN_OF_MODES * np.abs(finer - value), [*compared, more]
+    kept = "all functions" if model.modes is None else f"{model.modes} modes at {model.speed:.6g} rad/s"
+    method = f"{model.discretization}, {kept}"
+    largest = float(np.max(truncation))
+    return Refined(model, value, error + truncation, largest, method, ", ".join(compared))

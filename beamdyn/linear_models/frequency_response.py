@@ -1,0 +1,191 @@
+"""Response over frequency at a steady speed: deflection, acceleration, moment or strain by one excitation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import InvalidValue, ascending, refuse
+from beamdyn.common.results import Provenance, Result
+from beamdyn.linear_models.choice import check_linear, with_forces
+from beamdyn.linear_models.convergence import Refined, refine
+from beamdyn.linear_models.excitations import Excitation, as_excitation
+from beamdyn.linear_models.model_at_speed import ModelAtSpeed
+from beamdyn.linear_models.observations import Observation, as_observation
+from beamdyn.linear_models.transfer import check_stable, transfer
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_left_out
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TURN = 2 * np.pi
+_DIRECT = 300  # functions up to which all are kept: some milliseconds a frequency
+
+
+@dataclass(frozen=True)
+class FrequencyResponse(Result):
+    """Response to a harmonic excitation at a steady speed, over frequency.
+
+    An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
+    the rotation, of n turns per second: one, h = 0, unless the excitation has a fixed direction.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    frequencies : ndarray, shape (F,)
+        Frequencies f of the excitation [Hz].
+    response : ndarray of complex, shape (F, k)
+        H at each frequency for each harmonic [unit of the output per unit of the input].
+    harmonics : ndarray of int, shape (k,)
+        The harmonics h: 0, or -1 and 1.
+    error : ndarray, shape (F, k)
+        Estimated error of the response [same unit]: its distance from that of more modes and of a coarser
+        discretization, each with a margin.
+    input, output : str
+        The excitation and what is observed, with units.
+    unit : str
+        Unit of the response.
+    warnings : tuple of str
+        Limitations of the result.
+    provenance : Provenance
+        How the response was computed.
+    """
+
+    speed: float
+    frequencies: np.ndarray
+    response: np.ndarray
+    harmonics: np.ndarray
+    error: np.ndarray
+    input: str
+    output: str
+    unit: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    @property
+    def response_frequencies(self) -> np.ndarray:
+        """Frequencies at which the beam answers [Hz], shape (F, k); negative ones turn backwards."""
+        return self.frequencies[:, None] + self.harmonics * self.speed / _TURN
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Frequency of the excitation [Hz] and magnitude of the largest response among those given."""
+        size = np.abs(self.response).max(axis=1)
+        return float(self.frequencies[size.argmax()]), float(size.max())
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the magnitude over the frequency of the excitation, both logarithmic."""
+        from beamdyn.output.plots_over_frequency import plot_frequency_response
+
+        labels = [_label(h) for h in self.harmonics.tolist()]
+        value = f"{self.output.partition(' [')[0]} [{self.unit}]"
+        return plot_frequency_response(self.frequencies, np.abs(self.response), value, labels, ax)
+
+
+def _label(harmonic: int) -> str:
+    """What a harmonic of the rotation is, in the legend of a picture; empty if there is one only."""
+    return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
+
+
+def frequency_response(
+    scene: Scene,
+    speed: float,
+    frequencies: Sequence[float] | np.ndarray,
+    input: Excitation | str = "bending",
+    output: Observation | str = "tip",
+    modes: int | str | None = "auto",
+    tolerance: float = 1e-9,
+    discretization: DiscretizationChoice = "ritz",
+) -> FrequencyResponse:
+    """Compute the response to a harmonic excitation at a steady speed, over frequency.
+
+    Small motions of the straight beam in the modes at the speed, with the static deflection of what these
+    leave out.  The parametric term is left out: an acceleration along the beam varies its stiffness, which
+    answers at other frequencies, too; `random_response` states its size.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion and gravity are not used.
+    speed : float
+        Speed [rad/s].
+    frequencies : sequence of float
+        Frequencies of the excitation [Hz], ascending from 0 or more.
+    input : BaseMotion, PointForce or str
+        What drives the beam.  A word may stand for it: "bending", "across", "n1", "n2" and "n3" are
+        accelerations of the base [m/s2], "tip force" and "tip force across" are forces [N].
+    output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
+        What is observed.  A word may stand for it: "tip", "tip across", "tip acceleration", "root moment" or
+        "root strain".
+    modes : int, "auto" or None
+        Number of modes at the speed of each set of coupled fields; "auto": all functions of the
+        discretization up to 300 of them, else the fewest modes with which the truncation error meets the
+        tolerance; None keeps all functions.
+    tolerance : float
+        Truncation error aimed at by "auto", relative to the largest response.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    FrequencyResponse
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, the speed is past the critical speed, or an undamped beam is
+        excited at a natural frequency.
+    """
+    start = perf_counter()
+    given = ascending("frequencies", frequencies)
+    refuse(given < 0, "frequencies", given, "Hz", "give 0 or more")
+    drive, seen = as_excitation("input", input), as_observation("output", output)
+    scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
+
+    def evaluate(model: ModelAtSpeed) -> np.ndarray:
+        return transfer(model, drive, seen, given)[1]
+
+    top = _TURN * float(given[-1]) + abs(speed)
+    refined: Refined = refine(
+        with_forces(scene, [drive]), speed, top, modes, tolerance, discretization, evaluate, _DIRECT
+    )
+    check_stable(refined.model)
+    harmonics, _ = transfer(refined.model, drive, seen, given[:1])
+    if not np.isfinite(refined.value).all():
+        bad = given[~np.isfinite(refined.value).all(axis=1)][0]
+        bound = "an undamped beam has no finite response at a natural frequency"
+        raise InvalidValue("frequencies", float(bad), bound, "give damping, or another frequency", "Hz")
+    return FrequencyResponse(
+        speed=speed,
+        frequencies=given,
+        response=refined.value,
+        harmonics=harmonics,
+        error=refined.error,
+        input=f"{drive.label} [{drive.unit}]",
+        output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
+        unit=f"{seen.unit or '1'} per {drive.unit}",
+        warnings=(*_warnings(scene, tolerance, modes, refined),),
+        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        scene=scene,
+    )
+
+
+def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: Refined) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
+    if not scene.is_damped:
+        yield "there is no damping: near natural frequencies the response is that of no real beam"
+    largest = np.abs(refined.value).max()
+    if isinstance(modes, str) and refined.truncation > tolerance * largest:
+        yield (
+            f"tolerance = {tolerance:g} is not reached: the estimated error by the modes left out is "
+            f"{refined.truncation / largest:.1g} of the largest response"
+        )

@@ -1,0 +1,205 @@
+"""Matrices of the equations of motion at a steady speed, with what each row and coordinate means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import InvalidValue, real_array, refuse, several
+from beamdyn.common.results import Provenance, Result
+from beamdyn.equations.directions import check_direction
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
+from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.direction import ACROSS
+from beamdyn.scene.scene import Scene
+
+_NODAL = 1e-9  # by which a nodal value may differ from 1
+
+
+@dataclass(frozen=True)
+class Matrices(Result):
+    """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
+
+    Rotating axes, a fixed centre of the carrier, and no gravity.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    mass : ndarray, shape (n, n)
+        M, symmetric.
+    damping : ndarray, shape (n, n)
+        C, symmetric.
+    gyroscopic : ndarray, shape (n, n)
+        G at this speed, skew.
+    stiffness : ndarray, shape (n, n)
+        K at this speed: elastic, with centrifugal stiffening and spin softening.
+    stiffness_by_axial_acceleration : ndarray, shape (n, n)
+        What K loses for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
+        the parametric term of translation and gravity.
+    static_load : ndarray, shape (n,)
+        f, the load by the steady rotation.
+    input_matrix : ndarray, shape (n, k)
+        B: load by a unit of each input.
+    inputs : tuple of str
+        The inputs u, with units.
+    coordinates, rows : tuple of str
+        What each coordinate q and each equation is, with units.
+    provenance : Provenance
+        How the matrices were computed.
+    """
+
+    speed: float
+    mass: np.ndarray
+    damping: np.ndarray
+    gyroscopic: np.ndarray
+    stiffness: np.ndarray
+    stiffness_by_axial_acceleration: np.ndarray
+    static_load: np.ndarray
+    input_matrix: np.ndarray
+    inputs: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    rows: tuple[str, ...]
+    provenance: Provenance
+    equations: Equations = field(repr=False)
+    scene: Scene = field(repr=False)
+
+    def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
+        """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).
+
+        The direction is 0 for that of the bending angle, 1 for that across.
+
+        Raises
+        ------
+        ValueError
+            If a position is not on the beam.
+        """
+        positions, length = real_array("x", x), self.scene.beam.length
+        bound, remedy = "it must be on the beam, from 0 to {limit}", "it is the distance from the root"
+        off = (positions < 0) | (positions > length * (1 + 1e-12))
+        refuse(off, "x", positions, "m", bound, remedy, limit=length)
+        xi = np.minimum(positions / length, 1.0)
+        return self.equations.deflection(xi, direction=check_direction(direction)).T
+
+
+def matrices(
+    scene: Scene,
+    speed: float,
+    modes: int | None = None,
+    discretization: DiscretizationChoice = "ritz",
+    inputs: Sequence[Excitation | str] | None = None,
+) -> Matrices:
+    """Give the matrices of the equations of motion at a steady speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion and gravity are not used.
+    speed : float
+        Speed [rad/s].
+    modes : int, optional
+        Number of modes of each set of coupled fields, without damping and at this speed, as coordinates;
+        all functions of the discretization if not given.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    inputs : sequence of BaseMotion, PointForce or str, optional
+        Columns of the input matrix: see `frequency_response`.  If not given, the acceleration of the base
+        and a force at the tip in each direction in which the beam bends.
+
+    Returns
+    -------
+    Matrices
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or an input is periodic at this speed.
+    """
+    start = perf_counter()
+    scene, speed = check_linear(scene, speed, modes)
+    given = list_inputs(inputs, scene)
+    model = model_at_speed(with_forces(scene, given), speed, modes, discretization)
+    equations, pencil = model.equations, model.pencil
+    kept = "all functions" if modes is None else f"{modes} modes at {speed:.6g} rad/s"
+    axial = equations.matrices[0].get("root_axial", np.zeros_like(pencil.M))
+    coordinates = (*_name_coordinates(model),)
+    return Matrices(
+        speed=speed,
+        mass=model.M,
+        damping=pencil.C,
+        gyroscopic=speed * pencil.G,
+        stiffness=model.K,
+        stiffness_by_axial_acceleration=-axial,
+        static_load=speed**2 * pencil.f2,
+        input_matrix=np.column_stack([steady_drive(model, each).load for each in given]),
+        inputs=tuple(f"{each.label} [{each.unit}]" for each in given),
+        coordinates=coordinates,
+        rows=tuple(f"generalized force of {name.rpartition(' [')[0]}" for name in coordinates),
+        provenance=Provenance(__version__, f"{model.discretization}, {kept}", "", perf_counter() - start),
+        equations=equations,
+        scene=scene,
+    )
+
+
+def listed(name: str, given: Any) -> tuple[Any, ...]:
+    """The members of a sequence, of which there is one at least."""
+    members = several(name, given, object)
+    if not members:
+        raise InvalidValue(name, given, "it is empty", "give one at least, or leave it out")
+    return members
+
+
+def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
+    """The excitations of a request, or the usual ones of a scene."""
+    if given is not None:
+        return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(listed("inputs", given))]
+    usual: list[Excitation] = [BaseMotion(), PointForce()]
+    return usual if scene.physics.planes == 1 else [*usual, BaseMotion(ACROSS), PointForce(None, ACROSS)]
+
+
+def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
+    """Load of an excitation that is none of the rotating ones, which a model of constant matrices has not."""
+    drives = model.drives(excitation)
+    bound = "as the beam turns, it acts at its frequency plus and minus the speed, not by a constant matrix"
+    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'
+    refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
+    return drives[0]
+
+
+def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
+    """What each coordinate is: a mode, a nodal value, or the coefficient of a function."""
+    for name, place in model.equations.blocks.items():
+        size = place.stop - place.start
+        if model.modes is not None:
+            yield from (f"{name}, mode {k} [kg^1/2 m]" for k in range(1, size + 1))
+        else:
+            yield from _name_functions(model, name, size)
+
+
+def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator[str]:
+    """What each coordinate of a field is: a deflection or a slope at a node, or else a coefficient."""
+    deflection = model.equations.deflections.get(field_name)
+    nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
+    nodal: list[np.ndarray] = []
+    if nodes is not None and deflection is not None:
+        nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)]
+    for k in range(size):
+        at = [(order, int(values[k].argmax())) for order, values in enumerate(nodal) if _is_nodal(values[k])]
+        if nodes is None or not at:
+            yield f"{field_name}, coefficient of function {k + 1} [m]"
+            continue
+        (order, node), what = at[0], ("deflection", "slope by x/L")
+        yield f"{field_name}, {what[order]} at {nodes[node] * model.scene.beam.length:.6g} m [m]"
+
+
+def _is_nodal(values: np.ndarray) -> bool:
+    """Whether a function is 1 at one node and 0 at the others."""
+    return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1

@@ -1,0 +1,263 @@
+"""Response to a random input at a steady speed: power spectral density and root mean square."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.announced import announced
+from beamdyn.common.checks import InvalidValue, ascending, kind, positive, refuse
+from beamdyn.common.results import Provenance, Result
+from beamdyn.linear_models.choice import check_linear, with_forces
+from beamdyn.linear_models.convergence import refine
+from beamdyn.linear_models.excitations import BaseMotion, Excitation, as_excitation
+from beamdyn.linear_models.mean_square import PartialFractions, partial_fractions
+from beamdyn.linear_models.model_at_speed import ModelAtSpeed
+from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, as_observation
+from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
+from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear_models.transfer import check_stable
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TURN = 2 * np.pi
+_POINTS = 500  # frequencies of the result, if none are given
+_DECADES = 3  # below the highest frequency, at which they begin
+_DIRECT = 0  # functions up to which all are kept: their poles are too far apart, and lose digits
+_SEVERAL = 3.0  # standard deviations that a deflection rarely passes
+
+
+@dataclass(frozen=True)
+class RandomResponse(Result):
+    """Response to a random input at a steady speed.
+
+    Where the excitation has a fixed direction, the statistics vary within a turn, and these are their means
+    over a turn: the density of the input appears shifted by the speed, upwards and downwards.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    rms : float
+        Root mean square of the response, all frequencies included [unit of the output].
+    rms_error : float
+        Estimated error of `rms`, by the modes left out and the discretization [same unit].
+    frequencies : ndarray, shape (F,)
+        Frequencies of the response [Hz].
+    psd : ndarray, shape (F,)
+        One-sided power spectral density of the response at these [its unit squared per Hz].
+    psd_error : ndarray, shape (F,)
+        Estimated error of `psd`.
+    input_rms : float
+        Root mean square of the input [its unit]; inf for white noise.
+    parametric : ParametricTerm
+        Size of the term left out, by which accelerations along the beam vary its stiffness.
+    input, output : str
+        The excitation and what is observed, with units.
+    unit : str
+        Unit of the output.
+    warnings : tuple of str
+        Limitations of the result.
+    provenance : Provenance
+        How the response was computed.
+    """
+
+    speed: float
+    rms: float
+    rms_error: float
+    frequencies: np.ndarray
+    psd: np.ndarray
+    psd_error: np.ndarray
+    input_rms: float
+    parametric: ParametricTerm
+    input: str
+    output: str
+    unit: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the density over frequency, both logarithmic."""
+        from beamdyn.output.plots_over_frequency import plot_frequency_response
+
+        label = f"{self.output.partition(' [')[0]}, PSD [({self.unit or '1'})$^2$/Hz]"
+        return plot_frequency_response(self.frequencies, self.psd[:, None], label, [""], ax)
+
+
+@announced
+def random_response(
+    scene: Scene,
+    speed: float,
+    psd: PowerSpectrum | RoadRoughness | float,
+    input: Excitation | str | None = None,
+    output: Observation | str = "tip",
+    frequencies: Sequence[float] | np.ndarray | None = None,
+    modes: int | str = "auto",
+    tolerance: float = 1e-9,
+    discretization: DiscretizationChoice = "ritz",
+) -> RandomResponse:
+    """Compute the response to a stationary random input at a steady speed.
+
+    The mean square is the integral of the density in closed form about each resonance: see
+    `beamdyn.linear_models.mean_square`.  The parametric term is left out, and `parametric` states its size.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, damped.  Of its motion only the rolling radius is used, for a road.
+    speed : float
+        Speed [rad/s].
+    psd : PowerSpectrum, RoadRoughness or float
+        One-sided density of the input; a road that the wheel of a `RollingWheel` follows; or the density of
+        white noise, at all frequencies [unit of the input squared per Hz].
+    input : BaseMotion, PointForce or str, optional
+        As for `frequency_response`; that of a road is "n2".
+    output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
+        As for `frequency_response`.
+    frequencies : sequence of float, optional
+        Frequencies at which the density of the response is computed [Hz], ascending from 0 or more.
+    modes : int or "auto"
+        Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
+        truncation error meets the tolerance.
+    tolerance : float
+        Truncation error aimed at by "auto", relative to the root mean square.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    RandomResponse
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, a density is negative, a mode is not damped, the speed is past
+        the critical speed, or a road is given without a wheel, or with white noise an acceleration or a
+        moment, whose mean square is not finite.
+    """
+    start = perf_counter()
+    seen = as_observation("output", output)
+    scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
+    drive, spectrum = _excitation(scene, speed, psd, input)
+    if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
+        bound = "by white noise its mean square is not finite, or takes all modes"
+        raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
+    top, loaded = _highest(spectrum), with_forces(scene, [drive])
+    refined = refine(
+        loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
+        lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
+        _DIRECT,
+    )  # fmt: skip
+    model, rms = refined.model, float(refined.value[0])
+    check_stable(model)
+    f = _frequencies(frequencies, top + abs(speed) / _TURN, model)
+    of_psd = refine(
+        loaded, speed, 0.0, model.modes, tolerance, discretization,
+        lambda model: _density(_expand(model, drive, seen), spectrum, speed, f),
+        _DIRECT,
+    )  # fmt: skip
+    parametric = parametric_term(model, drive, spectrum)
+    return RandomResponse(
+        speed=speed,
+        rms=rms,
+        rms_error=float(refined.error[0]),
+        frequencies=f,
+        psd=of_psd.value,
+        psd_error=of_psd.error,
+        input_rms=spectrum.rms if isinstance(spectrum, PowerSpectrum) else math.inf,
+        parametric=parametric,
+        input=f"{drive.label} [{drive.unit}]",
+        output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
+        unit=seen.unit,
+        warnings=(*_warnings(scene, seen, rms, parametric),),
+        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        scene=scene,
+    )
+
+
+# The input ----------------------------------------------------------------------------------------
+
+
+def _excitation(
+    scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness | float, given: Excitation | str | None
+) -> tuple[Excitation, PowerSpectrum | float]:
+    """The excitation and its density; a road becomes the vertical acceleration of the wheel."""
+    if isinstance(psd, RoadRoughness):
+        if given not in (None, "n2", BaseMotion("n2")):
+            raise InvalidValue("input", given, "a road moves the wheel along n2", "leave the input out")
+        wheel = scene.motion
+        if not isinstance(wheel, RollingWheel):
+            bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
+            raise InvalidValue("scene.motion", wheel, bound, remedy)
+        refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
+        return BaseMotion("n2"), psd.acceleration(wheel.rolling_radius * speed)
+    excitation = as_excitation("input", "bending" if given is None else given)
+    if isinstance(psd, PowerSpectrum):
+        return excitation, psd
+    if not isinstance(psd, float | int):
+        kind("psd", psd, PowerSpectrum, "PowerSpectrum(frequencies, values), a RoadRoughness, or a number")
+    density = positive("psd", psd, "", "a power spectral density is not negative")
+    return excitation, density
+
+
+def _highest(spectrum: PowerSpectrum | float) -> float:
+    """Highest frequency of the input [Hz]; 0 for white noise."""
+    return spectrum.frequencies[-1] if isinstance(spectrum, PowerSpectrum) else 0.0
+
+
+def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: ModelAtSpeed) -> np.ndarray:
+    """Frequencies of the density of the response [Hz]: those given, or up to a highest, with resonances."""
+    if given is not None:
+        f = ascending("frequencies", given)
+        refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
+        return f
+    resonances = np.abs(np.imag(model.poles[np.isfinite(model.poles)])) / _TURN
+    top = top or 10 * float(resonances.min())
+    return np.union1d(np.geomspace(top / 10**_DECADES, top, _POINTS), resonances[resonances < top])
+
+
+# The response -------------------------------------------------------------------------------------
+
+
+def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:
+    return {h: partial_fractions(model, each, seen) for h, each in model.drives(drive).items()}
+
+
+def _mean_square(
+    transfers: dict[int, PartialFractions], spectrum: PowerSpectrum | float, speed: float
+) -> float:
+    """Mean square over time and a turn: the sum of those of the harmonics, which are apart in frequency."""
+    if isinstance(spectrum, PowerSpectrum):
+        return sum(H.mean_square(spectrum, h * speed / _TURN) for h, H in transfers.items())
+    return sum(H.mean_square_of_white(spectrum) for H in transfers.values())
+
+
+def _density(
+    transfers: dict[int, PartialFractions], spectrum: PowerSpectrum | float, speed: float, f: np.ndarray
+) -> np.ndarray:
+    """One-sided density of the response at f [Hz]: the input at f - h n, of either sign, gives that at f."""
+    total = np.zeros(len(f))
+    for h, H in transfers.items():
+        size = np.abs(H(2j * np.pi * f)) ** 2
+        there = np.abs(f - h * speed / _TURN)
+        total += size * (spectrum.at(there) if isinstance(spectrum, PowerSpectrum) else spectrum)
+    return total
+
+
+def _warnings(scene: Scene, seen: Observation, rms: float, parametric: ParametricTerm) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
+    yield from parametric.warnings()
+    if isinstance(seen, DeflectionAt) and not isinstance(seen, AccelerationAt):
+        yield from warn_of_deflection(np.array([_SEVERAL * rms]), scene.beam.length)

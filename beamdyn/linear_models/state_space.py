@@ -1,0 +1,95 @@
+"""The linear model at a steady speed as a state space, for scipy.signal and programs of control."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
+from beamdyn.linear_models.excitations import Excitation
+from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear_models.observations import Observation, as_observation
+from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from scipy.signal import StateSpace
+
+_MODES = 6  # by default
+_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
+
+
+def state_space(
+    scene: Scene,
+    speed: float,
+    inputs: Sequence[Excitation | str] | None = None,
+    outputs: Sequence[Observation | str] = ("tip",),
+    modes: int | None = _MODES,
+    discretization: DiscretizationChoice = "ritz",
+) -> StateSpace:
+    """Give the small motions at a steady speed as x' = A x + B u, y = C x + D u.
+
+    The states x are the coordinates of `matrices` with the same arguments, then their rates.  D holds what
+    the modes left out follow without delay, their residual flexibility, so that the response to a constant
+    input is that of the whole discretization: Craig and Kurdila, Fundamentals of Structural Dynamics (2006),
+    section 11.4.  The static deflection by the rotation itself is not in it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion and gravity are not used.
+    speed : float
+        Speed [rad/s].
+    inputs : sequence of BaseMotion, PointForce or str, optional
+        As for `matrices`.
+    outputs : sequence of DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
+        As for `frequency_response`.
+    modes : int or None
+        Number of modes at this speed of each set of coupled fields; None keeps all functions.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    scipy.signal.StateSpace
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, an input is periodic at this speed, or a kept coordinate has no
+        mass.
+    """
+    from scipy.signal import StateSpace  # here, because it is slow to import
+
+    scene, speed = check_linear(scene, speed, modes)
+    excitations = list_inputs(inputs, scene)
+    model = model_at_speed(with_forces(scene, excitations), speed, modes, discretization)
+    drives = [steady_drive(model, each) for each in excitations]
+    observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
+    M, n = _with_mass(model), model.equations.size
+    loads = np.column_stack([drive.load for drive in drives])
+    of_state, of_load = np.linalg.solve(M, -np.hstack([model.K, model.C])), np.linalg.solve(M, loads)
+    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), of_state])
+    B = np.vstack([np.zeros_like(of_load), of_load])
+    rows = [model.row(each) for each in observed]
+    C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
+    correction = [[_correction(model, each, drive) for drive in drives] for each in observed]
+    return StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
+
+
+def _correction(model: ModelAtSpeed, observation: Observation, drive: HarmonicDrive) -> float:
+    """What an output gains by the static deflection of what is left out, and by the base itself."""
+    return float(np.real(model.residual(observation, drive)[0]))
+
+
+def _with_mass(model: ModelAtSpeed) -> np.ndarray:
+    """The mass; refused if a coordinate has none, as bending and shear without rotary inertia."""
+    values = np.linalg.eigvalsh(model.M)
+    if values[0] < _MASSLESS * values[-1]:
+        bound = "some functions have no mass of their own, and no rates as states"
+        raise InvalidValue("modes", model.modes, bound, "give a number of modes")
+    return model.M

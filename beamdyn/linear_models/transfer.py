@@ -1,0 +1,80 @@
+"""Transfer functions of a linear model at a steady speed, and whether its free motion decays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.common.checks import InvalidValue
+from beamdyn.linear_models.excitations import Excitation
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear_models.observations import Observation, StrainAtRoot
+
+_GROWING = 1e-6  # growth rate over the size of a pole, beyond rounding
+_STILL = 1e-7  # size of a pole over the median of all, that is 0 within rounding
+_AT_ONCE = 2_000_000  # entries of the matrices that are solved at once
+
+
+def transfer(
+    model: ModelAtSpeed, excitation: Excitation, observation: Observation, frequencies: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Transfer function at frequencies of the excitation [Hz] (F,), for each harmonic of the rotation.
+
+    Returns
+    -------
+    harmonics : ndarray of int, shape (k,)
+        The harmonics h.
+    response : ndarray of complex, shape (F, k)
+        Response at the frequency f + h n, with n turns per second; inf where the equations are singular.
+    """
+    drives = model.drives(excitation)
+    each = [
+        respond(model, drive, observation, 2j * np.pi * frequencies + 1j * h * model.speed)
+        for h, drive in drives.items()
+    ]
+    return np.array([*drives]), np.column_stack(each)
+
+
+def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation, s: np.ndarray) -> np.ndarray:
+    """Transfer function of one drive at complex frequencies s [1/s] (F,): shape (F,)."""
+    row, extra = model.row(observation), model.residual(observation, drive)
+    size = model.equations.size
+    step = max(1, _AT_ONCE // size**2)
+    q = np.concatenate([_solve(model, drive.load, s[k : k + step]) for k in range(0, len(s), step)])
+    by_kept = q @ row.position + s * (q @ row.velocity) + s**2 * (q @ row.acceleration)
+    total = by_kept + extra[0] + s * extra[1] + s**2 * extra[2]
+    if isinstance(observation, StrainAtRoot):  # the moment of a material that damps is E I (k + beta k')
+        total = total / (1 + s * model.scene.damping.stiffness_factor)
+    return total
+
+
+def _solve(model: ModelAtSpeed, load: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Coordinates (F, n) per unit of the input; inf where the equations are singular."""
+    A = s[:, None, None] ** 2 * model.M + s[:, None, None] * model.C + model.K
+    try:
+        return np.linalg.solve(A, np.broadcast_to(load, (len(s), len(load)))[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        if len(s) == 1:
+            return np.full((1, len(load)), np.inf + 0j)
+        return np.concatenate([_solve(model, load, each[None]) for each in s])
+
+
+def check_stable(model: ModelAtSpeed) -> None:
+    """Refuse a speed at which free motion grows, or the beam turns freely about its root.
+
+    Raises
+    ------
+    InvalidValue
+        With the speed.
+    """
+    poles = model.poles[np.isfinite(model.poles)]
+    speed = model.speed
+    if np.abs(poles).min() < _STILL * np.median(np.abs(poles)):
+        bound, remedy = (
+            "the beam turns freely about its root, or is at its critical speed",
+            "change the speed",
+        )
+        raise InvalidValue("speed", speed, bound, remedy, "rad/s")
+    growth = np.real(poles)
+    if (growth > _GROWING * np.abs(poles)).any():
+        bound = f"free motion grows at {growth.max():.3g} 1/s: the speed is past the critical speed"
+        raise InvalidValue("speed", speed, bound, "lower the speed", "rad/s")

@@ -1,0 +1,163 @@
+"""Motions given by records: the acceleration of the carrier's centre, sampled evenly in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
+
+import numpy as np
+
+from beamdyn.common.checks import MOST, InvalidValue, one_of, real, real_array, refuse, set_fields
+from beamdyn.common.described import Described
+from beamdyn.scene.motion.base import Motion, MotionSample, check_times
+from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
+
+if TYPE_CHECKING:  # scipy.interpolate is slow to import
+    from scipy.interpolate import CubicSpline
+
+_GAP = 1.5  # of the usual interval, beyond which samples are missing
+_AXES = ("along_n1", "along_n2", "along_n3")
+
+BetweenSamples = Literal["linear", "cubic"]
+
+
+@dataclass(frozen=True)
+class SampledTranslation(Motion):
+    """A carrier whose centre has a recorded acceleration, as it turns.
+
+    An accelerometer that stands still shows gravity: subtract it from the record, and give it as that of the
+    scene if the beam is to feel it.
+
+    Parameters
+    ----------
+    times : sequence of float
+        Times [s], ascending from 0 at even intervals.
+    along_n1, along_n2, along_n3 : sequence of float
+        Accelerations at these times along the fixed directions n1, n2 and n3 [m/s2]; 0 where none are given.
+    rotation : float or Rotation
+        Constant speed [rad/s], or rotation of the carrier.
+    interpolation : "linear" or "cubic"
+        Straight lines between samples, or a cubic spline, for records of many samples a period.
+
+    Raises
+    ------
+    ValueError
+        If the times do not ascend from 0, samples are missing between two of them, a value is not finite, or
+        the numbers of times and accelerations differ.
+    """
+
+    times: Sequence[Annotated[float, Described("s", "t", "times of the record, from 0, evenly spaced")]]
+    along_n1: Sequence[Annotated[float, Described("m/s2", "a_1", "accelerations along n1")]] = ()
+    along_n2: Sequence[Annotated[float, Described("m/s2", "a_2", "accelerations along n2")]] = ()
+    along_n3: Sequence[Annotated[float, Described("m/s2", "a_3", "accelerations along n3")]] = ()
+    rotation: Annotated[float | Rotation, Described(key="rotation")] = 0.0
+    interpolation: Annotated[
+        BetweenSamples, Described(meaning="straight lines between samples, or a cubic spline")
+    ] = "linear"
+
+    def __post_init__(self) -> None:
+        one_of("interpolation", self.interpolation, get_args(BetweenSamples))
+        times = check_record_times("times", self.times)
+        set_fields(self, times=tuple(times.tolist()))
+        for name in _AXES:
+            set_fields(self, **{name: _check_samples(name, getattr(self, name), len(times))})
+        if not any(getattr(self, name) for name in _AXES):
+            bound, remedy = "no direction has an acceleration", "give one at least, such as along_n2"
+            raise InvalidValue(", ".join(_AXES), (), bound, remedy)
+        if not isinstance(self.rotation, Rotation):
+            remedy = "or a rotation, such as SpinUp(speed, duration)"
+            speed = real("rotation", self.rotation, "rad/s", remedy)
+            set_fields(self, rotation=SteadyRotation(speed))
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        given = (getattr(self, name) for name in ("times", *_AXES, "rotation", "interpolation"))
+        return type(self), tuple(given)  # the cached splines are not pickled
+
+    @property
+    def turning(self) -> Rotation:
+        """Rotation of the carrier."""
+        assert isinstance(self.rotation, Rotation)
+        return self.rotation
+
+    @property
+    def final_speed(self) -> float:
+        """Speed at the end of the motion [rad/s]."""
+        return self.turning.final_speed
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Inner times of the record, and those of the rotation [s]."""
+        return tuple(np.union1d(self.times[1:-1], self.turning.breakpoints).tolist())
+
+    @property
+    def steady_start(self) -> float:
+        """Time from which the speed is constant [s], inf if never."""
+        return self.turning.steady_start
+
+    @property
+    def end(self) -> float:
+        """Last time of the record, or that of the rotation if it is earlier [s]."""
+        return min(self.times[-1], self.turning.end)
+
+    def at(self, t: np.ndarray) -> MotionSample:
+        """Sample the motion at times t [s], of any shape."""
+        t = check_times(t, self.end)
+        sample = self.turning.at(t)
+        for axis, name in enumerate(_AXES):
+            if given := getattr(self, name):
+                between = self._splines[name](t) if self._splines else np.interp(t, self.times, given)
+                sample.carrier_acceleration[..., axis] = between
+        return sample
+
+    @cached_property
+    def _splines(self) -> dict[str, CubicSpline]:
+        """Splines by axis; none where lines are drawn between samples."""
+        if self.interpolation == "linear":
+            return {}
+        from scipy.interpolate import CubicSpline
+
+        return {name: CubicSpline(self.times, given) for name in _AXES if (given := getattr(self, name))}
+
+    def with_speed(self, speed: float) -> SampledTranslation:
+        """Copy the motion with another final speed [rad/s] and the same record."""
+        return replace(self, rotation=self.turning.with_speed(speed))
+
+    def steady_acceleration(
+        self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
+    ) -> np.ndarray:
+        """Raise a ValueError: a record has no steady state."""
+        raise ValueError("a SampledTranslation has no steady state; simulate it, or use RollingWheel")
+
+
+def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Times of a record as an array.
+
+    Raises
+    ------
+    InvalidValue
+        If there are fewer than two, they do not ascend from 0, or an interval is longer than the others.
+    """
+    times = real_array(name, given)
+    if len(times) < 2:
+        raise InvalidValue(name, given, "a record has at least two samples")
+    intervals = np.diff(times)
+    bound, remedy = "it follows {limit}", "sort the record, drop repeats"
+    refuse(intervals <= 0, name, times[1:], "s", bound, remedy, limit=times[:-1])
+    refuse(times[0] != 0, name, times[0], "s", "a motion begins at t = 0", f"subtract {times[0]:g} s")
+    usual = float(np.median(intervals))
+    bound = f"samples are missing since {{limit}}: other intervals are {usual:.6g} s"
+    remedy = "fill the gap, or cut the record there"
+    refuse(intervals > _GAP * usual, name, times[1:], "s", bound, remedy, limit=times[:-1])
+    return times
+
+
+def _check_samples(name: str, given: Sequence[float], count: int) -> tuple[float, ...]:
+    """Accelerations as numbers, as many as times; none if none are given."""
+    samples = real_array(name, given)
+    if len(samples) not in (0, count):
+        bound = f"{len(samples)} accelerations at {count} times"
+        raise InvalidValue(name, tuple(samples[:3].tolist()), bound, "give as many")
+    refuse(np.abs(samples) > MOST, name, samples, "m/s2", "give at most {limit} either way", limit=MOST)
+    return tuple(samples.tolist())

@@ -1,0 +1,144 @@
+"""What stands on the beam or holds it at a point: a body at the tip, point masses, point springs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, get_args
+
+from beamdyn.common.checks import not_negative, one_of, positive, real, refuse, set_fields
+from beamdyn.common.described import Described
+from beamdyn.scene.direction import ALONG_BENDING, Direction
+
+
+@dataclass(frozen=True)
+class TipMass:
+    """A rigid body at the tip.
+
+    Parameters
+    ----------
+    mass : float
+        Mass [kg].
+    offset : float
+        Distance of its centre of gravity beyond the end of the beam [m]; negative is inboard.
+    inertia : float
+        Moment of inertia about its centre of gravity, about the axis of bending [kg m2].
+    transverse_inertia : float, optional
+        Moment of inertia about the direction in which the beam bends [kg m2]; `inertia` if not given,
+        as for a body slender along the beam.
+    axial_inertia : float
+        Moment of inertia about the beam axis [kg m2].
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, the mass or an inertia is negative, or one moment of inertia exceeds the
+        sum of the other two.
+    """
+
+    mass: Annotated[float, Described("kg", "m_t", "mass", least=0)]
+    offset: Annotated[
+        float, Described("m", "e", "distance of its centre of gravity beyond the end of the beam")
+    ] = 0.0
+    inertia: Annotated[
+        float, Described("kg m2", "J_n", "moment of inertia about the axis of bending", least=0)
+    ] = 0.0
+    transverse_inertia: Annotated[
+        float | None,
+        Described("kg m2", "J_e", "moment of inertia about the direction of bending; else inertia", least=0),
+    ] = None
+    axial_inertia: Annotated[
+        float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)
+    ] = 0.0
+
+    def __post_init__(self) -> None:
+        mass, offset = not_negative("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
+        set_fields(self, mass=mass, offset=offset)
+        required = ("inertia", "axial_inertia")
+        given = () if self.transverse_inertia is None else ("transverse_inertia",)
+        for name in (*required, *given):
+            set_fields(self, **{name: not_negative(f"tip.{name}", getattr(self, name), "kg m2")})
+        self._check_inertias()
+
+    def _check_inertias(self) -> None:
+        """Refuse a moment of inertia beyond the sum of the other two, which no rigid body has."""
+        moments = {
+            "inertia": self.inertia,
+            "transverse_inertia": self.inertia_about_bending_direction,
+            "axial_inertia": self.axial_inertia,
+        }
+        largest = max(moments, key=lambda name: moments[name])
+        value = moments.pop(largest)
+        bound = f"in a rigid body it is at most the sum of the other two, {' + '.join(moments)} = {{limit}}"
+        total = sum(moments.values())
+        bad = value > total * (1 + 1e-12)
+        refuse(bad, f"tip.{largest}", value, "kg m2", bound, "check all three", limit=total)
+
+    @property
+    def inertia_about_bending_direction(self) -> float:
+        """Moment of inertia about the direction of bending [kg m2]: `transverse_inertia` or its default."""
+        return self.inertia if self.transverse_inertia is None else self.transverse_inertia
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass at a point of the beam, on its axis: without moments of inertia of its own.
+
+    Parameters
+    ----------
+    position : float
+        Distance from the root along the beam [m], above 0 and at most the length: one at the tip is a
+        `TipMass` without offset and inertia.
+    mass : float
+        Mass [kg].
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, the position is not positive, or the mass is negative.
+    """
+
+    position: Annotated[
+        float, Described("m", "x_k", "distance from the root along the beam, at most its length", above=0)
+    ]
+    mass: Annotated[float, Described("kg", "m_k", "mass", least=0)]
+
+    def __post_init__(self) -> None:
+        remedy = "it is the distance from the root, where a mass would not move"
+        position = positive("point_mass.position", self.position, "m", remedy)
+        set_fields(self, position=position, mass=not_negative("point_mass.mass", self.mass, "kg"))
+
+
+@dataclass(frozen=True)
+class PointSpring:
+    """A spring that holds a point of the beam to the carrier, with which it turns.
+
+    Parameters
+    ----------
+    position : float
+        Distance from the root along the beam [m], above 0 and at most the length.
+    stiffness : float
+        Force per deflection [N/m], up to 1e9 times EI/L^3 of the beam.
+    direction : {"bending", "across"}
+        Direction of the bending angle, or across it, where a second plane is modelled.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, the position is not positive, the stiffness is negative, or the direction
+        is unknown.
+    """
+
+    position: Annotated[
+        float, Described("m", "x_k", "distance from the root along the beam, at most its length", above=0)
+    ]
+    stiffness: Annotated[float, Described("N/m", "k_k", "force per deflection", least=0)]
+    direction: Annotated[Direction, Described(meaning="direction of the deflection that it resists")] = (
+        ALONG_BENDING
+    )
+
+    def __post_init__(self) -> None:
+        one_of("point_spring.direction", self.direction, get_args(Direction))
+        remedy = "it is the distance from the root, which is held anyway"
+        position = positive("point_spring.position", self.position, "m", remedy)
+        stiffness = not_negative("point_spring.stiffness", self.stiffness, "N/m")
+        set_fields(self, position=position, stiffness=stiffness)

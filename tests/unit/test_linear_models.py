@@ -1,0 +1,237 @@
+"""Matrices and responses at one speed: what they mean, what is refused, and their commands."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import BAD_INPUT, DONE, main
+from beamdyn.cli.linear_models import parse_frequencies, parse_input, parse_output
+
+BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+SCENE = bd.Scene(BEAM, bd.Mount(0.2, np.pi), damping_ratio=0.01)
+TABLE = bd.PowerSpectrum([5.0, 50.0], [1.0, 2.0])
+FILE = "examples/rough_road.toml"
+
+
+def test_matrices_are_those_of_the_modes():
+    modes = bd.natural_modes(SCENE, 50.0, 3)
+    M = bd.matrices(SCENE, 50.0, 3)
+    omega = np.sqrt(np.linalg.eigvalsh(M.stiffness))
+    np.testing.assert_allclose(omega, np.abs(modes.eigenvalue), rtol=1e-5)  # damping ratio 1 %: 5e-5 of omega
+    np.testing.assert_allclose(M.mass, np.eye(3), atol=1e-12)
+    assert not M.gyroscopic.any() and (np.diag(M.damping) > 0).all()
+
+
+def test_nodal_coordinates_are_deflections_and_slopes_where_they_say():
+    M = bd.matrices(SCENE, 0.0, discretization=bd.Fem(4))
+    assert len(M.coordinates) == len(M.rows) == len(M.mass) == 8
+    assert M.coordinates[-2].startswith("bending, deflection at 0.05 m")
+    tip = M.deflection([0.05])[0]
+    np.testing.assert_allclose(tip, np.eye(8)[-2], atol=1e-12)
+    assert "slope by x/L" in M.coordinates[-1]
+
+
+def test_stiffness_by_axial_acceleration_is_what_gravity_adds():
+    # The hub radius r is a steady acceleration -omega^2 r along an outward beam, whose tension stiffens it.
+    with_hub, without = (
+        bd.matrices(replace(SCENE, mount=bd.Mount(r, np.pi)), 50.0, discretization=bd.Ritz(6))
+        for r in (0.2, 0)
+    )
+    added = 50.0**2 * 0.2 * with_hub.stiffness_by_axial_acceleration
+    difference = with_hub.stiffness - without.stiffness
+    np.testing.assert_allclose(difference, added, atol=1e-9 * np.abs(added).max())
+
+
+def test_gyroscopic_matrix_of_a_blade_with_precone_is_skew():
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.001, 200e9, 7850.0)
+    scene = bd.Scene(beam, bd.Mount(0.2, np.pi, precone=0.3), physics=bd.Physics(planes=2))
+    G = bd.matrices(scene, 50.0, 2).gyroscopic
+    assert np.abs(G).max() > 1
+    np.testing.assert_allclose(G, -G.T, atol=1e-12 * np.abs(G).max())
+
+
+def test_results_are_saved_and_loaded(tmp_path):
+    response = bd.frequency_response(SCENE, 5.0, [1.0, 10.0], modes=2)
+    random = bd.random_response(SCENE, 5.0, TABLE, modes=2)
+    for k, result in enumerate((bd.matrices(SCENE, 5.0, 2), response, random)):
+        result.save(tmp_path / f"{k}.json")
+        again = bd.load(tmp_path / f"{k}.json")
+        assert again.to_dict() == result.to_dict()
+    assert random.plot().get_xlabel() == response.plot().get_xlabel() == "frequency [Hz]"
+
+
+BEYOND, TWO = bd.PointForce(0.06), replace(SCENE, physics=bd.Physics(planes=2))
+REFUSED = {
+    "point outside the beam": (lambda: bd.frequency_response(SCENE, 5.0, [1.0], BEYOND), "position = 0.06 m"),
+    "output outside": (lambda: bd.state_space(SCENE, 5.0, outputs=[bd.DeflectionAt(1.0)]), "position = 1 m"),
+    "deflection outside": (lambda: bd.matrices(SCENE, 5.0, 2).deflection([0.06]), "x = 0.06 m"),
+    "negative density": (lambda: bd.PowerSpectrum([1, 2], [1, -1]), "psd.values = -1"),
+    "density of 0": (lambda: bd.PowerSpectrum([1, 2], [1, 0]), "psd.values = 0"),
+    "frequency of 0": (lambda: bd.PowerSpectrum([0, 2], [1, 1]), "psd.frequencies = 0"),
+    "negative white noise": (lambda: bd.random_response(SCENE, 5.0, -1.0), "psd = -1"),
+    "strain by white noise": (lambda: bd.random_response(SCENE, 5.0, 1.0, output="root strain"), "output"),
+    "no damping": (
+        lambda: bd.random_response(SCENE.undamped, 5.0, TABLE),
+        "damping_ratio = 0: a mode is not damped",
+    ),
+    "a road without a wheel": (lambda: bd.random_response(SCENE, 5.0, bd.RoadRoughness("C")), "scene.motion"),
+    "unknown class": (lambda: bd.RoadRoughness("Z"), "road.roughness = 'Z'"),
+    "negative frequency": (lambda: bd.frequency_response(SCENE, 5.0, [-1.0]), "frequencies = -1 Hz"),
+    "rotating input": (lambda: bd.state_space(SCENE, 5.0, ["n2"]), "speed = 5 rad/s"),
+    "rigid direction": (lambda: bd.frequency_response(SCENE, 5.0, [1.0], "tip force across"), "input"),
+    "along the beam": (lambda: bd.matrices(SCENE, 0.0, inputs=["n1"]), "input"),
+    "no outer fibre": (
+        lambda: bd.state_space(bd.Scene(bd.Beam.from_stiffness(1, 1, 1)), 0.0, outputs=["root strain"]),
+        "output",
+    ),
+    "past the critical speed": (
+        lambda: bd.frequency_response(bd.Scene(BEAM, bd.Mount(0.2), damping_ratio=0.1), 1e3, [1.0]),
+        "speed = 1000 rad/s",
+    ),
+    "a free hinge": (
+        lambda: bd.frequency_response(bd.Scene(BEAM, bd.Mount(root_stiffness=0.0)), 0.0, [1.0]),
+        "speed = 0 rad/s",
+    ),
+    "large deflection": (
+        lambda: bd.matrices(replace(SCENE, physics=bd.Physics(large_deflection=True)), 5.0),
+        "physics.large_deflection",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refused_by_name(case):
+    make, said = REFUSED[case]
+    with pytest.raises(ValueError) as refusal:
+        make()
+    assert str(refusal.value).startswith(said)
+
+
+def test_an_undamped_beam_is_warned_of():
+    found = bd.frequency_response(SCENE.undamped, 5.0, [1.0])
+    assert any("no damping" in said for said in found.warnings)
+
+
+# Records ------------------------------------------------------------------------------------------
+
+
+def test_a_record_with_a_gap_is_refused():
+    with pytest.raises(ValueError, match="times = 5 s: samples are missing since 2 s"):
+        bd.SampledTranslation([0, 1, 2, 5, 6], along_n2=[0.0] * 5)
+
+
+def test_a_record_is_interpolated_and_turns():
+    motion = bd.SampledTranslation([0.0, 1.0, 2.0], along_n3=[0.0, 2.0, 0.0], rotation=3.0)
+    sample = motion.at(np.array([0.5, 1.5]))
+    np.testing.assert_allclose(sample.carrier_acceleration[:, 2], [1.0, 1.0])
+    np.testing.assert_allclose(sample.angle, [1.5, 4.5])
+    assert motion.with_speed(4.0).final_speed == 4.0 and motion.end == 2.0
+
+
+RECORDED = """
+[beam]
+length = "50 mm"
+width = "10 mm"
+thickness = "0.2 mm"
+youngs_modulus = "200 GPa"
+density = "7850 kg/m3"
+[mount]
+radius = "0.2 m"
+[motion]
+"""
+TRANSLATION = RECORDED + 'kind = "sampled_translation"\nfile = "r.csv"\nrotation = { speed = "30 rpm" }\n'
+ROTATION = RECORDED + 'kind = "sampled"\nfile = "r.csv"\n'
+
+
+def scene_with(tmp_path, text, record):
+    (tmp_path / "s.toml").write_text(text)
+    (tmp_path / "r.csv").write_text(record)
+    return bd.load_scene(tmp_path / "s.toml")
+
+
+def test_translation_and_rotation_from_csv(tmp_path):
+    moved = scene_with(tmp_path, TRANSLATION, "t [ms], n2 [mm/s2]\n0, 100\n10, -300\n20, 0\n").motion
+    assert moved.times == (0.0, 0.01, 0.02) and moved.along_n2 == (0.1, -0.3, 0.0)
+    assert moved.final_speed == pytest.approx(np.pi, rel=1e-15)
+    turned = scene_with(tmp_path, ROTATION, "time [s]; speed [rpm]\n0; 0\n1; 60\n").motion
+    assert isinstance(turned, bd.SampledRotation)
+    assert turned.speeds == pytest.approx((0.0, 2 * np.pi), rel=1e-15)
+
+
+BAD_RECORDS = {
+    "no unit": ("t [s], n2\n0,1\n1,2\n", "line 1: expected a unit like [m/s2] for n2, found none"),
+    "another unit": ("t [s], n2 [Hz]\n0,1\n1,2\n", "line 1: expected a unit like [m/s2] for n2, found [Hz]"),
+    "missing cell": ("t [s], n2 [m/s2]\n0,1\n1,\n2,3\n", "line 3: expected a number for n2 [m/s2], found ''"),
+    "gap": ("t [s], n2 [m/s2]\n0,1\n1,1\n2,1\n5,1\n", "line 5: t = 5 s: samples are missing since 2 s"),
+    "late": ("t [s], n2 [m/s2]\n1,1\n2,1\n", "line 2: t = 1 s: a motion begins at t = 0"),
+    "unknown": ("t [s], x [m]\n0,1\n1,1\n", "line 1: unknown column 'x'"),
+    "backwards": ("t [s], n2 [m/s2]\n0,1\n2,1\n1,1\n", "line 4: t = 1 s: it follows 2 s"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_RECORDS)
+def test_a_bad_record_is_named_by_its_line(tmp_path, case):
+    record, said = BAD_RECORDS[case]
+    with pytest.raises(bd.ConfigError) as refusal:
+        scene_with(tmp_path, TRANSLATION, record)
+    assert said in str(refusal.value)
+
+
+def test_a_motion_without_lists_names_no_file(tmp_path):
+    with pytest.raises(bd.ConfigError, match="this kind of motion has no record"):
+        scene_with(tmp_path, RECORDED + 'kind = "steady"\nfile = "r.csv"\n', "t [s]\n0\n")
+
+
+# Commands -----------------------------------------------------------------------------------------
+
+
+def test_options():
+    np.testing.assert_allclose(parse_frequencies("1:100:3 Hz"), [1, 10, 100])
+    np.testing.assert_allclose(parse_frequencies("1, 2 kHz"), [1000, 2000])
+    assert parse_input("force@20 mm across") == bd.PointForce(0.02, "across")
+    assert parse_input("n2") == bd.BaseMotion("n2")
+    assert parse_output("acceleration@tip") == bd.AccelerationAt()
+    assert parse_output("root strain") == bd.StrainAtRoot()
+    for wrong in ("", "5", "10:1:5 Hz", "1:10 Hz", "1,2 m"):
+        with pytest.raises(ValueError, match="--frequencies"):
+            parse_frequencies(wrong)
+
+
+def test_the_strain_on_a_rough_road_by_a_command(tmp_path, capsys):
+    paths = {name: tmp_path / f"out.{name}" for name in ("json", "csv")} | {"plot": tmp_path / "out.png"}
+    files = [word for name, path in paths.items() for word in (f"--{name}", str(path))]
+    arguments = ["random", FILE, "--road", "C", "--velocity", "90 km/h", "--output", "root strain"]
+    assert main([*arguments, *files]) == DONE
+    assert "root mean square" in capsys.readouterr().out
+    scene = bd.load_scene(FILE)
+    speed = 25 / scene.motion.rolling_radius
+    expected = bd.random_response(scene, speed, bd.RoadRoughness("C"), output="root strain").rms
+    assert json.loads(paths["json"].read_text())["rms"] == expected
+    assert paths["csv"].read_text().splitlines()[0] == "frequency_Hz,psd,psd_error"
+    assert paths["plot"].stat().st_size > 10_000
+
+
+def test_the_commands_response_and_matrices(tmp_path, capsys):
+    path = tmp_path / "r.csv"
+    assert (
+        main(["response", FILE, "--frequencies", "1:1000:50 Hz", "--input", "n2", "--csv", str(path)]) == DONE
+    )
+    assert len(path.read_text().splitlines()) == 51
+    assert main(["matrices", FILE, "--modes", "2"]) == DONE
+    assert "bending, mode 2" in capsys.readouterr().out
+
+
+def test_bad_densities_are_refused_by_the_command(tmp_path, capsys):
+    path = tmp_path / "psd.csv"
+    for content, said in (
+        ("f [Hz], psd [m2/s4/Hz]\n5,1\n50,-2\n", "a power spectral density is not negative"),
+        ("f [Hz], psd\n5,1\n50,2\n", "expected a unit like [m2/s4/Hz] for psd, found none"),
+    ):
+        path.write_text(content)
+        assert main(["random", FILE, "--psd", str(path)]) == BAD_INPUT
+        assert said in capsys.readouterr().err
+    assert main(["random", FILE]) == BAD_INPUT
+    assert "--psd, --road, --roughness: give one of the three" in capsys.readouterr().err
