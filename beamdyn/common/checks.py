@@ -170,10 +170,16 @@ def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
 
 
 def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A number of zero or more, not so large that powers and products overflow."""
+    """A finite number of zero or more."""
     number = real(name, value, unit, remedy)
     refuse(number < 0, name, number, unit, "it must be 0 or more", remedy)
-    refuse(number > MOST, name, number, unit, "give at most {limit}", remedy, limit=MOST)
+    return number
+
+
+def amount(name: str, value: object, unit: str = "") -> float:
+    """A number of zero or more, not so large that powers and products overflow."""
+    number = not_negative(name, value, unit)
+    refuse(number > MOST, name, number, unit, "give at most {limit}", limit=MOST)
     return number
 
 

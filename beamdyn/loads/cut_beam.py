@@ -180,5 +180,5 @@ class CutSpaces:
 
     def shares_functions(self, other: CutSpaces) -> bool:
         """Whether the functions of the beam and the cuts are the same."""
-        same = np.array_equal(self.quadrature.stations, other.quadrature.stations)
+        same = np.array_equal(self.quadrature.points, other.quadrature.points)
         return same and self.spaces.shares_functions(other.spaces)

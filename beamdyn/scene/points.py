@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, get_args
 
-from beamdyn.common.checks import not_negative, one_of, positive, real, refuse, set_fields
+from beamdyn.common.checks import amount, one_of, positive, real, refuse, set_fields
 from beamdyn.common.described import Described
 from beamdyn.scene.direction import ALONG_BENDING, Direction
 
@@ -51,12 +51,12 @@ class TipMass:
     ] = 0.0
 
     def __post_init__(self) -> None:
-        mass, offset = not_negative("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
+        mass, offset = amount("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
         set_fields(self, mass=mass, offset=offset)
         required = ("inertia", "axial_inertia")
         given = () if self.transverse_inertia is None else ("transverse_inertia",)
         for name in (*required, *given):
-            set_fields(self, **{name: not_negative(f"tip.{name}", getattr(self, name), "kg m2")})
+            set_fields(self, **{name: amount(f"tip.{name}", getattr(self, name), "kg m2")})
         self._check_inertias()
 
     def _check_inertias(self) -> None:
@@ -105,7 +105,7 @@ class PointMass:
     def __post_init__(self) -> None:
         remedy = "it is the distance from the root, where a mass would not move"
         position = positive("point_mass.position", self.position, "m", remedy)
-        set_fields(self, position=position, mass=not_negative("point_mass.mass", self.mass, "kg"))
+        set_fields(self, position=position, mass=amount("point_mass.mass", self.mass, "kg"))
 
 
 @dataclass(frozen=True)
@@ -140,5 +140,5 @@ class PointSpring:
         one_of("point_spring.direction", self.direction, get_args(Direction))
         remedy = "it is the distance from the root, which is held anyway"
         position = positive("point_spring.position", self.position, "m", remedy)
-        stiffness = not_negative("point_spring.stiffness", self.stiffness, "N/m")
+        stiffness = amount("point_spring.stiffness", self.stiffness, "N/m")
         set_fields(self, position=position, stiffness=stiffness)
