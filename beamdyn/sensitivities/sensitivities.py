@@ -7,7 +7,6 @@ estimated as those of frequencies are, by the same derivatives of the coarser mo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -191,7 +190,7 @@ def crossing_sensitivities(
     start, names = perf_counter(), check_names(inputs)
     with unannounced():
         crossings = resonance_speeds(scene, top_speed, modes, order, discretization)
-    scene = replace(crossings.scene, damping_ratio=0.0)
+    scene = crossings.scene.undamped
     model = _resolved(scene, top_speed, modes + 1, discretization)
     numbers = numbers_of(scene, names)
     changes = changes_of(model, numbers)

@@ -360,7 +360,7 @@ class _Request:
     @cached_property
     def _reference(self) -> Scene:
         """The scene of the first design, without what matters only to its answer."""
-        return replace(scene_of(self.question.scene, self._first), motion=None, damping_ratio=0.0)
+        return replace(scene_of(self.question.scene, self._first).undamped, motion=None)
 
     @cached_property
     def _nodes(self) -> Nodes:
