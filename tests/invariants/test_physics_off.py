@@ -15,7 +15,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.modal import eigen, large
-from beamdyn.spectrum import buckling, critical
+from beamdyn.spectrum import buckling, setting_angles
 from benchmarks.cases.scenes import ROLLING
 
 STIFFNESS = bd.Table((0, 0.4, 1), (2e-3, 1.5e-3, 1e-3))
@@ -45,7 +45,7 @@ ANALYSES: dict[str, Callable[[bd.Scene], list[np.ndarray | float]]] = {
 FACTORIZATIONS: dict[ModuleType, tuple[str, ...]] = {  # by the module in which the name is looked up
     np.linalg: ("cholesky", "eigh", "eigvalsh", "solve", "eig"),
     scipy.linalg: ("eigh", "eig", "cho_factor"),
-    critical: ("eigh",),
+    setting_angles: ("eigh",),
     buckling: ("eigh",),
     large: ("cho_factor", "solve_lower", "solve_lower_transposed"),
     eigen: ("solve_lower", "solve_lower_transposed"),

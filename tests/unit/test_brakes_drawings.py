@@ -187,6 +187,7 @@ def test_a_sweep_has_a_panel_a_unit_or_a_panel_a_result() -> None:
         "results": ("A", "B", "mu"),
         "result_units": ("N", "N", ""),
         "found": (x, x, x),
+        "combine": "product",
     }
     figure = sweep_figure(SimpleNamespace(**one))
     assert [len(ax.lines) for ax in figure.axes] == [2, 1] and figure.axes[0].get_ylabel() == "A, B [N]"
