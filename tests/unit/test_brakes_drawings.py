@@ -192,7 +192,7 @@ def test_a_sweep_has_a_panel_a_unit_or_a_panel_a_result() -> None:
     figure = sweep_figure(SimpleNamespace(**one))
     assert [len(ax.lines) for ax in figure.axes] == [2, 1] and figure.axes[0].get_ylabel() == "A, B [N]"
     two = one | {"inputs": ("t.a", "t.b"), "units": ("m", "s"), "values": (x, second)}
-    two["found"] = tuple(np.ones((3, 2)) for _ in range(3))
+    two["found"] = tuple(np.ones((2, 3)) for _ in range(3))
     figure = sweep_figure(SimpleNamespace(**two))
     assert [len(ax.lines) for ax in figure.axes] == [3, 3, 3]
 
