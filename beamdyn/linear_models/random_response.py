@@ -92,7 +92,8 @@ class RandomResponse(Result):
         """Draw the density over frequency, both logarithmic."""
         from beamdyn.output.plots_over_frequency import plot_frequency_response
 
-        label = f"{self.output.partition(' [')[0]}, PSD [({self.unit or '1'})$^2$/Hz]"
+        unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
+        label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"
         return plot_frequency_response(self.frequencies, self.psd[:, None], label, [""], ax)
 
 
