@@ -191,7 +191,7 @@ def random(
         raise ValueError("--psd, --road, --roughness: give one of the three")
     drive, seen = None if input is None else parse_input(input), parse_output(output)
     if psd is not None:
-        spectrum = read_spectrum(psd, "N2/Hz" if (input or "").startswith("force@") else "m2/s4/Hz")
+        spectrum = read_spectrum(psd, "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz")
     else:
         spectrum = RoadRoughness(road or parse_positive("--roughness", roughness or "", "m3"))
     loaded = load_with(scene, physics)

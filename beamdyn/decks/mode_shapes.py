@@ -103,7 +103,7 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
     )
     angle = math.pi / 2 if plane == "flap" else 0.0
     mount = Mount(scene.mount.radius, scene.mount.setting_angle, angle)
-    return replace(scene, beam=beam, mount=mount, physics=Physics())
+    return replace(scene.undamped, beam=beam, mount=mount, physics=Physics())
 
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:

@@ -92,7 +92,8 @@ class RandomResponse(Result):
         """Draw the density over frequency, both logarithmic."""
         from beamdyn.output.plots_over_frequency import plot_frequency_response
 
-        label = f"{self.output.partition(' [')[0]}, PSD [({self.unit or '1'})$^2$/Hz]"
+        unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
+        label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"
         return plot_frequency_response(self.frequencies, self.psd[:, None], label, [""], ax)
 
 
@@ -161,10 +162,9 @@ def random_response(
         _DIRECT,
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
-    check_stable(model)
-    f = _frequencies(frequencies, top + abs(speed) / _TURN, model)
+    f = _frequencies(frequencies, top + abs(speed) / _TURN if top else 0.0, model)
     of_psd = refine(
-        loaded, speed, 0.0, model.modes, tolerance, discretization,
+        loaded, speed, 0.0, model.modes, tolerance, model.discretization,
         lambda model: _density(_expand(model, drive, seen), spectrum, speed, f),
         _DIRECT,
     )  # fmt: skip
@@ -206,9 +206,9 @@ def _excitation(
     excitation = as_excitation("input", "bending" if given is None else given)
     if isinstance(psd, PowerSpectrum):
         return excitation, psd
-    if not isinstance(psd, float | int):
+    if not hasattr(psd, "__float__"):
         kind("psd", psd, PowerSpectrum, "PowerSpectrum(frequencies, values), a RoadRoughness, or a number")
-    density = positive("psd", psd, "", "a power spectral density is not negative")
+    density = positive("psd", psd, "", "give the density of white noise")
     return excitation, density
 
 
@@ -218,13 +218,18 @@ def _highest(spectrum: PowerSpectrum | float) -> float:
 
 
 def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: ModelAtSpeed) -> np.ndarray:
-    """Frequencies of the density of the response [Hz]: those given, or up to a highest, with resonances."""
+    """Frequencies of the density of the response [Hz]: those given, or up to a highest, with resonances.
+
+    Without a highest one, of white noise, they end at ten times the lowest resonance.
+    """
     if given is not None:
         f = ascending("frequencies", given)
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
         return f
-    resonances = np.abs(np.imag(model.poles[np.isfinite(model.poles)])) / _TURN
-    top = top or 10 * float(resonances.min())
+    poles = model.poles[np.isfinite(model.poles)]
+    resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
+    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
+    top = top or 10 * float(lowest.min())
     return np.union1d(np.geomspace(top / 10**_DECADES, top, _POINTS), resonances[resonances < top])
 
 
@@ -232,6 +237,7 @@ def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: 
 
 
 def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:
+    check_stable(model)
     return {h: partial_fractions(model, each, seen) for h, each in model.drives(drive).items()}
 
 

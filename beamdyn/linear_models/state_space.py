@@ -12,7 +12,7 @@ from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forc
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
-from beamdyn.linear_models.observations import Observation, as_observation
+from beamdyn.linear_models.observations import Observation, StrainAtRoot, as_observation
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 
@@ -70,6 +70,7 @@ def state_space(
     model = model_at_speed(with_forces(scene, excitations), speed, modes, discretization)
     drives = [steady_drive(model, each) for each in excitations]
     observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
+    _refuse_delayed_strain(scene, observed)
     M, n = _with_mass(model), model.equations.size
     loads = np.column_stack([drive.load for drive in drives])
     of_state, of_load = np.linalg.solve(M, -np.hstack([model.K, model.C])), np.linalg.solve(M, loads)
@@ -79,6 +80,14 @@ def state_space(
     C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
     correction = [[_correction(model, each, drive) for drive in drives] for each in observed]
     return StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
+
+
+def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> None:
+    """Refuse the strain of a material that damps: it follows the moment with a delay, a further state."""
+    factor = scene.damping.stiffness_factor
+    if factor and any(isinstance(each, StrainAtRoot) for each in observed):
+        bound = "the strain of a material that damps is not a function of the moment alone"
+        raise InvalidValue("damping.stiffness_factor", factor, bound, "ask frequency_response for it", "s")
 
 
 def _correction(model: ModelAtSpeed, observation: Observation, drive: HarmonicDrive) -> float:

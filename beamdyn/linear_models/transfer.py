@@ -71,7 +71,7 @@ def check_stable(model: ModelAtSpeed) -> None:
     if np.abs(poles).min() < _STILL * np.median(np.abs(poles)):
         bound, remedy = (
             "the beam turns freely about its root, or is at its critical speed",
-            "change the speed",
+            "change the speed, or give root_stiffness",
         )
         raise InvalidValue("speed", speed, bound, remedy, "rad/s")
     growth = np.real(poles)

@@ -125,11 +125,11 @@ def count_cycles(
     """
     begin = perf_counter()
     kind("loads", loads, TransientLoads, "transient_loads makes one")
-    (chosen,) = loads.check_component(quantity, component)
     loads.check_known(quantity)
+    (chosen,) = loads.check_component(quantity, component)
     place = count("station", station, 0, len(loads.x) - 1)
-    extract_cycles = _load_counter()
     first, last = window_in(loads.run, start, end)
+    extract_cycles = _load_counter()
     index = loads.path.outputs.places[quantity].start + chosen
     values = loads.path.series_of(place, index, _times_of_samples(loads, first, last))
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).reshape(-1, 3)

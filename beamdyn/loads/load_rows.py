@@ -147,7 +147,7 @@ def span_rows(
     quadrature = CutQuadrature(stations, Cells(cells.ends, cells.points + weight_degree(beam) // 2 + 1))
     without = "" if scene.physics.stretch else "axial_stiffness"
     spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
-    stretched = Stretch().complete(replace(scene, damping_ratio=0.0))  # its equation has the axial force
+    stretched = Stretch().complete(scene.undamped)  # its equation has the axial force
     assembled = {f.name: f.assemble(stretched, spaces) for f in FIELDS if f.is_modelled(stretched)}
     parts = [*_displacements(assembled, equations.planes)]
     rows = _gather([_rows_of(assembled, equations, *part) for part in parts])

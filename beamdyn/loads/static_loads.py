@@ -20,6 +20,7 @@ from beamdyn.loads.stations import Positions, Stations, stations_at
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.equilibrium import NoEquilibrium
 from beamdyn.modal.model import Model
+from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
@@ -105,12 +106,13 @@ def static_loads(
     start = perf_counter()
     check_scene(scene)
     refuse_large_deflection(scene)
+    scene, of_plain = plain_physics(scene), tuple(warn_of_plain(scene))
     speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     theta = real("angle", angle, "rad")
     stations = stations_at(scene.modelled_beam, at)
     sections = sections_at(scene, stations, points, youngs_modulus)
-    model = choose_model(scene, discretization, speeds, _MODES)
+    model = choose_model(scene.undamped, discretization, speeds, _MODES)
     outputs = Outputs.of_sections(sections)
     values, tip = _solve(model, stations, outputs, speeds, theta)
     error = _error(values, _solve(model.coarser, stations, outputs, speeds, theta)[0])
@@ -118,7 +120,7 @@ def static_loads(
         **placed(scene, stations, sections),
         **outputs.split(values),
         **outputs.split(error, "_error"),
-        warnings=(*sections.notes, *warn_of_left_out(scene), *_warn_of_tip(tip, scene, speeds)),
+        warnings=(*of_plain, *sections.notes, *warn_of_left_out(scene), *_warn_of_tip(tip, scene, speeds)),
         provenance=Provenance(
             __version__,
             str(model.discretization),

@@ -1,1 +1,1 @@
-"""How frequencies, critical speeds and crossings change with the numbers of a scene."""
+"""How frequencies, critical speeds and resonance speeds change with the numbers of a scene."""

@@ -164,4 +164,6 @@ def _of_mount(scene: Scene) -> Iterator[SceneNumber]:
         elif name == "radius":
             yield SceneNumber("mount.radius", "m", value, _STEP * max(value, scene.beam.length), 0.0)
         elif math.isfinite(value) and (name == "root_stiffness" or scene.physics.planes == 2):
-            yield _relative(f"mount.{name}", found.unit, value)
+            beam = scene.beam
+            bending = mean(beam.bending_stiffness) / beam.length  # the scale of a soft spring, and of a hinge
+            yield SceneNumber(f"mount.{name}", found.unit, value, _STEP * max(value, bending), 0.0)

@@ -195,7 +195,7 @@ def crossing_sensitivities(
     numbers = numbers_of(scene, names)
     changes = changes_of(model, numbers)
     rates = [_crossing_derivatives(model, changes, crossing, modes) for crossing in crossings]
-    derivative, error = (np.array([r[i] for r in rates]).reshape(len(rates), -1).T for i in (0, 1))
+    derivative, error = (np.array([r[i] for r in rates]).reshape(len(rates), len(numbers)).T for i in (0, 1))
     return Sensitivities(
         answers=tuple(_name(crossing) for crossing in crossings),
         unit="rad/s",

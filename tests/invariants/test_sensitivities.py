@@ -167,6 +167,21 @@ def test_a_mode_that_diverges_has_none():
     assert any("does not vibrate" in each for each in found.warnings)
 
 
+def test_a_hinge_may_become_a_spring():
+    scene = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2, math.pi, root_stiffness=0.0))
+    found = bd.frequency_sensitivities(scene, 20.0, 3, ["mount.root_stiffness"])
+    size = 1e-3 * found.inputs[0].step
+    softest = bd.natural_modes(scene_of(scene, {"mount.root_stiffness": size}), 20.0, 3)
+    change = (softest.frequency - found.value) / size
+    np.testing.assert_allclose(found.derivative[0], change, rtol=1e-4)  # a difference to one side
+
+
+def test_no_crossing_has_no_derivative():
+    still = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2), bd.SteadyRotation(20.0))
+    found = bd.crossing_sensitivities(still, 60.0)
+    assert found.derivative.shape == (len(found.inputs), 0) == found.error.shape
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [

@@ -73,6 +73,19 @@ REFUSED = {
     "frequency of 0": (lambda: bd.PowerSpectrum([0, 2], [1, 1]), "psd.frequencies = 0"),
     "negative white noise": (lambda: bd.random_response(SCENE, 5.0, -1.0), "psd = -1"),
     "strain by white noise": (lambda: bd.random_response(SCENE, 5.0, 1.0, output="root strain"), "output"),
+    "delayed strain": (
+        lambda: bd.state_space(
+            replace(SCENE, damping_ratio=0.0, damping=bd.Damping(stiffness_factor=1e-4)),
+            5.0,
+            outputs=["root strain"],
+        ),
+        "damping.stiffness_factor = 0.0001 s",
+    ),
+    "white noise past the critical speed": (
+        lambda: bd.random_response(bd.Scene(BEAM, bd.Mount(0.2), damping_ratio=0.01), 200.0, 1.0),
+        "speed = 200 rad/s",
+    ),
+    "white noise of density 0": (lambda: bd.random_response(SCENE, 5.0, 0), "psd = 0"),
     "no damping": (
         lambda: bd.random_response(SCENE.undamped, 5.0, TABLE),
         "damping_ratio = 0: a mode is not damped",
@@ -108,6 +121,23 @@ def test_refused_by_name(case):
     with pytest.raises(ValueError) as refusal:
         make()
     assert str(refusal.value).startswith(said)
+
+
+def test_white_noise_is_answered_to_ten_times_the_first_resonance():
+    first = bd.natural_modes(SCENE, 5.0, 1).frequency[0]
+    found = bd.random_response(SCENE, 5.0, np.int64(1))
+    assert found.frequencies[-1] == pytest.approx(10 * first, rel=1e-3)  # damped: less by 5e-5
+    overdamped = bd.random_response(replace(SCENE, damping_ratio=0.999), 0.0, 1.0)
+    assert (overdamped.frequencies > 0).all()
+
+
+def test_a_density_of_a_tip_force_has_its_unit(run, tmp_path):
+    (tmp_path / "psd.csv").write_text("f [Hz], psd [N2/Hz]\n1, 1\n100, 1\n")
+    asked = ("random", FILE, "--psd", tmp_path / "psd.csv", "--speed", "5 rad/s", "--input")
+    code, _, err = run(*asked, "tip force")
+    assert code == 0, err
+    code, _, err = run(*asked, "bending")
+    assert code == 2 and "m2/s4/Hz" in err
 
 
 def test_an_undamped_beam_is_warned_of():

@@ -300,3 +300,11 @@ def test_what_a_beam_of_stiffnesses_lacks():
     assert np.isnan(bending.stress).all()
     known = bd.static_loads(bd.Scene(fibre, OUTWARD, gravity=G), 5.0, youngs_modulus=E)
     assert known.stress == pytest.approx(E * known.strain, rel=1e-14)
+
+
+def test_statics_do_not_ask_for_damping_and_say_what_auto_adds():
+    plain, damped = bd.Scene(BEAM, OUTWARD), bd.Scene(BEAM, OUTWARD, damping=bd.Damping(mass_factor=1.0))
+    both = [bd.static_loads(scene, [20.0]) for scene in (plain, damped)]
+    np.testing.assert_array_equal(both[0].force, both[1].force)
+    auto = bd.static_loads(replace(plain, physics="auto"), [20.0])
+    assert any("nothing is added" in said for said in auto.warnings)
