@@ -79,10 +79,12 @@ class Designs:
         Raises
         ------
         ValueError
-            If there are not as many indices as axes.
+            If there are not as many indices as axes, or one is out of range.
         """
         if len(place) != len(self.shape):
             raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
+        if any(not -length <= i < length for i, length in zip(place, self.shape, strict=True)):
+            raise ValueError(f"place {place}: it is outside {self.shape}, where indices begin at 0")
         places = place * len(self.inputs) if self.combine == "zip" else place
         return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
 

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, rows_of
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
@@ -18,8 +19,8 @@ from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
-from beamdyn.studies.answers import Caution, DesignAnswers, caution_where
-from beamdyn.studies.frequencies import cautions_of_error, coarser_stack
+from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
+from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, coarser_stack
 from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.refinement import Found, Refinement
 from beamdyn.studies.similar import SimilarDesigns
@@ -73,8 +74,15 @@ def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
 
 
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[Resonance, ...]:
-    """The resonances that may occur in the designs: those of the extremes, and of others spread evenly."""
-    rows = np.unique(np.linspace(0, designs.count - 1, min(designs.count, _PROBED)).round().astype(int))
+    """The resonances that may occur in the designs: those of the extremes, and of others spread evenly.
+
+    Raises
+    ------
+    InvalidValue
+        If nothing excites the beam in any of them.
+    """
+    spread = np.linspace(0, designs.count - 1, min(designs.count, _PROBED)).round().astype(int)
+    rows = np.unique([*spread, *_ends_of_columns(designs)])
     probed = rows_of(designs.columns(rows)) if designs.inputs else [{}]
     if designs.combine == "product" and len(designs.inputs) <= _MOST_EXTREMES:
         probed += [*designs.extremes()]
@@ -82,8 +90,19 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
     for design in probed:
         for kind, line in lines_of(scene_of(scene, design), top):
             found.setdefault((kind, round(line.multiple, 9)), (kind, line))
+    if not found:
+        bound = "nothing varies in time at steady speed in any design, so that none resonates"
+        remedy = "a RollingWheel with a road, or gravity, excites the beam"
+        raise InvalidValue("scene.motion", scene.motion, bound, remedy)
     each = (found[key] for key in sorted(found))
     return tuple(Resonance(kind, line, mode) for kind, line in each for mode in range(1, modes + 1))
+
+
+def _ends_of_columns(designs: Designs) -> list[int]:
+    """Rows of the smallest and the largest value of each input, where they are taken together."""
+    if designs.combine == "product":
+        return []
+    return [int(end(each.values)) for each in designs.inputs for end in (np.argmin, np.argmax)]
 
 
 @dataclass(frozen=True)
@@ -123,16 +142,16 @@ class SimilarCrossings(FieldsOnly):
             return self._solve_batch(rows, basis, refinement.target_of(basis), multiples)
 
         found, functions = refinement.solve(self.designs.count, len(multiples), solve)
+        found = found or [np.full((self.designs.count, len(multiples), self.modes), np.nan)] * 2
         places = [(int(np.searchsorted(multiples, r.multiple)), r.mode - 1) for r in self.resonances]
         speed, error = (np.stack([values[:, i, j] for i, j in places], axis=1)[:, None] for values in found)
-        resonates = np.isfinite(speed)
-        status = np.where(resonates, RESONATES, NO_RESONANCE)
-        excited = self._excited()[:, None]
-        status = np.where(excited, status, NO_LINE)
-        speed = np.where(resonates & excited, speed, np.nan)
-        error = np.where(resonates & excited, error, 0.0)
+        excited = np.broadcast_to(self._excited()[:, None], speed.shape)
+        states = [NO_LINE, REFUSED, RESONATES]
+        status = np.select([~excited, np.isnan(speed), np.isfinite(speed)], states, NO_RESONANCE)
+        error = np.select([status == REFUSED, status == RESONATES], [np.inf, error], 0.0)
+        speed = np.where(status == RESONATES, speed, np.nan)
         method = f"Ritz, at most {functions} functions, batched"
-        return DesignAnswers(speed, error, status, (*self._cautions(error, excited),), method)
+        return DesignAnswers(speed, error, status, (*self._cautions(error, status),), method)
 
     def _solve_batch(
         self, rows: np.ndarray, basis: Discretization, target: float, multiples: np.ndarray
@@ -169,9 +188,10 @@ class SimilarCrossings(FieldsOnly):
         }
         return np.array([resonance.key[:2] in there for resonance in self.resonances])
 
-    def _cautions(self, error: np.ndarray, excited: np.ndarray) -> Iterator[Caution]:
+    def _cautions(self, error: np.ndarray, status: np.ndarray) -> Iterator[Caution]:
+        yield from cautions_of_refused(status)
         yield from cautions_of_error(error, self.tolerance)
-        yield from caution_where(np.logical_not(excited).all(axis=2), "g", 0.0, " nothing excites the beam")
+        yield from caution_where((status == NO_LINE).all(axis=2), "g", 0.0, " nothing excites the beam")
 
 
 def _of_each(met: np.ndarray) -> np.ndarray:

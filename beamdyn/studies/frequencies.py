@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -134,11 +134,14 @@ class SimilarFrequencies(FieldsOnly):
             at = np.unravel_index(np.nanargmax(found.deflection), bent.shape)
             said = next(warn_of_static_deflection(found.deflection[at][None], 1.0, self.speeds[at][None]))
             yield from caution_where(bent, "c", found.deflection, f": {said}")
-        missing = (status == REFUSED).any(axis=2)
-        yield from caution_where(
-            missing, "d", 0.0, " there is no answer: rounding of the matrices leaves none"
-        )
+        yield from cautions_of_refused(status)
         yield from cautions_of_error(found.error, self.tolerance)
+
+
+def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
+    """A caution of designs whose answers (R, S, k) rounding leaves unsolved, if there are any."""
+    said = " there is no answer: rounding of the matrices leaves none"
+    return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
 
 
 def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:

@@ -148,7 +148,7 @@ def _amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> Spe
     found = steady_response(scene, ascending, tolerance=tolerance, discretization=question.discretization)
     with np.errstate(divide="ignore", invalid="ignore"):  # the errors of a response are relative to its bound
         error = (found.error + found.mode_error) * found.bound / found.amplitude
-    error = np.nan_to_num(error, nan=np.inf)
+    error = np.where(np.isnan(error), np.inf, error)
     columns = (values[order, None] for values in (found.amplitude, error, np.asarray(found.status)))
     return SpeedAnswer(*columns, warnings=found.warnings)
 
@@ -159,7 +159,7 @@ def _peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAns
     found = sweep(scene, ascending, question.window, **options)
     with np.errstate(divide="ignore", invalid="ignore"):
         error = (found.time_error + found.mode_error * found.largest) / found.peaks
-    error = np.nan_to_num(error, nan=np.inf)
+    error = np.where(np.isnan(error), np.inf, error)
     failed = [status for status in found.status if status != DONE]
     status = np.where(np.isin(found.status, failed), "failed", DONE)
     columns = (values[order, None] for values in (found.peaks, error, status))

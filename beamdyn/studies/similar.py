@@ -11,7 +11,9 @@ plane of bending they are linear in the mass of the body, its inertia J_n, (J_e 
 the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two planes they are
 linear in the moments of inertia, in the springs, and in the stiffness in the second direction over that in
 the first, and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the
-extremes of all designs.
+extremes of all designs.  Any mixture of the extremes must be a scene, but among moments of inertia one could
+exceed the sum of the other two.  So the body's second moments of mass are mixed instead: the moments of
+inertia are sums of two of them, and any that are not negative are those of a body.
 """
 
 from __future__ import annotations
@@ -66,7 +68,8 @@ SIMILAR = {
 # Quantities of which the matrices are polynomials, and their degrees in them; of the angle trigonometric.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
-    **{"transverse_inertia": 1, "axial_inertia": 1, "second_spring": 1, "second_stiffness": 1, "angle": 2},
+    **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
+    **{"second_spring": 1, "second_stiffness": 1, "angle": 2},
 }
 _ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # between which trigonometric functions are interpolated
 _MOST_NODES = 512  # scenes that are assembled: some seconds
@@ -180,28 +183,31 @@ class SimilarDesigns(FieldsOnly):
     def quantities(self) -> dict[str, np.ndarray]:
         """Values (N,) of the quantities of the reference beam, by name."""
         tip, springs = self.tip, self._springs
-        common = {
-            "mass": tip["mass"],
-            "offset": tip["offset"],
-            "inertia": tip["inertia"],
-            "axial": self.axial,
-        }
+        common = {"mass": tip["mass"], "offset": tip["offset"], "axial": self.axial}
         if np.isfinite(spring := springs["root_stiffness"]).all():
             common["spring"] = spring
         if self._planes == 1:
-            return common | {"tilt": self.tilt, "in_plane": self.in_plane}
+            return common | {"inertia": tip["inertia"], "tilt": self.tilt, "in_plane": self.in_plane}
         if np.isfinite(spring := springs["second_root_stiffness"]).all():
             common["second_spring"] = spring
-        common |= {name: tip[name] for name in ("transverse_inertia", "axial_inertia")}
+        common |= self._second_moments
         second = self._scale(3) / self._scale(1)
         return common | {"angle": self._of_mount("bending_angle"), "second_stiffness": second}
+
+    @property
+    def _second_moments(self) -> dict[str, np.ndarray]:
+        """Second moments of mass of the tip body along the beam, along bending and along its axis [kg m2]."""
+        n, e, one = (self.tip[name] for name in ("inertia", "transverse_inertia", "axial_inertia"))
+        twice = {"along_beam": n + e - one, "along_bending": n + one - e, "along_axis": e + one - n}
+        return {name: np.maximum(v / 2, 0.0) for name, v in twice.items()}  # below 0 by rounding only
 
     @property
     def tilt(self) -> np.ndarray:
         """(J_e - J_1)/J_n of the tip body, (N,)."""
         inertia = self.tip["inertia"]
         difference = self.tip["transverse_inertia"] - self.tip["axial_inertia"]
-        return np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia))
+        tilt = np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia))
+        return np.clip(tilt, -1.0, 1.0)  # beyond by rounding only
 
     @property
     def in_plane(self) -> np.ndarray:
@@ -316,11 +322,13 @@ def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
 
 def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
     """The reference beam with some values of the quantities."""
-    beam, inertia, axial = reference.beam, at["inertia"], at["axial"]
+    beam, axial = reference.beam, at["axial"]
     if "tilt" in at:
-        others, angle = ((1 + at["tilt"]) * inertia, inertia), math.acos(math.sqrt(at["in_plane"]))
+        inertia, angle = at["inertia"], math.acos(math.sqrt(at["in_plane"]))
+        inertias = inertia, (1 + at["tilt"]) * inertia, inertia
     else:
-        others, angle = (at["transverse_inertia"], at["axial_inertia"]), at["angle"]
+        a, b, c = (at[name] for name in ("along_beam", "along_bending", "along_axis"))
+        inertias, angle = (a + b, a + c, b + c), at["angle"]
         assert beam.second_bending_stiffness is not None
         second = beam.second_bending_stiffness.scaled(at["second_stiffness"])
         beam = replace(beam, second_bending_stiffness=second)
@@ -328,7 +336,7 @@ def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
     mount = Mount(
         abs(axial), 0.0 if axial >= 0 else math.pi, angle, **dict(zip(_SPRINGS, springs, strict=True))
     )
-    tip = TipMass(at["mass"], at["offset"], inertia, *others)
+    tip = TipMass(at["mass"], at["offset"], *inertias)
     return Scene(replace(beam, tip=tip), mount, physics=reference.physics)
 
 

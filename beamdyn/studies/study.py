@@ -289,7 +289,7 @@ class _Request:
             _check_scenes(self.question.scene, self.others)
 
     def resonances(self):
-        """The resonances that may occur."""
+        """The resonances that may occur; refused where nothing excites the beam."""
         question = self.question
         return list_resonances(question.scene, self.others, question.speed, question.modes)
 

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,20 @@ def springs(count=DESIGNS):
     return 10 ** np.random.default_rng(3).uniform(-5, 2, count)
 
 
+def bodies(count=DESIGNS):
+    """Moments of inertia of plates, bars and cubes: those of one with those of another are of no body."""
+    along, bending, across = 10 ** np.random.default_rng(5).uniform(-8, -6, (3, count))
+    moments = {"inertia": along + bending, "transverse_inertia": along + across}
+    return {f"beam.tip.{name}": v for name, v in (moments | {"axial_inertia": bending + across}).items()}
+
+
+def needles(count=DESIGNS):
+    """Moments of inertia whose difference, of rounding, is more than that of a body."""
+    inertia, axial = np.random.default_rng(0).uniform(1e-10, 1e-9, count), np.full(count, 1e-4)
+    moments = {"inertia": inertia, "transverse_inertia": inertia + axial, "axial_inertia": axial}
+    return {f"beam.tip.{name}": v for name, v in moments.items()}
+
+
 FREQUENCIES = {
     "damped": (bd.Scene(BEAM, bd.Mount(0.1)), draw(MOUNT | SPEED | {"model.damping_ratio": (0.0, 0.3)})),
     "strongly damped": (bd.Scene(BEAM, bd.Mount(0.1)), draw(SPEED | {"model.damping_ratio": (0.5, 0.95)})),
@@ -63,6 +78,15 @@ FREQUENCIES = {
         bd.Scene(BEAM, bd.Mount(0.1), physics=bd.Physics(planes=2)),
         draw(MOUNT | SPEED | {"beam.thickness": (1e-4, 4e-4), "beam.tip.mass": (0.0, 1e-3)}),
     ),
+    "two planes, bodies": (
+        bd.Scene(BEAM, bd.Mount(0.1), physics=bd.Physics(planes=2)),
+        draw({"speed": (0.0, 60.0), "mount.bending_angle": (-1.0, 1.0)}) | bodies(),
+    ),
+    "two planes, one body of several lengths": (
+        bd.Scene(replace(BEAM, tip=bd.TipMass(1e-3, 0.0, 3e-7, 2e-7, 4e-7)), physics=bd.Physics(planes=2)),
+        draw({"beam.length": (0.1, 0.2)}) | {"speed": np.zeros(DESIGNS)},
+    ),
+    "needles along the axis of bending": (bd.Scene(BEAM, bd.Mount(0.1)), draw(SPEED) | needles()),
     "two planes, twisted": (
         bd.Scene(
             bd.Beam.rectangular(0.05, 0.01, 2e-3, 200e9, 7850.0, twist=np.polynomial.Polynomial([0.0, 0.6])),

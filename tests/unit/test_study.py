@@ -3,6 +3,7 @@
 import csv
 import pickle
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from beamdyn.cli import main
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.modal.eigen import solve_diagonal
+from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.studies.inputs import NAMES, scene_of
 
@@ -236,8 +238,18 @@ def test_designs_are_rows_and_places():
     assert columns["a"].tolist() == [1, 2, 2] and columns["b"].tolist() == [5, 3, 4]
     assert designs.at(1, 0) == {"a": 2.0, "b": 3.0}
     assert [*Designs(inputs[:1], "zip").extremes()] == [{"a": 1.0}, {"a": 2.0}]
+    assert designs.at(-1, 2) == designs.at(1, -1) == {"a": 2.0, "b": 5.0}
     with pytest.raises(ValueError, match="give 2 indices"):
         designs.at(1)
+
+
+@pytest.mark.parametrize("place", [(2, 0), (0, 3), (-3, 0)])
+def test_a_place_outside_the_designs_is_refused(place):
+    inputs = [VariedInput("a", "", np.array([1.0, 2.0])), VariedInput("b", "m", np.array([3.0, 4.0, 5.0]))]
+    with pytest.raises(ValueError, match=r"outside \(2, 3\)"):
+        Designs(inputs).at(*place)
+    with pytest.raises(ValueError, match=r"outside \(2,\)"):
+        Designs(inputs[:1], "zip").at(2)
 
 
 ROAD = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
@@ -275,6 +287,68 @@ def test_where_there_is_no_gravity_there_is_no_line_of_it():
     assert (study.status[0] == "not excited").all() and np.isnan(study.value[0]).all()
     found = bd.resonance_speeds(study.scene_at(1), 135.0, 2)
     assert len(found) == np.isfinite(study.value[1]).sum() > 0
+
+
+def test_where_nothing_excites_any_design_there_is_no_study_of_crossings():
+    """As `resonance_speeds` says of one; whether designs are batched or solved one by one."""
+    for motion, discretization in ((bd.SteadyRotation(50.0), "ritz"), (None, "fem")):
+        scene = bd.Scene(SCENE.beam, SCENE.mount, motion)
+        (said,) = bd.resonance_speeds(scene, 50.0).warnings
+        assert said.startswith("nothing varies in time") and said.endswith("or gravity, excites the beam")
+        with pytest.raises(InvalidValue, match=r"nothing varies in time .* or gravity, excites the beam"):
+            bd.study(
+                scene, {"mount.radius": [0.1, 0.2]}, "crossings", speed=50.0, discretization=discretization
+            )
+
+
+def test_the_line_of_one_design_among_many_is_found():
+    """Of designs one by one, of which not all are looked at."""
+    gravity = np.where(np.arange(60) == 30, 9.81, 0.0)
+    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.SteadyRotation(50.0))
+    study = bd.study(scene, {"model.gravity": gravity}, "crossings", speed=135.0, modes=2, combine="zip")
+    assert np.array_equal((study.status != "not excited").any(axis=1), gravity > 0)
+
+
+@pytest.fixture
+def unsolvable_thin(monkeypatch):
+    """Designs of half the thickness, and top speeds of 70 rad/s, are left unsolved, as by rounding."""
+
+    def limited(stack, coarse, multiples, count, top, *rest):
+        if top.max() > 60.0:
+            raise np.linalg.LinAlgError("not positive definite")
+        return speeds_of_meeting(stack, coarse, multiples, count, top, *rest)
+
+    monkeypatch.setattr("beamdyn.studies.crossings.speeds_of_meeting", limited)
+
+
+def test_crossings_that_rounding_leaves_unsolved_are_refused(unsolvable_thin):
+    study = bd.study(rolling(), {"beam.thickness": [2e-4, 1e-4, 3e-4]}, "crossings", speed=50.0, modes=2)
+    assert (study.status[1] == "refused").all() and np.isnan(study.value[1]).all()
+    assert np.isinf(study.error[1]).all() and np.isfinite(study.error[[0, 2]]).all()
+    assert not (study.status[[0, 2]] == "refused").any()
+    assert any(said.startswith("at 1 of 3 designs there is no answer") for said in study.warnings)
+
+
+def test_crossings_of_which_rounding_leaves_all_unsolved(unsolvable_thin):
+    with pytest.raises(ValueError, match=r"none of 2 designs has an answer; at 2 of 2 .* rounding"):
+        bd.study(rolling(), {"mount.radius": [0.1, 0.2]}, "crossings", speed=70.0)
+
+
+def test_an_unresolved_response_has_an_infinite_error(monkeypatch):
+    """Not the largest number that there is."""
+    sure = SimpleNamespace(
+        amplitude=np.array([1e-3, 2e-3]), bound=np.array([1e-3, 2e-3]), error=np.zeros(2),
+        mode_error=np.array([1e-6, np.inf]), status=("stable", "stable"), warnings=(),
+    )  # fmt: skip
+    monkeypatch.setattr("beamdyn.studies.one_by_one.steady_response", lambda *_, **__: sure)
+    amplitudes = bd.study(rolling(), {"speed": [20.0, 30.0]}, "amplitude")
+    assert amplitudes.error.tolist() == [1e-6, np.inf]
+    of_sweep = SimpleNamespace(
+        peaks=np.array([1e-3, 2e-3]), largest=np.array([1e-3, 2e-3]), time_error=np.array([1e-9, 1e-9]),
+        mode_error=np.inf, status=("done", "done"), warnings=(),
+    )  # fmt: skip
+    monkeypatch.setattr("beamdyn.studies.one_by_one.sweep", lambda *_, **__: of_sweep)
+    assert np.isinf(bd.study(rolling(), {"speed": [20.0, 30.0]}, "peak", window=(0.5, 0.6)).error).all()
 
 
 def test_model_error_is_that_of_single_calls():
