@@ -203,7 +203,8 @@ def random(
     loaded = load_with(scene, physics)
     question = Question.on_file(
         "beamdyn random", scene, psd=psd, road=road, roughness=roughness, highest=highest, speed=speed,
-        velocity=velocity, input=input, output=output, modes=modes, discretization=discretization, physics=physics,
+        velocity=velocity, input=input, output=output, modes=modes, discretization=discretization,
+        physics=physics,
     )  # fmt: skip
     at = speed_or_final(loaded, speed) if velocity is None else _rolling_speed(loaded, speed, velocity)
     result = random_response(loaded, at, spectrum, drive, seen, modes=modes, discretization=discretization)
