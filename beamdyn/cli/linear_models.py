@@ -144,6 +144,7 @@ def random(
     psd: Path | None = None,
     road: RoadClass | None = None,
     roughness: Text | None = None,
+    highest: Text | None = None,
     speed: Text | None = None,
     velocity: Annotated[Text | None, Parameter(help='Of a rolling wheel, e.g. "90 km/h".')] = None,
     input: Text | None = None,
@@ -165,6 +166,8 @@ def random(
         Class of a random road by ISO 8608, from A, very good, to H.
     roughness
         The same by its density at 0.1 1/m, e.g. "64e-6 m3".
+    highest
+        Spatial frequency at which the road ends; default: 2.83 1/m, that of the standard.
     speed
         Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion.
     velocity
@@ -189,15 +192,19 @@ def random(
     outputs.check(scene, psd)
     if sum(given is not None for given in (psd, road, roughness)) != 1:
         raise ValueError("--psd, --road, --roughness: give one of the three")
+    if highest is not None and psd is not None:
+        raise ValueError(f'--highest = "{highest}": it is that of a road; leave it out with --psd')
     drive, seen = None if input is None else parse_input(input), parse_output(output)
     if psd is not None:
         spectrum = read_spectrum(psd, "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz")
     else:
-        spectrum = RoadRoughness(road or parse_positive("--roughness", roughness or "", "m3"))
+        limit = {} if highest is None else {"highest": parse_positive("--highest", highest, "1/m")}
+        spectrum = RoadRoughness(road or parse_positive("--roughness", roughness or "", "m3"), **limit)
     loaded = load_with(scene, physics)
     question = Question.on_file(
-        "beamdyn random", scene, psd=psd, road=road, roughness=roughness, speed=speed, velocity=velocity,
-        input=input, output=output, modes=modes, discretization=discretization, physics=physics,
+        "beamdyn random", scene, psd=psd, road=road, roughness=roughness, highest=highest, speed=speed,
+        velocity=velocity, input=input, output=output, modes=modes, discretization=discretization,
+        physics=physics,
     )  # fmt: skip
     at = speed_or_final(loaded, speed) if velocity is None else _rolling_speed(loaded, speed, velocity)
     result = random_response(loaded, at, spectrum, drive, seen, modes=modes, discretization=discretization)

@@ -116,7 +116,8 @@ def loads(
         else:
             loaded = load_with(scene, physics)
             result, tables = _in_equilibrium(loaded, speed, angle, where, discretization)
-    draw = on_axes(lambda ax: result.plot(ax, quantity))
+    span = {} if window is None else dict(zip(("start", "end"), parse_window(window), strict=True))
+    draw = on_axes(lambda ax: result.plot(ax, quantity, **span))
     deliver(result, outputs, question, tables, loads_csv(result), draw, _warnings(result), _refusal(result))
 
 

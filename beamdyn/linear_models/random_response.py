@@ -181,7 +181,7 @@ def random_response(
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
         unit=seen.unit,
-        warnings=(*_warnings(scene, seen, rms, parametric),),
+        warnings=(*_warnings(scene, seen, rms, parametric), *_warn_of_band(spectrum, drive, model)),
         provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
         scene=scene,
     )
@@ -260,6 +260,21 @@ def _density(
         there = np.abs(f - h * speed / _TURN)
         total += size * (spectrum.at(there) if isinstance(spectrum, PowerSpectrum) else spectrum)
     return total
+
+
+def _warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: ModelAtSpeed) -> Iterator[str]:
+    """Yield a warning if the input ends below the first resonance, or begins above it."""
+    resonances = np.abs(np.imag(model.poles[np.isfinite(model.poles)])) / _TURN
+    if not isinstance(spectrum, PowerSpectrum) or not resonances.any():
+        return
+    first = resonances[resonances > 0].min()
+    shift = max(map(abs, model.drives(drive))) * abs(model.speed) / _TURN
+    lowest, highest = max(spectrum.frequencies[0] - shift, 0.0), spectrum.frequencies[-1] + shift
+    end = f"the first resonance at {first:.4g} Hz: what the input has beyond is not in the answer"
+    if highest < first:
+        yield f"the input excites up to {highest:.4g} Hz, below {end}; give all of it"
+    if lowest > first:
+        yield f"the input excites from {lowest:.4g} Hz on, above {end}; give all of it"
 
 
 def _warnings(scene: Scene, seen: Observation, rms: float, parametric: ParametricTerm) -> Iterator[str]:

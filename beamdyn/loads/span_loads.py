@@ -187,11 +187,14 @@ class SpanLoads(Result):
         """Draw a quantity along the span: of few cases, else the range in which it lies."""
         from beamdyn.output.plots_along_span import plot_along_span
 
-        one_of("quantity", quantity, QUANTITIES)
-        unit = UNITS[quantity]
-        label = f"{quantity} [{unit}]" if unit else quantity
-        labels = self.components(quantity)
-        return plot_along_span(self.x, self.values(quantity), labels, label, ax)
+        self.check_known(quantity)
+        values, labels = self.values(quantity), self.components(quantity)
+        return plot_along_span(self.x, values, labels, with_unit(quantity), ax)
+
+
+def with_unit(quantity: str) -> str:
+    """A quantity with its unit, for an axis."""
+    return f"{quantity} [{UNITS[quantity]}]" if UNITS[quantity] else quantity
 
 
 _REMEDIES = {

@@ -23,7 +23,13 @@ from beamdyn.modal.model import Model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
+from beamdyn.scene.validity import (
+    check_speeds,
+    warn_of_left_out,
+    warn_of_static_deflection,
+    warn_of_strain,
+)
+from beamdyn.spectrum.modes import static_load
 
 _MODES = 3  # of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
@@ -120,7 +126,13 @@ def static_loads(
         **placed(scene, stations, sections),
         **outputs.split(values),
         **outputs.split(error, "_error"),
-        warnings=(*of_plain, *sections.notes, *warn_of_left_out(scene), *_warn_of_tip(tip, scene, speeds)),
+        warnings=(
+            *of_plain,
+            *sections.notes,
+            *warn_of_left_out(scene),
+            *_warn_of_stretch(model, speeds),
+            *_warn_of_tip(tip, scene, speeds),
+        ),
         provenance=Provenance(
             __version__,
             str(model.discretization),
@@ -131,6 +143,12 @@ def static_loads(
         angle=theta,
         tip=tip,
     )
+
+
+def _warn_of_stretch(model: Model, speeds: np.ndarray) -> Iterator[str]:
+    """Yield a warning if the rotation stretches the beam by more than linear theory allows."""
+    _, strain = static_load(model, speeds)
+    yield from warn_of_strain(float(strain.max()))
 
 
 def _solve(

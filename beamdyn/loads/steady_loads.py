@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -15,11 +15,14 @@ from beamdyn.common.results import Provenance
 from beamdyn.loads.load_lines import LoadLines, lines_of_response
 from beamdyn.loads.mode_error import mode_error, through, with_neighbours
 from beamdyn.loads.section_points import QUANTITIES, Outputs, SectionPoints, sections_at
-from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
+from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection, with_unit
 from beamdyn.loads.stations import Positions, Stations, stations_at
 from beamdyn.scene.motion import Line
 from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.response import SteadyResponse
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _ROUNDING = 1e-12  # relative to the largest along the span
 
@@ -74,6 +77,15 @@ class SteadyLoads(SpanLoads):
         angle, wave = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([angle, wave]), axes=1)
         return np.real(np.tensordot(self.line_amplitude(quantity), np.exp(1j * phase), axes=1))
+
+    def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
+        """Draw the largest magnitude of a quantity over all speeds along the span."""
+        from beamdyn.output.plots_along_span import plot_along_span
+
+        self.check_known(quantity)
+        largest = np.nanmax(self.values(quantity), axis=0, keepdims=True)
+        label = f"largest {with_unit(quantity)}, of all speeds"
+        return plot_along_span(self.x, largest, self.components(quantity), label, ax)
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:

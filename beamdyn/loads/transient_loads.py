@@ -14,7 +14,14 @@ from beamdyn.common.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
-from beamdyn.loads.span_loads import UNITS, LargestLoad, SpanLoads, placed, refuse_large_deflection
+from beamdyn.loads.span_loads import (
+    UNITS,
+    LargestLoad,
+    SpanLoads,
+    placed,
+    refuse_large_deflection,
+    with_unit,
+)
 from beamdyn.loads.stations import Positions, stations_at
 from beamdyn.transient.simulate import Transient
 
@@ -103,6 +110,21 @@ class TransientLoads(SpanLoads):
         s, k = np.unravel_index(int(np.abs(values).argmax()), values.shape)
         error = float(self.error_of(quantity)[s, chosen[k]])
         return self.located(quantity, float(values[s, k]), error, int(s), chosen[k], float(times[s, k]))
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        quantity: str = "moment",
+        start: float | None = None,
+        end: float | None = None,
+    ) -> Axes:
+        """Draw the range of a quantity along the span from `start` to `end` [s], or over the whole run."""
+        from beamdyn.output.plots_along_span import plot_along_span
+
+        self.check_known(quantity)
+        first, last = window_in(self.run, start, end)
+        values = self.values(quantity)[(self.t >= first) & (self.t <= last)]
+        return plot_along_span(self.x, values, self.components(quantity), with_unit(quantity), ax)
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""

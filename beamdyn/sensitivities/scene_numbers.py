@@ -78,6 +78,9 @@ def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneN
     if names is None:
         return tuple(found.values())
     for name in names:
+        if name == "speed":
+            bound = "a critical or resonance speed is an answer, and no input"
+            raise InvalidValue("inputs", name, bound, "leave it out")
         if name not in found:
             near = difflib.get_close_matches(str(name), found, n=1)
             remedy = f"give {near[0] if near else ', '.join(found)}"

@@ -85,7 +85,7 @@ class Refinement:
             Largest number of functions that was needed.
         """
         pending, answers, functions = np.arange(count), [], 0
-        for basis in self.bases():
+        for basis in self.bases() if count else ():
             unmet = [np.empty(0, dtype=int)]
             most = max(1, _ENTRIES // (_size(basis) ** 2 * speeds))
             for batch in np.split(pending, range(most, len(pending), most)):

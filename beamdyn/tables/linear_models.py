@@ -30,7 +30,7 @@ def response_table(result: FrequencyResponse) -> Group:
         rows.append((f"{result.frequencies[k]:.6g}", answers, value, f"{phase:.1f}"))
     title = f"{result.output} by {result.input} at {result.speed:.6g} rad/s, by {result.provenance.method}"
     heads = "frequency [Hz]", "answers at [Hz]", f"size [{result.unit}]", "phase [deg]"
-    note = f"Peaks of {len(result.frequencies)} frequencies; --csv has all."
+    note = f"Largest of {len(result.frequencies)} frequencies, between which it may be larger; --csv has all."
     return Group(table(title, heads, rows, ()), Text(note))
 
 

@@ -217,3 +217,10 @@ def test_one_speed_axis_among_others_is_the_same_as_designs_one_by_one():
     together = bd.study(scene, rows, modes=2, combine="zip")
     distance = np.abs(product.value.reshape(-1, 2) / together.value - 1)
     assert (distance <= product.error.reshape(-1, 2) + together.error).all()
+
+
+def test_designs_none_of_which_buckles():
+    scene = bd.Scene(bd.Beam.rectangular(0.12, 0.015, 0.001, 210e9, 7850.0), bd.Mount(0.08, np.pi))
+    found = bd.study(scene, {"mount.radius": [0.0, 0.05, 0.1]}, "critical_speed")
+    assert np.isinf(found.value).all() and (found.status == "does not buckle").all()
+    assert (found.error == 0).all()

@@ -140,6 +140,24 @@ def test_a_density_of_a_tip_force_has_its_unit(run, tmp_path):
     assert code == 2 and "m2/s4/Hz" in err
 
 
+def test_an_input_beside_the_first_resonance_is_warned_of():
+    first = bd.natural_modes(SCENE, 0.0, 1).frequency[0]
+    bands = {0.5: "below the first resonance", 1.5: "above the first resonance"}
+    for middle, said in bands.items():
+        psd = bd.PowerSpectrum([0.9 * middle * first, 1.1 * middle * first], [1.0, 1.0])
+        assert any(said in each for each in bd.random_response(SCENE, 0.0, psd).warnings)
+    around = bd.PowerSpectrum([0.5 * first, 1.5 * first], [1.0, 1.0])
+    assert not any("resonance" in each for each in bd.random_response(SCENE, 0.0, around).warnings)
+
+
+def test_a_road_may_go_on(run):
+    asked = ("random", FILE, "--road", "C", "--velocity", "90 km/h")
+    code, _, err = run(*asked)
+    assert code == 0 and "below the first resonance" in err
+    code, _, err = run(*asked, "--highest", "10 1/m")
+    assert code == 0 and "resonance" not in err
+
+
 def test_an_undamped_beam_is_warned_of():
     found = bd.frequency_response(SCENE.undamped, 5.0, [1.0])
     assert any("no damping" in said for said in found.warnings)

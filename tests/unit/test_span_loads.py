@@ -308,3 +308,24 @@ def test_statics_do_not_ask_for_damping_and_say_what_auto_adds():
     np.testing.assert_array_equal(both[0].force, both[1].force)
     auto = bd.static_loads(replace(plain, physics="auto"), [20.0])
     assert any("nothing is added" in said for said in auto.warnings)
+
+
+def test_statics_warn_of_stretch():
+    assert not any("strain" in said for said in bd.static_loads(bd.Scene(BEAM, OUTWARD), [20.0]).warnings)
+    found = bd.static_loads(bd.Scene(BEAM, OUTWARD), [5e3])
+    assert any("axial strain reaches" in said for said in found.warnings)
+
+
+def test_pictures_show_the_largest_of_speeds_and_the_window_of_a_run():
+    response = bd.steady_response(MOVING, np.linspace(5.0, 15.0, 7), modes=3)
+    steady = bd.steady_loads(response)
+    (line,) = steady.plot().lines
+    np.testing.assert_array_equal(line.get_ydata(), steady.moment[..., 0].max(axis=0))
+    run = bd.transient_loads(bd.simulate(MOVING, 0.5, modes=3))
+    whole, late = (
+        [line.get_ydata().max() for line in each.lines] for each in (run.plot(), run.plot(start=0.4))
+    )
+    assert max(late) < max(whole)
+    unknown = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 10.0), bd.Mount(0.1, math.pi))
+    with pytest.raises(ValueError, match="the result has no stress"):
+        bd.static_loads(unknown, [1.0]).plot(quantity="stress")
