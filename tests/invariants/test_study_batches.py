@@ -3,12 +3,12 @@
 import os
 import signal
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import beamdyn as bd
+from tests.child_processes import by_proc, children
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0)
 TAPERED = bd.Beam.from_stiffness(
@@ -189,18 +189,17 @@ def test_crossings():
         assert not found
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds the workers by /proc")
+@by_proc
 def test_workers_and_a_killed_one_change_no_bit():
     vary = draw({"mount.radius": (0.0, 0.3), "beam.thickness": (1e-4, 4e-4)} | SPEED, 2500)
     scene = bd.Scene(BEAM, bd.Mount(0.1))
     alone = bd.study(scene, vary, combine="zip")
-    killed = []
+    killed, others = [], children(os.getpid())
 
     def kill_one(done, total):
-        """Kill a child of this process, once the first part is done."""
+        """Kill a worker, once the first part is done."""
         if done and not killed:
-            lists = Path(f"/proc/{os.getpid()}/task").glob("*/children")
-            killed.append(max(int(pid) for file in lists for pid in file.read_text().split()))
+            killed.append(max(set(children(os.getpid())) - set(others)))
             os.kill(killed[0], signal.SIGKILL)
 
     together = bd.study(scene, vary, combine="zip", workers=2, progress=kill_one)

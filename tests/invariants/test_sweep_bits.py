@@ -1,6 +1,5 @@
 """A sweep is the same to the bit: whatever computes it, in whatever order, interrupted or not."""
 
-import contextlib
 import os
 import signal
 import subprocess
@@ -17,6 +16,7 @@ import pytest
 import beamdyn as bd
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP as WINDOW
 from benchmarks.cases.scenes import SHORT_SPIN_UP as SCENE
+from tests.child_processes import by_proc, children
 
 ROOT = Path(__file__).parents[2]
 SPEEDS = [0.0, 20.0, 40.0, 53.0, 55.0, 69.8, 90.0, 100.0, 120.0, 130.0, 149.0, 150.0]
@@ -146,16 +146,7 @@ def test_ctrl_c_keeps_what_is_finished(undisturbed, tmp_path):
     assert before.items() <= chunks(tmp_path / "s").items()
 
 
-def children(pid):
-    """Processes that a process has started (Linux)."""
-    found = []
-    for task in Path(f"/proc/{pid}/task").glob("*/children"):
-        with contextlib.suppress(FileNotFoundError):  # a thread that has just ended
-            found += [int(child) for child in task.read_text().split()]
-    return found
-
-
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds the workers in /proc")
+@by_proc
 def test_a_worker_is_killed(undisturbed, tmp_path, caplog):
     killed, others = [], children(os.getpid())
 
