@@ -9,7 +9,7 @@ by_proc = pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds
 
 
 def children(pid):
-    """Its children, but for the process by which Python's multiprocessing tidies up, which outlives a pool."""
+    """Its children, but for that by which multiprocessing tidies up, which outlives a pool."""
     found = []
     for task in Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(FileNotFoundError):  # a thread that has just ended
