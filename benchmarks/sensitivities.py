@@ -65,9 +65,10 @@ def by_differences(scene: bd.Scene, speed: float, number: SceneNumber) -> tuple[
     values = [number.value + side * _BESIDE * 100 * number.step for side in sides]
     with mp.workdps(40):
         rows = [exact(scene_of(scene, {number.name: v}), speed, MODES) for v in values]
-        apart = [mpf(value) - mpf(number.value) for value in values]
+        step = mpf(100 * number.step)  # in units of it the powers have like sizes
+        apart = [(mpf(value) - mpf(number.value)) / step for value in values]
         powers = mp.matrix([[x**k for x in apart] for k in range(8)])
-        weights = mp.lu_solve(powers, mp.matrix([0, 1, 0, 0, 0, 0, 0, 0]))
+        weights = mp.lu_solve(powers, mp.matrix([0, 1, 0, 0, 0, 0, 0, 0])) / step
         squares = [
             mp.fsum(-w * row[j] ** 2 for w, row in zip(weights, rows, strict=True)) for j in range(MODES)
         ]
