@@ -16,7 +16,7 @@ from beamdyn.cli.values import (
     speed_or_final,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
-from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, Varying
+from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.input_sweep import Axis
@@ -31,7 +31,7 @@ def study(
     scene: SceneFile,
     /,
     *,
-    varying: Varying = NOTHING_VARIED,
+    varying: VaryOptions = NOTHING_VARIED,
     what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     speed: Text | None = None,
     modes: ModeCount = 3,

@@ -20,7 +20,7 @@ from beamdyn.common.legendre import gauss_points_on, gauss_rule
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import RootConditions, Space, Spaces
 from beamdyn.equations.sampled_space import SampledSpace
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.profile import Profile
 
 _TOUCHING = 1e-12  # distance over the length at which a mass stands at a station
@@ -32,13 +32,13 @@ class CutQuadrature:
 
     Parameters
     ----------
-    stations : Stations
+    stations : SpanStations
         The cuts.
     cells : Cells
         Cells of the discretization, with points that integrate its products.
     """
 
-    stations: Stations
+    stations: SpanStations
     cells: Cells
 
     @cached_property

@@ -10,8 +10,8 @@ import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.section_points import Outputs
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.section_points import StationOutputs
+from beamdyn.loads.stations import SpanStations
 from beamdyn.steady.excitation_phases import check_steady_state, expand_quantities
 from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
 from beamdyn.steady.largest_over_phases import largest_over_phases
@@ -68,7 +68,7 @@ class LoadLines:
 
 
 def lines_of_response(
-    response: SteadyResponse, stations: Stations, outputs: Outputs | None = None
+    response: SteadyResponse, stations: SpanStations, outputs: StationOutputs | None = None
 ) -> LoadLines:
     """Lines of the outputs at stations of a steady response, or of the forces and moments there."""
     request, speeds = response.request, response.speeds

@@ -12,8 +12,8 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.load_time_error import time_errors_of_rows
 from beamdyn.loads.mode_error import mode_error, through, with_neighbours
-from beamdyn.loads.section_points import Outputs
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.section_points import StationOutputs
+from beamdyn.loads.stations import SpanStations
 from beamdyn.transient.simulate import Transient
 from beamdyn.transient.system import ModalSystem
 
@@ -31,18 +31,18 @@ class LoadPath(FieldsOnly):
     ----------
     run : Transient
         The run, of a straight beam.
-    stations : Stations
+    stations : SpanStations
         The stations, S of them.
-    given : Outputs, optional
+    given : StationOutputs, optional
         What is stated of each, K outputs; None if only the loads are wanted.
     """
 
     run: Transient
-    stations: Stations
-    given: Outputs | None = None
+    stations: SpanStations
+    given: StationOutputs | None = None
 
     @property
-    def outputs(self) -> Outputs:
+    def outputs(self) -> StationOutputs:
         """The outputs of each station."""
         assert self.given is not None
         return self.given

@@ -31,7 +31,7 @@ from beamdyn.equations.fields.field import FieldEquations
 from beamdyn.equations.fields.stretch import Stretch
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.loads.cut_beam import CutQuadrature, CutSpace, CutSpaces
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import weight_degree
 
@@ -119,7 +119,7 @@ def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
 
 
 def span_rows(
-    scene: Scene, discretization: Discretization, equations: Equations, stations: Stations
+    scene: Scene, discretization: Discretization, equations: Equations, stations: SpanStations
 ) -> LoadRows:
     """Loads at stations by the coordinates of given equations.
 
@@ -131,7 +131,7 @@ def span_rows(
         Its discretization.
     equations : Equations
         Equations of the scene in this discretization, as they are or reduced.
-    stations : Stations
+    stations : SpanStations
         The stations, S of them.
 
     Returns
@@ -212,7 +212,7 @@ def _filled(rows: list[np.ndarray | None]) -> list[np.ndarray]:
 
 
 def _across_deflected_axis(
-    rows: LoadRows, equations: Equations, stations: Stations, length: float
+    rows: LoadRows, equations: Equations, stations: SpanStations, length: float
 ) -> LoadRows:
     """Take from the forces in fixed directions what the axial force contributes by the slope of the axis."""
     position = dict(rows.position)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.loads.section_points import Outputs
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.section_points import StationOutputs
+from beamdyn.loads.stations import SpanStations
 from beamdyn.modal.modal_basis import ModalBasis
 
 _MARGIN = 3.0  # error over the distance: moments of modes fall as k^-3 after a sudden load
@@ -19,14 +19,18 @@ _LIMIT = 0.3  # of the distance over the largest along the span, up to which it 
 _BETWEEN = 21  # stations besides those asked for
 
 
-def with_neighbours(stations: Stations) -> Stations:
+def with_neighbours(stations: SpanStations) -> SpanStations:
     """The stations, then others evenly along the beam, at which distances are judged too."""
     more = np.linspace(0, 1, _BETWEEN)
-    return Stations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
+    return SpanStations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
 
 
 def mode_error(
-    distance: np.ndarray, along_span: np.ndarray, stations: Stations, outputs: Outputs, basis: ModalBasis
+    distance: np.ndarray,
+    along_span: np.ndarray,
+    stations: SpanStations,
+    outputs: StationOutputs,
+    basis: ModalBasis,
 ) -> np.ndarray:
     """Errors of outputs (..., S, K) from distances of loads (..., N, 1 + 2 d).
 
@@ -38,9 +42,9 @@ def mode_error(
         Distance of the loads from those of more modes, at the N stations of `with_neighbours`.
     along_span : ndarray, shape (..., 1 + 2 d)
         Largest magnitude of the loads along the span.
-    stations : Stations
+    stations : SpanStations
         The S stations asked for.
-    outputs : Outputs
+    outputs : StationOutputs
         Outputs there.
     basis : ModalBasis
         The modes kept.
@@ -55,7 +59,7 @@ def mode_error(
     return np.where(too_large, np.inf, through(outputs, margins * nearby))
 
 
-def through(outputs: Outputs, errors: np.ndarray) -> np.ndarray:
+def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
     """Errors of outputs (..., S, K) from those of the loads (..., S, 1 + 2 d), which add up."""
     weights = np.abs(outputs.matrix)
     with np.errstate(invalid="ignore"):  # what is infinite does not matter where it has no weight

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, as_floats, positive, refuse
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.rectangle import Rectangle, rectangle_of
@@ -48,7 +48,7 @@ class Sections:
 
 
 def sections_at(
-    scene: Scene, stations: Stations, points: SectionPoints | None, youngs_modulus: float | None
+    scene: Scene, stations: SpanStations, points: SectionPoints | None, youngs_modulus: float | None
 ) -> Sections:
     """Sections of a scene at stations, with points [m] that all have, or by default the outermost of each.
 
@@ -138,7 +138,7 @@ QUANTITIES = "force", "moment", "curvature", "strain", "stress"
 
 
 @dataclass(frozen=True)
-class Outputs:
+class StationOutputs:
     """Everything that is stated at S stations, as linear functions of the loads there.
 
     Parameters
@@ -153,7 +153,7 @@ class Outputs:
     sizes: tuple[int, ...]
 
     @classmethod
-    def of_sections(cls, sections: Sections) -> Outputs:
+    def of_sections(cls, sections: Sections) -> StationOutputs:
         """Outputs of sections, stresses included: nan where Young's modulus is not known."""
         stations, planes, loads = sections.curvature.shape
         unchanged = np.broadcast_to(np.eye(loads), (stations, loads, loads))

@@ -11,7 +11,7 @@ from beamdyn.common.checks import InvalidValue, count, one_of
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.loads.section_points import QUANTITIES, Sections
-from beamdyn.loads.stations import Stations
+from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -203,7 +203,7 @@ _REMEDIES = {
 }
 
 
-def placed(scene: Scene, stations: Stations, sections: Sections) -> dict[str, Any]:
+def placed(scene: Scene, stations: SpanStations, sections: Sections) -> dict[str, Any]:
     """The fields of all results that say where, as arguments of their class."""
     x = stations.xi * scene.beam.length
     return {"x": x, "inboard": stations.inboard, "points": sections.points, "scene": scene}

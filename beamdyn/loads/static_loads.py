@@ -14,9 +14,9 @@ from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, real
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
+from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
-from beamdyn.loads.stations import Positions, Stations, stations_at
+from beamdyn.loads.stations import Positions, SpanStations, stations_at
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.equilibrium import NoEquilibrium
 from beamdyn.modal.model import Model
@@ -119,7 +119,7 @@ def static_loads(
     stations = stations_at(scene.modelled_beam, at)
     sections = sections_at(scene, stations, points, youngs_modulus)
     model = choose_model(scene.undamped, discretization, speeds, _MODES)
-    outputs = Outputs.of_sections(sections)
+    outputs = StationOutputs.of_sections(sections)
     values, tip = _solve(model, stations, outputs, speeds, theta)
     error = _error(values, _solve(model.coarser, stations, outputs, speeds, theta)[0])
     return StaticLoads(
@@ -152,7 +152,7 @@ def _warn_of_stretch(model: Model, speeds: np.ndarray) -> Iterator[str]:
 
 
 def _solve(
-    model: Model, stations: Stations, outputs: Outputs, speeds: np.ndarray, theta: float
+    model: Model, stations: SpanStations, outputs: StationOutputs, speeds: np.ndarray, theta: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Outputs (C, S, K) in equilibrium at each speed, and the deflection of the tip (C, d)."""
     equations = model.equations

@@ -20,7 +20,7 @@ _BESIDE = 2e-12  # distance over the length at which the properties beside a jum
 
 
 @dataclass(frozen=True)
-class Stations:
+class SpanStations:
     """Cross-sections at which the beam is cut.
 
     Parameters
@@ -41,7 +41,7 @@ class Stations:
         return np.clip(self.xi + np.where(self.inboard, -_BESIDE, _BESIDE), 0.0, 1.0)
 
 
-def stations_at(beam: Beam, at: Positions | None) -> Stations:
+def stations_at(beam: Beam, at: Positions | None) -> SpanStations:
     """Stations at positions [m], or by default evenly along the beam and on both sides of each jump.
 
     A position that is given twice stands for both sides, the inboard one first; alone it stands for the
@@ -54,7 +54,7 @@ def stations_at(beam: Beam, at: Positions | None) -> Stations:
     else:
         xi = _snapped(_checked(at, beam.length) / beam.length, ends)
     twice = np.append(xi[1:] == xi[:-1], False)
-    return Stations(xi, twice | (xi == 1))
+    return SpanStations(xi, twice | (xi == 1))
 
 
 def _checked(at: Positions, length: float) -> np.ndarray:

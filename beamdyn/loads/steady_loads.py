@@ -14,9 +14,9 @@ from beamdyn.common.checks import kind, one_of
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_lines import LoadLines, lines_of_response
 from beamdyn.loads.mode_error import mode_error, through, with_neighbours
-from beamdyn.loads.section_points import QUANTITIES, Outputs, SectionPoints, sections_at
+from beamdyn.loads.section_points import QUANTITIES, SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection, with_unit
-from beamdyn.loads.stations import Positions, Stations, stations_at
+from beamdyn.loads.stations import Positions, SpanStations, stations_at
 from beamdyn.scene.motion import Line
 from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.response import SteadyResponse
@@ -48,7 +48,7 @@ class SteadyLoads(SpanLoads):
     harmonics: np.ndarray
     lines: tuple[Line, ...]
     response: SteadyResponse = field(repr=False)
-    outputs: Outputs = field(repr=False)
+    outputs: StationOutputs = field(repr=False)
 
     case: ClassVar[str] = "speed [rad/s]"
 
@@ -89,7 +89,7 @@ class SteadyLoads(SpanLoads):
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
-        stations = Stations(self.x / self.scene.beam.length, self.inboard)
+        stations = SpanStations(self.x / self.scene.beam.length, self.inboard)
         return lines_of_response(self.response, stations, self.outputs).amplitude
 
 
@@ -124,7 +124,7 @@ def steady_loads(
     refuse_large_deflection(scene)
     stations = stations_at(scene.modelled_beam, at)
     sections = sections_at(scene, stations, points, youngs_modulus)
-    outputs = Outputs.of_sections(sections)
+    outputs = StationOutputs.of_sections(sections)
     lines = lines_of_response(response, stations, outputs)
     motion = check_steady_state(scene.motion)
     return SteadyLoads(
@@ -146,7 +146,9 @@ def steady_loads(
     )
 
 
-def _error(response: SteadyResponse, lines: LoadLines, stations: Stations, outputs: Outputs) -> np.ndarray:
+def _error(
+    response: SteadyResponse, lines: LoadLines, stations: SpanStations, outputs: StationOutputs
+) -> np.ndarray:
     """Estimated errors (C, S, K): of the modes left out, and of the harmonics left out."""
     if response.refined is None:
         return np.full(lines.largest.shape, np.inf)

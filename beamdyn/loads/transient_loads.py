@@ -13,7 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_path import LoadPath
-from beamdyn.loads.section_points import Outputs, SectionPoints, sections_at
+from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import (
     UNITS,
     LargestLoad,
@@ -170,7 +170,7 @@ def transient_loads(
     refuse_large_deflection(scene)
     stations = stations_at(scene.modelled_beam, at)
     sections = sections_at(scene, stations, points, youngs_modulus)
-    path = LoadPath(run, stations, Outputs.of_sections(sections))
+    path = LoadPath(run, stations, StationOutputs.of_sections(sections))
     times = run.t[:: 1 + (len(run.t) - 1) // _MOST_TIMES] if t is None else _times_in(run, t)
     return TransientLoads(
         **placed(scene, stations, sections),

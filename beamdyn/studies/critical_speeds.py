@@ -14,7 +14,7 @@ from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.studies.answers import Caution, DesignAnswers, caution_where
 from beamdyn.studies.frequencies import cautions_of_error
-from beamdyn.studies.refinement import Found, Refinement
+from beamdyn.studies.refinement import BasisAnswers, Refinement
 from beamdyn.studies.similar import SimilarDesigns
 
 BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"
@@ -65,7 +65,7 @@ class SimilarCriticalSpeeds(FieldsOnly):
         if not isinstance(self.discretization, str):
             refinement = replace(refinement, modes=1)
 
-        def solve(batch: np.ndarray, basis: Discretization) -> Found:
+        def solve(batch: np.ndarray, basis: Discretization) -> BasisAnswers:
             return self._solve_batch(rows[batch], basis, refinement.target_of(basis))
 
         found, _ = refinement.solve(len(rows), 1, solve)
@@ -74,7 +74,7 @@ class SimilarCriticalSpeeds(FieldsOnly):
         speed, error, met = found
         return speed, error, met == 1.0
 
-    def _solve_batch(self, rows: np.ndarray, basis: Discretization, target: float) -> Found:
+    def _solve_batch(self, rows: np.ndarray, basis: Discretization, target: float) -> BasisAnswers:
         """Compare a basis with one of about half its size, as for a single design."""
         designs, half = self.designs, basis
         for _ in range(_TO_HALF):
@@ -86,7 +86,7 @@ class SimilarCriticalSpeeds(FieldsOnly):
         speed, error, rounding = (values[:, 0, 0] for values in found)
         met = np.isfinite(speed) & (error <= np.maximum(target, 3 * rounding))
         # Where a basis softens at no speed, a single call decides whether there is one.
-        return Found((speed / designs.time[rows], error, met.astype(float)), met | np.isinf(speed))
+        return BasisAnswers((speed / designs.time[rows], error, met.astype(float)), met | np.isinf(speed))
 
     @property
     def _stiffened(self) -> np.ndarray:

@@ -22,7 +22,7 @@ from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, coarser_stack
 from beamdyn.studies.inputs import scene_of
-from beamdyn.studies.refinement import Found, Refinement
+from beamdyn.studies.refinement import BasisAnswers, Refinement
 from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
@@ -32,7 +32,7 @@ _MOST_EXTREMES = 4  # inputs of which all extremes are looked at
 
 
 @dataclass(frozen=True)
-class Resonance:
+class PossibleCrossing:
     """A mode and a line that it may meet.
 
     Parameters
@@ -73,7 +73,7 @@ def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
     return tuple((kind, line) for kind, lines in kinds for line in lines)
 
 
-def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[Resonance, ...]:
+def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[PossibleCrossing, ...]:
     """The resonances that may occur in the designs: those of the extremes, and of others spread evenly.
 
     Raises
@@ -95,7 +95,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
         remedy = "a RollingWheel with a road, or gravity, excites the beam"
         raise InvalidValue("scene.motion", scene.motion, bound, remedy)
     each = (found[key] for key in sorted(found))
-    return tuple(Resonance(kind, line, mode) for kind, line in each for mode in range(1, modes + 1))
+    return tuple(PossibleCrossing(kind, line, mode) for kind, line in each for mode in range(1, modes + 1))
 
 
 def _ends_of_columns(designs: Designs) -> list[int]:
@@ -115,7 +115,7 @@ class SimilarCrossings(FieldsOnly):
         N designs.
     scene : Scene
         The scene that is varied: its motion and gravity excite the beam.
-    resonances : tuple of Resonance
+    resonances : tuple of PossibleCrossing
         Those that are sought, c in all.
     top : float
         Top speed [rad/s].
@@ -127,7 +127,7 @@ class SimilarCrossings(FieldsOnly):
 
     designs: SimilarDesigns
     scene: Scene
-    resonances: Sequence[Resonance]
+    resonances: Sequence[PossibleCrossing]
     top: float
     modes: int
     discretization: DiscretizationChoice
@@ -138,7 +138,7 @@ class SimilarCrossings(FieldsOnly):
         refinement = Refinement(self.designs.reference, self.modes, self.discretization, self.tolerance)
         multiples = np.unique([each.multiple for each in self.resonances])
 
-        def solve(rows: np.ndarray, basis: Discretization) -> Found:
+        def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
             return self._solve_batch(rows, basis, refinement.target_of(basis), multiples)
 
         found, functions = refinement.solve(self.designs.count, len(multiples), solve)
@@ -155,7 +155,7 @@ class SimilarCrossings(FieldsOnly):
 
     def _solve_batch(
         self, rows: np.ndarray, basis: Discretization, target: float, multiples: np.ndarray
-    ) -> Found:
+    ) -> BasisAnswers:
         designs = self.designs
         family, weights, time = designs.family(basis), designs.weights(rows), designs.time[rows]
         stack = family.stack(weights)
@@ -165,7 +165,7 @@ class SimilarCrossings(FieldsOnly):
         critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, estimate)[0]
         speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
         met = np.isinf(speed) | (error <= np.maximum(target, 3 * rounding))
-        return Found((speed / time[:, None, None], error), _of_each(met))
+        return BasisAnswers((speed / time[:, None, None], error), _of_each(met))
 
     def _excited(self) -> np.ndarray:
         """Which of the resonances (N, c) have a line in each design.

@@ -19,7 +19,7 @@ from beamdyn.scene.validity import (
     warn_of_strain,
 )
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
-from beamdyn.studies.refinement import Found, Refinement
+from beamdyn.studies.refinement import BasisAnswers, Refinement
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
 _LARGE_ERROR = 1e-6  # of a frequency, beyond which it is said to be unresolved
@@ -93,7 +93,7 @@ class SimilarFrequencies(FieldsOnly):
         error = np.where(np.isnan(eigenvalue), np.inf, error)
         return SolvedDesigns(eigenvalue / self.designs.time[:, None, None], error, deflection, functions)
 
-    def _solve_batch(self, rows: np.ndarray, basis: Discretization) -> Found:
+    def _solve_batch(self, rows: np.ndarray, basis: Discretization) -> BasisAnswers:
         designs = self.designs
         family, weights = designs.family(basis), designs.weights(rows)
         stack, speeds = family.stack(weights), self.speeds[rows] * designs.time[rows, None]
@@ -106,7 +106,7 @@ class SimilarFrequencies(FieldsOnly):
         target = np.maximum(self._refinement.target_of(basis), 3 * found.rounding)
         met = np.all(found.error <= target, axis=(1, 2))
         deflection = found.static / designs.reference.beam.length
-        return Found((found.eigenvalue, found.error, deflection), met)
+        return BasisAnswers((found.eigenvalue, found.error, deflection), met)
 
     def answers(self) -> DesignAnswers:
         """The answers of the designs, with what limits them."""

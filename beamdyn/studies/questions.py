@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.crossings import Resonance
+from beamdyn.studies.crossings import PossibleCrossing
 
 OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
 
@@ -61,7 +61,7 @@ class StudyQuestion:
         As for `natural_modes`; the tolerance of responses and peaks as for `steady_response` and `sweep`.
     window : tuple of float
         Window of time of a peak [s].
-    resonances : sequence of Resonance
+    resonances : sequence of PossibleCrossing
         Those that crossings are sorted by.
     """
 
@@ -72,7 +72,7 @@ class StudyQuestion:
     discretization: DiscretizationChoice
     tolerance: float | None
     window: tuple[float, float] = (20.0, 30.0)
-    resonances: Sequence[Resonance] = ()
+    resonances: Sequence[PossibleCrossing] = ()
 
     @property
     def kind(self) -> Kind:

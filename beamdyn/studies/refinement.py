@@ -16,7 +16,7 @@ _ENTRIES = 300_000  # of matrices of one size at once, which fit into the proces
 
 
 @dataclass(frozen=True)
-class Found:
+class BasisAnswers:
     """Answers of R designs in a basis.
 
     Parameters
@@ -31,7 +31,7 @@ class Found:
     met: np.ndarray
 
 
-Solve = Callable[[np.ndarray, Discretization], Found]  # of designs (R,) in a basis
+Solve = Callable[[np.ndarray, Discretization], BasisAnswers]  # of designs (R,) in a basis
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Refinement:
 
 def _solve_or_halve(
     solve: Solve, batch: np.ndarray, basis: Discretization
-) -> Iterator[tuple[np.ndarray, Found]]:
+) -> Iterator[tuple[np.ndarray, BasisAnswers]]:
     """Yield solved designs; those that rounding of so many functions leaves unsolved are left out."""
     try:
         yield batch, solve(batch, basis)

@@ -66,7 +66,7 @@ class ModulatedSystem:
 
 
 @dataclass(frozen=True)
-class _Point:
+class _StepMapSeries:
     """Maps of steps that begin at P Chebyshev points, as a power series in e.
 
     The accelerations at the nodes are a = (L + sum_m D_m Z_m)^-1 (R0 + sum_m D_m R_m) z, D_m = diag(e_m),
@@ -91,7 +91,7 @@ class _Point:
     table: Tableau
 
     @classmethod
-    def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: Tableau) -> _Point:
+    def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: Tableau) -> _StepMapSeries:
         """Expand the accelerations of steps of h [s] that begin at some times (P,) [s]."""
         C, K = system.slow(times[:, None] + h * table.c)
         P, s, n, _ = K.shape
@@ -104,7 +104,7 @@ class _Point:
         Z = h**2 * np.einsum("ij,mab->miajb", table.A2, system.G).reshape(-1, s * n, s * n)
         return cls(Y, np.concatenate([Y @ free, Y @ loads], axis=2), R, Z, h, table)
 
-    def every(self, stride: int) -> _Point:
+    def every(self, stride: int) -> _StepMapSeries:
         """The same for some of the points."""
         return replace(self, Y=self.Y[::stride], X0=self.X0[::stride])
 
@@ -160,14 +160,14 @@ class _Expansion:
     maps : tuple of ndarray, shapes (p_o, k_o, 2 n, 2 n + s l)
         Coefficients of the maps to the end of a step, for the k_o monomials of orders 0, 1 and 2.
     X0, Y : ndarray, shape (p, s n, :)
-        Chebyshev coefficients of X0 and Y of `_Point`.
+        Chebyshev coefficients of X0 and Y of `_StepMapSeries`.
     sizes : tuple of ndarray, shapes (p,)
         Size of each polynomial in the maps of each order, in X0 and in Y.
     allowed : tuple of float
         Size of what may be left out of each.
     ratio : ndarray, shape (m,)
         Ratio of successive terms of the series for e_m = 1.
-    point : _Point
+    point : _StepMapSeries
         The series at the Chebyshev points.
     """
 
@@ -177,7 +177,7 @@ class _Expansion:
     sizes: tuple[np.ndarray, ...]
     allowed: tuple[float, ...]
     ratio: np.ndarray
-    point: _Point
+    point: _StepMapSeries
 
     @classmethod
     def of(
@@ -195,7 +195,7 @@ class _Expansion:
         None if the polynomials of so many points are not within the accuracy after all steps.
         """
         begin = first + (steps - 1) * h * (1 + _extrema(points)) / 2
-        point = _Point.at(system, begin, h, table)
+        point = _StepMapSeries.at(system, begin, h, table)
         e, _ = system.scalars(np.linspace(first, first + steps * h, _SAMPLES)[1:-1])
         largest, ratio = _LARGEST_SAMPLED * np.abs(e).max(axis=0), point.every(3).ratio()
         constant = point.constant()
@@ -234,7 +234,7 @@ class _Block:
     maps: tuple[np.ndarray, ...]
     X0: np.ndarray
     Y: np.ndarray
-    point: _Point
+    point: _StepMapSeries
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
         """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""

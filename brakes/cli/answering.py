@@ -12,7 +12,7 @@ from cyclopts import App, Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.varying import NOTHING_VARIED, Varying
+from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from brakes.cli.program import warn
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def add_command(app: App, name: str, help: str) -> None:
         file: BrakeFile,
         /,
         *,
-        varying: Varying = NOTHING_VARIED,
+        varying: VaryOptions = NOTHING_VARIED,
         what: What = None,
         outputs: Outputs = NO_FILES,
     ) -> None:
@@ -68,7 +68,7 @@ def run_command(
     brake: BrakeType[Any],
     command: str,
     file: str,
-    varying: Varying,
+    varying: VaryOptions,
     what: str | None,
     outputs: Outputs,
     further: Files | None = None,
@@ -84,7 +84,7 @@ def run_command(
         Name of the command.
     file : str
         The file.
-    varying : Varying
+    varying : VaryOptions
         Inputs that are varied.
     what : str, optional
         Names of the results of these.
@@ -133,7 +133,7 @@ def _answer_many(
     brake: BrakeType[Any],
     tables: Mapping[str, Any],
     question: Question,
-    request: tuple[str, Varying, str | None],
+    request: tuple[str, VaryOptions, str | None],
     outputs: Outputs,
 ) -> None:
     import numpy as np

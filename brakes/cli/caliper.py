@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
-from beamdyn.common.edge.varying import NOTHING_VARIED, Varying
+from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from brakes.cli.answering import What, run_command
 from brakes.cli.program import app
 
@@ -20,7 +20,7 @@ def caliper(
     *,
     free_bodies: Path | None = None,
     animation: Path | None = None,
-    varying: Varying = NOTHING_VARIED,
+    varying: VaryOptions = NOTHING_VARIED,
     what: What = None,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
-from beamdyn.common.edge.varying import NOTHING_VARIED, Varying
+from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from brakes.cli.answering import What, run_command
 from brakes.cli.program import app
 
@@ -22,7 +22,7 @@ def forklift(
     /,
     *,
     stage: StageChoice = "all",
-    varying: Varying = NOTHING_VARIED,
+    varying: VaryOptions = NOTHING_VARIED,
     what: What = None,
     outputs: Outputs = NO_FILES,
 ) -> None:

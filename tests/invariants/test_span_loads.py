@@ -12,7 +12,7 @@ from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.equations_of_motion import Equations, assemble_equations
 from beamdyn.equations.root_motion import RootMotion
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.stations import Stations, stations_at
+from beamdyn.loads.stations import SpanStations, stations_at
 from beamdyn.scene.motion import MotionSample
 
 LENGTH = 1.7
@@ -46,7 +46,7 @@ def scene_of(name: str, **physics: bool) -> bd.Scene:
 
 
 def newton(
-    scene: bd.Scene, equations: Equations, stations: Stations, state: np.ndarray, root: RootMotion
+    scene: bd.Scene, equations: Equations, stations: SpanStations, state: np.ndarray, root: RootMotion
 ) -> np.ndarray:
     """Loads (S, 1 + 2 d) of the part outboard on the part inboard, by its acceleration in space.
 
@@ -91,7 +91,7 @@ def newton(
     return np.array(loads)
 
 
-def masses(beam: bd.Beam, stations: Stations) -> tuple[np.ndarray, np.ndarray]:
+def masses(beam: bd.Beam, stations: SpanStations) -> tuple[np.ndarray, np.ndarray]:
     """Point masses [kg] at x/L that stand for the beam: Gauss points between stations, and its own."""
     ends = np.unique(np.concatenate([stations.xi, beam.breakpoints]))
     t, w = np.polynomial.legendre.leggauss(16)
@@ -176,7 +176,12 @@ def test_the_same_in_motion(precone: float) -> None:
 
 
 def _check_elastic_law(
-    scene: bd.Scene, equations: Equations, stations: Stations, q: np.ndarray, loads: np.ndarray, axial: bool
+    scene: bd.Scene,
+    equations: Equations,
+    stations: SpanStations,
+    q: np.ndarray,
+    loads: np.ndarray,
+    axial: bool,
 ) -> None:
     beam, planes, xi = scene.modelled_beam, equations.planes, stations.xi
     beta = np.zeros(len(xi)) if beam.twist is None else beam.twist(xi)
@@ -237,7 +242,7 @@ def test_reactions_at_nodes_of_an_unreduced_model(node: int) -> None:
 def forces_of_elements(scene, functions, nodes, xi, stations, root, q, a):
     """Nodal forces of the elements beyond xi: elastic, geometric, and of inertia, less the loads."""
     beam, c = scene.beam, math.cos(scene.mount.bending_angle)
-    points, mass = masses(beam, Stations(nodes, np.zeros(len(nodes), dtype=bool)))
+    points, mass = masses(beam, SpanStations(nodes, np.zeros(len(nodes), dtype=bool)))
     keep = (points > xi) | ((points == xi) & stations.inboard[0])
     points, mass = points[keep], mass[keep]
     tip = functions.end(0) + BODY.offset * functions.end(1) / LENGTH

@@ -25,7 +25,7 @@ def _check_workers(_: object, value: object) -> None:
 
 @Parameter(name="*")
 @dataclass(frozen=True)
-class Varying:
+class VaryOptions:
     """Inputs that are varied, and how the designs are computed.
 
     Parameters
@@ -71,4 +71,4 @@ class Varying:
         return TaskRunner(self.workers, None, self.store, kind, versions, progress)
 
 
-NOTHING_VARIED = Varying()
+NOTHING_VARIED = VaryOptions()
