@@ -41,7 +41,7 @@ def sensitivities(
     physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Derivatives of frequencies, of the critical speed or of resonance speeds by every number of the scene.
+    """Derivatives of frequencies, of the critical speed or of resonance speeds by the numbers of the scene.
 
     For example: beamdyn sensitivities scene.toml --speed "50 rad/s" --inputs beam.thickness --inputs speed
 

@@ -1,4 +1,4 @@
-"""Sensitivities of frequencies, of the critical speed and of resonance speeds to every number of a scene.
+"""Sensitivities of frequencies, of the critical speed and of resonance speeds to the numbers of a scene.
 
 The eigenproblem is perturbed to first order (`perturbation`): no eigenvalues are differenced.  Errors are
 estimated as those of frequencies are, by the same derivatives of the coarser model.
