@@ -16,6 +16,8 @@ _NAMES = {
     "campbell_diagram.diagram": ("Campbell", "campbell"),
     "campbell_diagram.margins": ("Margin",),
     "common.results": ("load",),
+    "rotor": ("RotorDrawing", "draw"),
+    "common.display_units": ("DisplayUnits",),
     "config": ("ConfigError", "load_scene"),
     "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
     "decks.blade": ("IgnoredProperty",),
@@ -30,6 +32,7 @@ _NAMES = {
     "scene.points": ("PointMass", "PointSpring", "TipMass"),
     "scene.damping": ("Damping",),
     "loads.cycles": ("LoadCycles", "count_cycles"),
+    "loads.random_loads": ("RandomLoads", "RandomStatistics", "random_loads"),
     "loads.span_loads": ("LargestLoad", "SpanLoads"),
     "loads.static_loads": ("StaticLoads", "static_loads"),
     "loads.steady_loads": ("SteadyLoads", "steady_loads"),
@@ -86,13 +89,18 @@ _NAMES = {
     "steady.response": ("SteadyResponse", "steady_response"),
     "common.designs": ("VariedInput",),
     "common.parallel.tasks": ("StudyInterrupted",),
+    "common.spreading.first_order": ("FirstOrderRange",),
+    "common.spreading.result": ("Spread",),
+    "common.spreading.statistics": ("Scatter", "SobolIndices"),
+    "common.spreading.tolerances": ("Normal", "SpreadInput", "Uniform"),
+    "common.spreading.worst_case": ("WorstCases",),
+    "spreads.spread": ("spread",),
     "studies.result": ("Study",),
     "studies.study": ("study",),
     "tradeoffs": ("Tradeoff", "tradeoff"),
-    "transient.chunk_collector": ("SweepInterrupted",),
-    "transient.gauss": ("GaussCollocation",),
+    "transient.gauss_solver": ("GaussCollocation",),
     "transient.simulate": ("simulate",),
-    "transient.sweep": ("Sweep", "sweep"),
+    "transient.sweep": ("Sweep", "SweepInterrupted", "sweep"),
     "transient.transient": ("Transient",),
 }
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
@@ -105,9 +113,15 @@ if TYPE_CHECKING:
     from beamdyn.campbell_diagram.diagram import Campbell, campbell
     from beamdyn.campbell_diagram.margins import Margin
     from beamdyn.common.designs import VariedInput
+    from beamdyn.common.display_units import DisplayUnits
     from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.parallel.tasks import StudyInterrupted
     from beamdyn.common.results import load
+    from beamdyn.common.spreading.first_order import FirstOrderRange
+    from beamdyn.common.spreading.result import Spread
+    from beamdyn.common.spreading.statistics import Scatter, SobolIndices
+    from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
+    from beamdyn.common.spreading.worst_case import WorstCases
     from beamdyn.config import load_scene
     from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
     from beamdyn.decks.blade import IgnoredProperty
@@ -127,11 +141,13 @@ if TYPE_CHECKING:
     from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.linear_models.state_space import state_space
     from beamdyn.loads.cycles import LoadCycles, count_cycles
+    from beamdyn.loads.random_loads import RandomLoads, RandomStatistics, random_loads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
     from beamdyn.loads.transient_loads import TransientLoads, transient_loads
     from beamdyn.modal.equilibrium import NoEquilibrium
+    from beamdyn.rotor import RotorDrawing, draw
     from beamdyn.scene.beam import Beam
     from beamdyn.scene.damping import Damping
     from beamdyn.scene.motion import (
@@ -174,15 +190,16 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.locus import Locus, frequency_locus
     from beamdyn.spectrum.modes import Modes, natural_modes
     from beamdyn.spectrum.setting_angles import SettingAngleLimits, setting_angle_limits
-    from beamdyn.steady.resonance import Crossing, Crossings, resonance_speeds
+    from beamdyn.spreads.spread import spread
+    from beamdyn.steady.crossings import Crossing, Crossings
+    from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.studies.result import Study
     from beamdyn.studies.study import study
     from beamdyn.tradeoffs import Tradeoff, tradeoff
-    from beamdyn.transient.chunk_collector import SweepInterrupted
-    from beamdyn.transient.gauss import GaussCollocation
+    from beamdyn.transient.gauss_solver import GaussCollocation
     from beamdyn.transient.simulate import simulate
-    from beamdyn.transient.sweep import Sweep, sweep
+    from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep
     from beamdyn.transient.transient import Transient
 
 

@@ -7,19 +7,25 @@ from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.results import Result
 from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR, MODEL_ERROR, StatesModelError, say_size
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from beamdyn.common.results import Result
     from beamdyn.spectrum.critical import CriticalPoint
     from beamdyn.spectrum.modes import Modes
 
 
 def warnings_of(result: Any, tolerance: float | None = None) -> list[str]:
-    """Warnings of a result, and of its model error past a tolerance, or 1 %, in the words of files."""
-    return [as_in_files(said) for said in (*result.warnings, *_of_model_error(result, tolerance))]
+    """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files."""
+    warnings = (*result.warnings, *_of_model_error(result, tolerance))
+    return [as_in_files(_in_units_of(result, said)) for said in warnings]
+
+
+def _in_units_of(result: Any, sentence: str) -> str:
+    """A sentence with its speeds in the unit in which the result shows them."""
+    return result.display_units.in_sentence(sentence) if isinstance(result, Result) else sentence
 
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
@@ -39,7 +45,8 @@ def notes_of(result: Any) -> list[str]:
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
     outside = [s for s in getattr(result, "warnings", ()) if OUTSIDE in s or MODEL_ERROR in s]
-    return [said.partition(";")[0] for said in (*outside, *_of_model_error(result))]
+    each = [said.partition(";")[0] for said in (*outside, *_of_model_error(result))]
+    return [_in_units_of(result, said) for said in each]
 
 
 def critical_label(point: CriticalPoint) -> str:

@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.display_units import DisplayUnits, known_unit
 from beamdyn.common.edge.columns import read_columns
 from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
 from beamdyn.common.edge.csv_columns import CsvTable, check_places, read_csv
 from beamdyn.common.edge.data_text import DataText, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
-from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.units import InvalidInput, unit_as_written
 from beamdyn.common.edge.wording import of_file
 from beamdyn.property_inputs import BREAKPOINT, Along, Metres, Position, Varying
 from beamdyn.record_files import with_record_file
@@ -51,6 +52,12 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     ConfigError
         If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
         the CSV file is named by its line.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/tyre_harvester.toml")
+    >>> scene.mount.radius  # m
+    0.215
     """
     try:
         data = parse(read(path), str(path))
@@ -96,7 +103,22 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     ConfigError
         If it does not describe a scene; the message lists all mistakes.
     """
-    return validated(SceneInput, data, source).core
+    return replace(validated(SceneInput, data, source).core, units=_units_of(data))
+
+
+def _units_of(data: Mapping[str, Any]) -> DisplayUnits:
+    """Units in which the file gives the length of the beam and the speed of the motion, if it has one."""
+    length = unit_as_written(data["beam"].get("length"), "m")[0]
+    speed = unit_as_written(_speed_in(data.get("motion")), "rad/s")[0]
+    return DisplayUnits(known_unit("speed", speed), known_unit("length", length))
+
+
+def _speed_in(motion: Any) -> Any:
+    """The speed of a motion as its table has it, or that of the rotation within it."""
+    if not isinstance(motion, Mapping):
+        return motion
+    inner = motion.get("speed", motion.get("rotation"))
+    return _speed_in(inner)
 
 
 # Tables of the file -------------------------------------------------------------------------------

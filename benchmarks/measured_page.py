@@ -1,12 +1,14 @@
-"""Measures all figures that the README quotes.
+"""All figures that the README quotes, in one run: python -m benchmarks  (--save FILE: in parts)
 
 Writes docs/measured.md, docs/tradeoff.md and the README's table of measurements, which repeats rows of the
-first.  Takes a quarter of an hour, on a machine that does nothing else.  The long samples (10 000 scenes and
-more) have commands of their own.
+first, on a machine that does nothing else.  With a file, a run that is interrupted goes on after the last
+section that was finished; a file of other versions is refused.  The long samples (10 000 scenes and more)
+have commands of their own.
 """
 
 from __future__ import annotations
 
+import argparse
 import platform
 from concurrent.futures import ProcessPoolExecutor
 from datetime import date
@@ -14,6 +16,7 @@ from importlib.metadata import version
 from multiprocessing import get_context
 from os import cpu_count
 from pathlib import Path
+from time import perf_counter
 
 from beamdyn import __version__
 from benchmarks import (
@@ -21,6 +24,7 @@ from benchmarks import (
     brakes,
     extremes,
     frequencies,
+    loads,
     motions,
     ratios,
     responses,
@@ -35,6 +39,7 @@ from benchmarks import (
     tradeoff,
     transient,
 )
+from benchmarks.resumable import SavedRows
 from benchmarks.rows import Row, show
 
 PAGE = Path(__file__).parents[1] / "docs" / "measured.md"
@@ -42,6 +47,7 @@ SECTIONS = {
     "Frequencies": frequencies,
     "Many designs": study,
     "Responses": responses,
+    "Loads along the span": loads,
     "Transients": transient,
     "Transients of records, ringing and abrupt motions": motions,
     "Steady response": steady,
@@ -86,14 +92,13 @@ Versions: {versions}.  Other programs: [peers](peers.md), by `python -m benchmar
 """
 
 
-def describe_run() -> str:
-    """Heading of the page: machine, versions and day."""
+def describe_machine() -> tuple[str, str]:
+    """Machine, and versions, on which the figures depend."""
     packages = ("numpy", "scipy", "scikit-fem")
     machine = (
         f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, {cpu_count()} cores"
     )
-    versions = ", ".join([f"beamdyn {__version__}", *(f"{name} {version(name)}" for name in packages)])
-    return _HEAD.format(day=date.today().isoformat(), machine=machine, versions=versions)
+    return machine, ", ".join([f"beamdyn {__version__}", *(f"{name} {version(name)}" for name in packages)])
 
 
 def write_section(title: str, rows: list[Row]) -> str:
@@ -103,8 +108,17 @@ def write_section(title: str, rows: list[Row]) -> str:
 
 
 def measure(title: str) -> list[Row]:
-    """Rows of a section, which are printed too."""
-    return show(title, *SECTIONS[title].PARTS)
+    """Rows of a section, which are printed too, and the time that it took."""
+    start = perf_counter()
+    rows = show(title, *SECTIONS[title].PARTS)
+    print(f"{title}: {perf_counter() - start:.0f} s", flush=True)
+    return rows
+
+
+def measure_apart(title: str) -> list[Row]:
+    """Rows of a section, in a process of its own: neither memory nor caches of one count for the next."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(measure, title).result()
 
 
 def quote_in_readme(page: str) -> None:
@@ -119,13 +133,15 @@ def quote_in_readme(page: str) -> None:
 
 
 def main() -> None:
-    text = describe_run()
-    for title in SECTIONS:
-        # Each in a process of its own: neither memory nor caches of one count for the next.
-        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-            text += write_section(
-                f"{title} (`{SECTIONS[title].__name__}`)", pool.submit(measure, title).result()
-            )
-        PAGE.write_text(text, encoding="utf-8")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--save", type=Path, help="file of sections, to which a run adds what it lacks")
+    machine, versions = describe_machine()
+    saved = SavedRows(parser.parse_args().save, f"{machine}; {versions}")
+    text = _HEAD.format(day=date.today().isoformat(), machine=machine, versions=versions)
+    for title, module in SECTIONS.items():
+        text += write_section(f"{title} (`{module.__name__}`)", saved.rows(title, measure_apart))
+    PAGE.write_text(text, encoding="utf-8")
     quote_in_readme(text)
     tradeoff.main()

@@ -30,9 +30,17 @@ def record(noise: float = 0.0) -> bd.Scene:
     return replace(TILTED, motion=bd.SampledRotation(MINUTE, speed))
 
 
+def jump() -> bd.Scene:
+    """10 s in 5000 samples, with a jump by 5 rad/s at half time."""
+    t = np.linspace(0, 10.0, 5000)
+    x = np.minimum(t / (10.0 / 3), 1)
+    return replace(TILTED, motion=bd.SampledRotation(t, 50 * x**2 * (3 - 2 * x) + 5.0 * (t > 5.0)))
+
+
 MOTIONS = {  # scene, end [s], tolerance, bound over Table 3's transient
     "a minute of a 1 kHz record, tolerance 1e-3": (record(), 60.0, 1e-3, "20"),
     "... with errors of 0.001 rad/s": (record(0.001), 60.0, 1e-3, ""),
+    "10 s of a record of 5000 samples with a jump, tolerance 1e-5": (jump(), 10.0, 1e-5, ""),
     "30 s of ringing at constant coefficients, tolerance 1e-3": (
         replace(TILTED, motion=bd.SteadyRotation(55.0)),
         30.0,

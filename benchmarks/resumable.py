@@ -1,6 +1,6 @@
-"""Random cases, measured on several processes; a long run keeps its answers in a file, and can go on.
+"""Long runs keep their answers in a file, and can go on: of random cases on several processes, of tables.
 
-The file has one answer, as JSON, on each line.
+The file has one answer, or the rows of one table, as JSON, on each line.
 """
 
 from __future__ import annotations
@@ -12,6 +12,9 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
+
+from beamdyn.common.files import write_text
+from benchmarks.rows import Row
 
 Answer = TypeVar("Answer")
 
@@ -60,6 +63,37 @@ class Cases(Generic[Answer]):
         if given.save:
             return self.resume(given.save, numbers, given.workers)
         return self.measure_all(numbers, given.workers)
+
+
+@dataclass(frozen=True)
+class SavedRows:
+    """Rows of measurements, by the titles of their tables, in a file.
+
+    Parameters
+    ----------
+    path : Path or None
+        The file; None keeps nothing.
+    versions : str
+        What the rows depend on: rows of other versions are refused.
+    """
+
+    path: Path | None
+    versions: str
+
+    def rows(self, title: str, measure: Callable[[str], list[Row]]) -> list[Row]:
+        """The rows of a table: those in the file, else those that `measure` finds, which are added to it."""
+        if self.path is None:
+            return measure(title)
+        saved = _rows(self.path)
+        if others := {each["versions"] for each in saved} - {self.versions}:
+            raise ValueError(f"{self.path} is of {others.pop()}, not of {self.versions}: name a new file")
+        for each in saved:
+            if each["title"] == title:
+                return [(what, measured, bound) for what, measured, bound in each["rows"]]
+        found = measure(title)
+        saved.append({"versions": self.versions, "title": title, "rows": found})
+        write_text(self.path, "".join(f"{json.dumps(row)}\n" for row in saved))
+        return found
 
 
 def add_options(parser: argparse.ArgumentParser, scenes: int, seed: int) -> None:

@@ -1,6 +1,6 @@
 """A million designs, and ten thousand speeds, on a Dask cluster of processes of this machine.
 
-Run: python -m benchmarks.scale   (--designs 20000 --speeds 50: reduced, a minute)
+Run: python -m benchmarks.scale   (--designs 20000 --speeds 50: reduced, a minute; --save FILE: in parts)
 
 Random designs, each with a speed of its own, are solved in this process and on the cluster; there a worker
 is killed in the middle.  The sweep is that of Table 3's wheel, 5 modes at 1e-3.  Efficiency is the time in
@@ -19,6 +19,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib.util import find_spec
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -26,6 +27,7 @@ import numpy as np
 
 import beamdyn as bd
 from benchmarks.cases.scenes import ROLLING
+from benchmarks.resumable import SavedRows
 from benchmarks.rows import Row, show
 
 SAMPLE, SPEED_SAMPLE = 20_000, 40  # designs, and speeds, that are also solved in one process
@@ -170,13 +172,18 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=1_000_000)
     parser.add_argument("--speeds", type=int, default=10_000)
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--save", type=Path, help="file of the two parts, to which a run adds what it lacks")
     given = parser.parse_args()
     if find_spec("distributed") is None:
         print('skipped: Dask is not installed; pip install "beamdyn[dask]"')
         return
-    parts = ((many_designs, given.designs), (many_speeds, given.speeds))
-    wanted = [lambda part=part, count=count: part(count, given.workers) for part, count in parts if count]
-    show("scale", *wanted)
+    versions = f"beamdyn {bd.__version__}, numpy {np.__version__}, {given.workers} workers"
+    saved = SavedRows(given.save, versions)
+    for part, count in ((many_designs, given.designs), (many_speeds, given.speeds)):
+        if count:
+            title = f"{part.__name__.replace('_', ' ')}: {count}"
+            rows = saved.rows(title, lambda _, part=part, count=count: [*part(count, given.workers)])
+            show(title, rows.__iter__)
 
 
 if __name__ == "__main__":

@@ -1,22 +1,30 @@
 """Speed of the interactive programs' screens, without their page.  Run: python -m benchmarks.screens
 
-Prints how long each screen takes to answer a change of its form, and to draw the answer.
+Prints how long each screen takes to answer a change of its form, to draw the answer as a file, and how many
+positions a second one process solves and makes into what the page shows while something is dragged.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from statistics import median
-from time import perf_counter
+from time import perf_counter, process_time
+from typing import Any
 
 from beamdyn.app.program import BEAMDYN
+from beamdyn.common.app import tasks
+from beamdyn.common.app.chart import options_of
 from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.app.screens import Program
+from beamdyn.common.app.form_entries import Entries
+from beamdyn.common.app.handles import draw_sheet
+from beamdyn.common.app.open_document import Answered, OpenDocument
+from beamdyn.common.app.screens import Document, Program, Screen
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
 RUNS, BOUND = 9, 100  # how often each is timed; the longest answer that feels immediate [ms]
+POSITIONS = 20  # a second, which feel fluent
 
 
 def time_screens(program: Program) -> Iterator[Row]:
@@ -29,6 +37,28 @@ def time_screens(program: Program) -> Iterator[Row]:
             answer = work.answered[screen.name].answer
             time = _time(lambda screen=screen, answer=answer: drawn(screen, answer, 1.0))
             yield f"{screen.name}: drawing as SVG [ms]", f"{1e3 * time:.0f}", ""
+            if screen.drags or screen.handles(answer, screen.last):
+                yield _positions(document, screen, work.entries)
+
+
+def _positions(document: Document, screen: Screen, entries: Entries) -> Row:
+    """Positions a second that one process solves and makes into what the page is sent, by processor time."""
+    times = []
+    for _ in range(RUNS):
+        start = process_time()
+        found = tasks.glance(document, screen, entries)
+        assert isinstance(found, Answered)
+        _show(screen, found.answer)
+        times.append(process_time() - start)
+    bound = f"{POSITIONS}" if screen.coarser({}) else ""  # of screens that are solved coarsely meanwhile
+    return f"{screen.name}: positions a second while dragging", f"{1 / min(times):.0f}", bound
+
+
+def _show(screen: Screen, answer: Any) -> None:
+    """Make what the page is sent of an answer."""
+    draw_sheet(screen, answer, screen.last)
+    for chart in screen.charts(answer, screen.last) if screen.charts else ():
+        json.dumps(options_of(chart))
 
 
 def _time(action: Callable[[], object]) -> float:

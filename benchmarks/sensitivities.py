@@ -1,116 +1,143 @@
-"""Derivatives of frequencies by the numbers of a scene, against other programs' frequencies beside it.
+"""Derivatives of frequencies by the numbers of a scene, against differences in 40 digits.
 
-Run: python -m benchmarks.sensitivities [--scenes N] [--first N]
+Run: python -m benchmarks.sensitivities [--scenes N] [--first N] [--workers N] [--save FILE]
 
-Half of the scenes bend in one plane, half in two, with twist, shear, rotary inertia, springs and precone.
-Of one plane the reference are differences in 40-digit arithmetic (power series), of two planes the
-derivative of the polynomial through eight frequencies by collocation.  Printed is the largest error of the
-relative change of a frequency over that of a number, and how many errors exceed the stated ones.
+Half of the scenes are slender beams in one plane, to 0.999 of the critical speed and a tension of 1e5 EI/L^2;
+half have every kind of input: two planes, twist, shear, rotary inertia, stretch, precone, springs at the root
+and along the beam, point masses, tip bodies, all kinds of damping, some of them 0.  The reference are
+differences of eigenvalues of 40 digits (`cases.reference.many_digits`).  Printed is the largest error of the
+relative change of a frequency over that of a number, how many errors exceed the stated ones, and by which
+kinds of numbers frequencies were differentiated.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-from functools import partial
+import os
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from time import process_time
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
 
 import numpy as np
-from mpmath import mp, mpf
 
 import beamdyn as bd
 from beamdyn.common.announced import unannounced
-from beamdyn.sensitivities.interpolation import evaluate_nearby
 from beamdyn.sensitivities.scene_numbers import SceneNumber
-from beamdyn.studies.inputs import scene_of
-from benchmarks.cases.random_physics import random_physics_scene
+from benchmarks.cases.random_inputs import random_inputs_scene
 from benchmarks.cases.random_scenes import random_scene
-from benchmarks.cases.reference.of_scene import exact
-from benchmarks.cases.reference.of_two_planes import coned_frequencies_of, squared_frequencies
+from benchmarks.cases.reference.many_digits.differences import Number, frequency_derivatives
+from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 
 MODES = 3
-_BESIDE = 1e-3  # relative step of the differences in 40 digits: their error is of its eighth power
-_RTOL = 1e-10  # of the collocation
-_ALONE = ("speed", "model.damping_ratio")  # whose derivatives have no such reference
-_OF_SCENE = 3  # numbers of a scene in two planes whose reference is computed
 
 
-def compare(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Errors of the relative changes of one scene; and the stated ones with the reference's, shape (k,)."""
-    rng = np.random.default_rng(seed)
-    scene, speed = random_physics_scene(rng) if seed % 2 else random_scene(rng)
-    with unannounced():
-        found = bd.frequency_sensitivities(scene, speed, MODES)
-    known = np.isfinite(found.derivative).all(axis=1)
-    numbers = [k for k, each in enumerate(found.inputs) if known[k] and each.name not in _ALONE]
-    chosen = rng.permutation(numbers)[:_OF_SCENE] if seed % 2 else numbers
-    reference = by_collocation if seed % 2 else by_differences
-    errors, stated = [], []
-    for k in chosen:
-        number = found.inputs[k]
-        size = max(abs(number.value), 100 * number.step) / found.value
-        truth, doubt = reference(found.scene, speed, number)
-        errors.append((found.derivative[k] - truth) * size)
-        stated.append((found.error[k] + doubt) * size)
-    return np.abs(np.concatenate(errors)), np.concatenate(stated)
+@dataclass(frozen=True)
+class Case:
+    """Derivatives of one scene.
 
-
-def by_differences(scene: bd.Scene, speed: float, number: SceneNumber) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of frequencies [Hz / unit of the number] from eight 40-digit ones beside the scene.
-
-    Their squares are differenced, which are smooth where a frequency vanishes.  What the derivatives' own
-    errors may be is added: the numbers of the scenes beside are rounded to 16 digits.
+    Parameters
+    ----------
+    number : int
+        Its seed.
+    names : tuple of str
+        The number that each derivative is by.
+    errors, stated : tuple of float
+        Errors of the relative changes, and the stated ones with the reference's.
+    seconds : float
+        Processor time of the reference [s].
+    refusal : str
+        Why there is no answer, or no reference.
     """
-    sides = (-4, -3, -2, -1, 1, 2, 3, 4) if number.value - number.step >= number.least else range(8)
-    values = [number.value + side * _BESIDE * 100 * number.step for side in sides]
-    with mp.workdps(40):
-        rows = [exact(scene_of(scene, {number.name: v}), speed, MODES) for v in values]
-        step = mpf(100 * number.step)  # in units of it the powers have like sizes
-        apart = [(mpf(value) - mpf(number.value)) / step for value in values]
-        powers = mp.matrix([[x**k for x in apart] for k in range(8)])
-        weights = mp.lu_solve(powers, mp.matrix([0, 1, 0, 0, 0, 0, 0, 0])) / step
-        squares = [
-            mp.fsum(-w * row[j] ** 2 for w, row in zip(weights, rows, strict=True)) for j in range(MODES)
-        ]
-        found = [
-            mp.re(each) / (2 * s.imag) for each, s in zip(squares, exact(scene, speed, MODES), strict=True)
-        ]
-        rounding = [float(2e-16 * mp.norm(weights, 1) * s.imag / mp.pi) for s in exact(scene, speed, MODES)]
-        return np.array([float(each / (2 * mp.pi)) for each in found]), np.array(rounding)
+
+    number: int
+    names: tuple[str, ...] = ()
+    errors: tuple[float, ...] = ()
+    stated: tuple[float, ...] = ()
+    seconds: float = 0.0
+    refusal: str = ""
 
 
-def by_collocation(scene: bd.Scene, speed: float, number: SceneNumber) -> tuple[np.ndarray, np.ndarray]:
-    """The same from eight frequencies by collocation of the differential equations."""
-
-    def squares(value: float) -> tuple[np.ndarray, float]:
-        beside = scene_of(scene, {number.name: value})
-        if scene.mount.precone:
-            found, change = coned_frequencies_of(beside, speed, MODES, _RTOL)
-            return found**2, change
-        return squared_frequencies(beside, speed, MODES, _RTOL)
-
-    pairs, weights = evaluate_nearby(number, squares)
-    frequency = np.sqrt(squares(number.value)[0]) / (2 * np.pi)
-    changes = weights @ np.array([square for square, _ in pairs])
-    relative = np.abs(weights).sum() * max(change for _, change in pairs) / 2
-    return changes / (8 * np.pi**2 * frequency), relative * frequency
+def measure(seed: int) -> list[Case]:
+    """The derivatives of the scene of a seed, against the reference."""
+    try:
+        return [_measured(seed)]
+    except (ValueError, ArithmeticError) as error:
+        return [Case(seed, refusal=str(error))]
 
 
-def summarize(scenes: int, first: int) -> Iterator[Row]:
+def _measured(seed: int) -> Case:
+    rng = np.random.default_rng(seed)
+    with unannounced():
+        scene, speed = random_inputs_scene(rng) if seed % 2 else random_scene(rng)
+        found = bd.frequency_sensitivities(scene, speed, MODES)
+    known = np.isfinite(found.derivative)
+    chosen = np.flatnonzero(known.any(axis=1))
+    numbers = [at_its_size(found.inputs[k]) for k in chosen]
+    start = process_time()
+    _, truths, doubts = frequency_derivatives(found.scene, speed, MODES, numbers)
+    seconds = process_time() - start
+    names, errors, stated = [], [], []
+    for k, number, truth, doubt in zip(chosen, numbers, truths, doubts, strict=True):
+        size, there = number.size / found.value[known[k]], known[k]
+        errors.extend((np.abs(found.derivative[k] - truth)[there] * size).tolist())
+        stated.extend(((found.error[k] + doubt)[there] * size).tolist())
+        names.extend([number.name] * int(there.sum()))
+    return Case(seed, (*names,), (*errors,), (*stated,), seconds)
+
+
+def at_its_size(given: SceneNumber) -> Number:
+    """The number for the reference, with the size of its kind where it is near 0."""
+    return Number(given.name, given.value, max(abs(given.value), 100 * given.step))
+
+
+def summarize(cases: Sequence[Case]) -> Iterator[Row]:
     """The largest error, and how many the stated ones do not cover."""
-    answers = [compare(seed) for seed in range(first, first + scenes)]
-    error, stated = (np.concatenate(each) for each in zip(*answers, strict=True))
-    yield f"derivatives of {MODES} modes of {scenes} random scenes", f"{error.size}", ""
+    answered = [case for case in cases if not case.refusal]
+    pairs = [
+        (case, *each) for case in answered for each in zip(case.names, case.errors, case.stated, strict=True)
+    ]
+    error, stated = (np.array([pair[k] for pair in pairs]) for k in (2, 3))
+    yield f"derivatives of {MODES} modes of {len(answered)} random scenes", f"{error.size}", ""
+    yield "scenes without an answer or a reference", f"{len(cases) - len(answered)}", ""
     yield "... largest error of a relative change", f"{error.max():.0e}", "1e-08"
     yield "... errors above the stated ones", f"{(error > stated).sum()}", "0"
     yield "... largest error over the stated one", f"{(error / stated).max():.2g}", "1"
+    for kind, share in (("slender beams", 0), ("every kind of input", 1)):
+        seconds = [case.seconds for case in answered if case.number % 2 == share]
+        yield f"... reference, {kind}: processor time of a scene [s]", f"{np.mean(seconds or [0]):.1f}", ""
+    kinds = Counter(re.sub(r"\[\d+\]", "", pair[1]) for pair in pairs)
+    yield "kinds of numbers", f"{len(kinds)}", ""
+    for kind, count in sorted(kinds.items()):
+        most = max(pair[2] for pair in pairs if re.sub(r"\[\d+\]", "", pair[1]) == kind)
+        yield f"... {kind}: derivatives, largest error", f"{count}, {most:.0e}", "1e-08"
+    for case, name, each, bound in pairs:
+        if each > min(bound, 1e-8):
+            yield f"... seed {case.number}, {name}", f"{each:.1e}, stated {bound:.1e}", ""
+    for case in cases:
+        if case.refusal:
+            yield f"... seed {case.number}", case.refusal, ""
 
 
-PARTS = (partial(summarize, 6, 0),)
+def measure_sample() -> Iterator[Row]:
+    """The first six scenes."""
+    yield from summarize(Cases(measure, Case).measure_all(range(6)))
+
+
+PARTS = (measure_sample,)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_options(parser, scenes=200, seed=0)
+    given = parser.parse_args()
+    cases = Cases(measure, Case).run(given)
+    show("Sensitivities", lambda: summarize(cases))
+
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0)
-    given = parser.parse_args()
-    show("Sensitivities", partial(summarize, given.scenes, given.first))
+    main()

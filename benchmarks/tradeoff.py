@@ -44,8 +44,9 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).parents[1] / "docs"
 MODES, LOCUS = 3, 101
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
+LEGENDRE, SIZES = "Ritz, legendre", range(4, 15)  # functions whose times are compared
 FAMILIES = {
-    "Ritz, legendre": "Legendre functions",
+    LEGENDRE: "Legendre functions",
     "Ritz, eigenfunctions": "eigenfunctions",
     "elements, graded": "graded elements",
     "elements, graded, extrapolated": "graded, extrapolated",
@@ -275,9 +276,8 @@ RULES = """The rules follow from the fronts:
 - **Legendre functions.** They alone make {legendre:.0%} of the {points} points of the frequency fronts above.
   Elements make {elements:.0%}: their assembly takes longer than a whole Ritz solution. So `tolerance=` never
   chooses elements by itself; `discretization="fem"` is for a second opinion.
-- **A function too many costs little, a model too many costs much.** At one speed {large} functions take
-  {dear:.2f} times as long as {small}: the time goes into building the matrices, not into their size. Each
-  model that is tried on the way costs as much as the answer.
+- **A function too many costs little, a model too many costs much.** {sizes}
+  Each model that is tried on the way costs as much as the answer.
 - **What is chosen**, beside the fewest functions whose true error keeps the tolerance: the model takes
   {own:.2f} times as long in the median, {own_most:.2f} at most. The whole call takes {call:.1f} times as long
   in the median, {call_most:.1f} at most; of these, 2 are the estimate of the error, which needs a second
@@ -384,20 +384,16 @@ def write_rules(
     """What the measurements say of the choice."""
     points = [m for d in diagrams for m in d.front]
     share = {
-        kind: sum(m.family.startswith(kind) for m in points) / len(points)
-        for kind in ("Ritz, legendre", "elements")
+        kind: sum(m.family.startswith(kind) for m in points) / len(points) for kind in (LEGENDRE, "elements")
     }
-    times = {m.size: m.time for m in published.measurements if m.family == "Ritz, legendre"}
     raced = [m for d in motion if any(m.family == OURS for m in d.front) for m in d.front]
     own, call = ([getattr(c, name) / c.cheapest for c in chosen] for name in ("own", "call"))
     return RULES.format(
-        legendre=share["Ritz, legendre"],
+        legendre=share[LEGENDRE],
         elements=share["elements"],
         points=len(points),
         transient=f"{sum(m.family == OURS for m in raced)} of {len(raced)}",
-        small=4,
-        large=14,
-        dear=times[14] / times[4],
+        sizes=compare_sizes(published),
         own=np.median(own),
         own_most=max(own),
         call=np.median(call),
@@ -405,6 +401,18 @@ def write_rules(
         kept=sum(c.error <= c.tolerance for c in chosen),
         covered=sum(c.error <= max(c.estimate, c.floor) for c in chosen),
         cases=len(chosen),
+    )
+
+
+def compare_sizes(diagram: Diagram) -> str:
+    """What more Legendre functions cost at one speed, as far as they were measured within the budget."""
+    times = {m.size: m.time for m in diagram.measurements if m.family == LEGENDRE and m.size in SIZES}
+    if len(times) < 2:
+        return "How little was not measured this time: the budget was used up before."
+    small, large = min(times), max(times)
+    return (
+        f"At one speed {large:.0f} functions take\n  {times[large] / times[small]:.2f} times as long as "
+        f"{small:.0f}: the time goes into building the matrices, not into their size."
     )
 
 

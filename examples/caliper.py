@@ -3,20 +3,18 @@
 Writes caliper.png into the current directory.
 """
 
-from matplotlib.figure import Figure
-
+from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.pictures import save_figure
 from brakes import calipers
-from brakes.drawings.caliper import draw_caliper
+from brakes.drawings.caliper import caliper_drawing
 
 
 def draw():
     """Each caliper open (grey) and closed on the rim, with its forces."""
-    figure = Figure(figsize=(15, 11), layout="constrained")
-    for name, ax in zip(calipers.NAMED, figure.subplots(2, 3).flat, strict=True):
-        caliper = calipers.NAMED[name]().build()
-        draw_caliper(caliper, caliper.equilibrium(finger=40.0), ax, key=name == "eebrake")
-    return figure
+    named = [calipers.NAMED[name]().build() for name in calipers.NAMED]
+    drawn = [caliper_drawing(caliper, caliper.equilibrium(finger=40.0)) for caliper in named]
+    return figure_of([drawn[:3], drawn[3:]], Paper(1080.0, (400.0, 400.0)))
 
 
 def line(name):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,20 +11,30 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
-from beamdyn.app.inputs import DRAGS, TABLES, read
+from beamdyn.app.headlines import of_locus
+from beamdyn.app.inputs import DRAGS, EFFORT, TABLES, read
+from beamdyn.app.speed_charts import Meeting, describe_margin, frequency_chart
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
+from beamdyn.campbell_diagram.margins import Margin, margins_at_rated
 from beamdyn.cautions import critical_label, describe_choice, notes_of, warnings_of
+from beamdyn.common.app.chart import Chart
 from beamdyn.common.app.screens import Screen
+from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.views import rows_of
+from beamdyn.model_error.choice import plain_physics
 from beamdyn.output.campbell import Curves, plot_campbell
 from beamdyn.output.notes import note_below
 from beamdyn.output.plots import mark_critical
+from beamdyn.scene.motion import Line
+from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.locus import Locus
-from beamdyn.steady.resonance import Crossings
+from beamdyn.steady.crossings import Crossings, label_crossing
+from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
 from beamdyn.tables.results import crossings_table, locus_table
-from beamdyn.tables.rows import locus_csv
 
-_SPEEDS = 121
+_SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
+_COARSE, _ROUGH = "coarse", 1e-3  # a table that says so, and the tolerance then
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
 
 
@@ -42,12 +52,21 @@ class Frequencies:
         Critical speed.
     refused : str
         Why there are no crossings, if the motion has none that are known.
+    lines : tuple of Line
+        Lines that excite the beam.
+    meetings : tuple of (float, float, str)
+        Speed [rad/s] and frequency [Hz] of each crossing, and what crosses.
+    margins : tuple of Margin
+        Distances of the modes from the nearest line at the speed at which the motion settles.
     """
 
     locus: Locus
     crossings: Crossings | None
     critical: CriticalPoint
     refused: str
+    lines: tuple[Line, ...] = ()
+    meetings: tuple[Meeting, ...] = ()
+    margins: tuple[Margin, ...] = ()
 
     @property
     def have_same_physics(self) -> bool:
@@ -57,29 +76,126 @@ class Frequencies:
 
 def solve(tables: Mapping[str, Any]) -> Frequencies:
     """The locus, and where the scene's motion excites a mode."""
-    scene, top, modes = read(tables)
-    locus = frequency_locus(scene, np.linspace(0.0, top, _SPEEDS), modes)
-    crossings, refused = None, ""
-    if scene.motion is not None:
-        try:
-            crossings = resonance_speeds(scene, top, modes)
-        except ValueError as error:
-            refused = f"no excitation lines: {error}"
-    return Frequencies(locus, crossings, critical_point(scene), refused)
+    scene, top, modes = read({name: table for name, table in tables.items() if name != _COARSE})
+    if _COARSE in tables:
+        return _solve_coarsely(scene, top, modes)
+    locus = frequency_locus(scene, _speeds(scene, top, _SPEEDS), modes)
+    critical = critical_point(scene)
+    if scene.motion is None:
+        return Frequencies(locus, None, critical, "")
+    try:
+        crossings = resonance_speeds(scene, top, modes)
+    except ValueError as error:
+        return Frequencies(locus, None, critical, f"no excitation lines: {error}")
+    return Frequencies(
+        locus,
+        crossings,
+        critical,
+        "",
+        crossings.lines,
+        tuple(
+            (c.speed, c.frequency, label_crossing(c.line, c.kind, c.mode, c.second_mode)) for c in crossings
+        ),
+        _margins(locus, crossings.lines),
+    )
+
+
+def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The same with fewer speeds and digits, for a picture of it."""
+    return {**tables, _COARSE: {}}
+
+
+def _solve_coarsely(scene: Scene, top: float, modes: int) -> Frequencies:
+    """The locus at few speeds, and where lines meet it between them."""
+    scene = plain_physics(scene)
+    locus = frequency_locus(scene, _speeds(scene, top, _FEW_SPEEDS), modes, tolerance=_ROUGH)
+    critical = critical_point(scene, tolerance=_ROUGH)
+    try:
+        lines = _lines_of(locus)
+    except ValueError as error:
+        return Frequencies(locus, None, critical, str(error))
+    return Frequencies(
+        locus, None, critical, "", lines, tuple(_meetings(locus, lines)), _margins(locus, lines)
+    )
+
+
+def _speeds(scene: Scene, top: float, count: int) -> np.ndarray:
+    """Speeds up to the top, that of the motion among them."""
+    own = motion_speed(scene)
+    return np.union1d(np.linspace(0.0, top, count), [own] if own is not None and own < top else [])
+
+
+def motion_speed(scene: Scene) -> float | None:
+    """Speed at which the motion settles [rad/s]; None where it does not turn, or not steadily."""
+    speed = None if scene.motion is None else abs(scene.motion.final_speed)
+    return speed if speed is not None and 0 < speed < np.inf else None
+
+
+def _lines_of(locus: Locus) -> tuple[Line, ...]:
+    """Lines of the load, of the motion of a locus's scene."""
+    motion = locus.scene.motion
+    if motion is None:
+        return ()
+    system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
+    return tuple(distinct_lines(excitation_lines(system, motion, 1)[0]))
+
+
+def _meetings(locus: Locus, lines: Sequence[Line]) -> Iterator[Meeting]:
+    """Where lines meet the modes of a locus, taken as straight between its speeds."""
+    for line in lines:
+        apart = locus.frequency - line.multiple * locus.speeds[:, None] / (2 * np.pi)
+        for s, mode in np.argwhere(apart[:-1] * apart[1:] < 0).tolist():
+            share = apart[s, mode] / (apart[s, mode] - apart[s + 1, mode])
+            speed = float(locus.speeds[s] + share * (locus.speeds[s + 1] - locus.speeds[s]))
+            yield speed, line.multiple * speed / (2 * np.pi), f"mode {mode + 1}, {line.name}"
+
+
+def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
+    """Margins at the speed at which the motion settles, if that is on the locus."""
+    speed = motion_speed(locus.scene)
+    if speed is None or speed > locus.speeds[-1] or not lines:
+        return ()
+    names = [f"mode {i}" for i in range(1, locus.frequency.shape[1] + 1)]
+    return tuple(margins_at_rated("", names, locus, lines, speed))
+
+
+def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
+    """Frequencies over speed with what is known of them."""
+    same = answer.have_same_physics
+    return [
+        frequency_chart(
+            answer.locus,
+            answer.lines,
+            answer.meetings if same else (),
+            answer.margins if same else (),
+            (answer.critical.speed, critical_label(answer.critical)),
+            motion_speed(answer.locus.scene),
+        )
+    ]
 
 
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
     """Crossings and frequencies, each with the physics that was chosen for it."""
     parts: list[RenderableType] = [locus_table(answer.locus), *describe_choice(answer.locus)]
+    if answer.margins:
+        parts = [_margins_table(answer), *parts]
     if answer.crossings is not None:
         parts = [crossings_table(answer.crossings), *describe_choice(answer.crossings), *parts]
     return parts
 
 
+def _margins_table(answer: Frequencies) -> RenderableType:
+    """Distance of the nearest line from each mode at the speed of the motion."""
+    at = answer.locus.display_units.speed_unit().say(answer.margins[0].speed)
+    rows = [(m.name, f"{m.frequency:.5g}", describe_margin(m)) for m in answer.margins]
+    heads = "mode", "frequency [Hz]", "nearest line of excitation"
+    return table(f"Margins at the speed of the motion, {at}", heads, rows, (0, 2))
+
+
 def draw(answer: Frequencies, _: float = 0.0) -> Figure:
     """Campbell's diagram; without motion the locus alone."""
     figure = Figure(figsize=(9.0, 5.4), layout="constrained")
-    ax = figure.subplots()
+    ax, units = figure.subplots(), answer.locus.display_units
     if answer.crossings is None:
         answer.locus.plot(ax)
     elif answer.have_same_physics:
@@ -88,8 +204,8 @@ def draw(answer: Frequencies, _: float = 0.0) -> Figure:
         lines = {line.name: line.multiple for line in answer.crossings.lines}
         names = tuple(f"mode {i}" for i in range(1, answer.locus.frequency.shape[1] + 1))
         curves = Curves(answer.locus.speeds, answer.locus.frequency, names)
-        plot_campbell([curves], lines, {}, ax)
-    mark_critical(ax, answer.critical.speed, critical_label(answer.critical))
+        plot_campbell([curves], lines, {}, ax, units.speed_unit().name)
+    mark_critical(ax, answer.critical.speed, critical_label(answer.critical), units)
     return note_below(figure, notes_of(answer.locus))
 
 
@@ -107,7 +223,7 @@ def warnings(answer: Frequencies) -> Sequence[str]:
 
 def rows(answer: Frequencies) -> Iterable[Sequence[object]]:
     """Rows of the CSV file."""
-    return locus_csv(answer.locus)
+    return rows_of(answer.locus)
 
 
 FREQUENCIES = Screen(
@@ -122,4 +238,8 @@ FREQUENCIES = Screen(
     rows,
     sweeps=sweeps_of(frequency_outputs, "mount.setting_angle=0:180:31 deg", "frequency_1"),
     drags=DRAGS,
+    headline=lambda answer: [*of_locus(answer.locus, answer.critical)],
+    coarser=coarser,
+    charts=chart,
+    effort=EFFORT,
 )

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, get_args
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, create_model
 
 from beamdyn import natural_modes
 from beamdyn.common.app.screens import Drag
@@ -19,12 +19,15 @@ from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_f
 from beamdyn.scene.scene import Scene
 
 # On the form of each screen, in this order.
-TABLES = ("options", "mount", "beam", "motion", "model", "damping", "physics")
+SCENE_TABLES = ("mount", "beam", "motion", "model", "damping", "physics")
+TABLES = ("options", *SCENE_TABLES)
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
 )
+# What makes an answer take long.
+EFFORT = "It takes longer at higher speeds, with more modes, and of a beam that varies much along its length."
 # Lists of tables, and what they are.
 _LISTS = {
     "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
@@ -40,6 +43,41 @@ class OptionsInput(Section):
         float, Quantity("rad/s", symbol="omega", meaning="top speed", above=0, remedy='e.g. "150 rad/s"')
     ]
     modes: Annotated[float, WholeNumber(symbol="n", meaning="how many modes", least=1, most=8)]
+
+
+class OperationInput(Section):
+    """[operation]: one speed, which is an option on the command line."""
+
+    speed: Annotated[
+        float,
+        Quantity("rad/s", symbol="omega", meaning="speed of rotation", least=0, remedy='e.g. "55 rad/s"'),
+    ]
+
+
+class TradeInput(Section):
+    """[trade]: how good an answer is to be."""
+
+    digits: Annotated[float, WholeNumber(symbol="n", meaning="digits to keep", least=1, most=10)]
+
+
+class RunInput(Section):
+    """[run]: how long a transient is, and the window in which its peak is sought."""
+
+    end: Annotated[float, Quantity("s", meaning="end of the run", above=0, remedy='e.g. "12 s"')]
+    window_start: Annotated[float, Quantity("s", meaning="start of the window of the peak", least=0)] = 0.0
+    window_end: Annotated[
+        float | None,
+        Quantity("s", meaning="end of the window of the peak; that of the run if not given", above=0),
+    ] = None
+
+
+# Tables of the form that are not in the file of a scene.
+ASIDE: dict[str, type[Section]] = {
+    "options": OptionsInput,
+    "operation": OperationInput,
+    "trade": TradeInput,
+    "run": RunInput,
+}
 
 
 class _NoKind(Section):
@@ -59,7 +97,8 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         kinds[f"{table}.kind"] = tuple(by_kind)
         return [by_kind.get(_kind(entries, table, next(iter(by_kind))), _NoKind)]
 
-    inputs = [*describe(OptionsInput, "options."), *describe(SceneInput, choose=choose)]
+    aside = [entry for table, model in ASIDE.items() for entry in describe(model, f"{table}.")]
+    inputs = [*aside, *describe(SceneInput, choose=choose)]
     inputs = [
         dataclasses.replace(entry, choices=kinds[entry.path], required=False, default=None)
         if entry.path in kinds
@@ -97,20 +136,39 @@ def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
-    rest = {name: table for name, table in tables.items() if name != "options"}
-    options = validated(_OptionsTable, {"options": tables.get("options", {})}, "options").options
-    scene = scene_from_dict(rest)
-    _check_effort(scene, options.top_speed)
+    options = read_aside(tables, "options")
+    scene = read_scene(tables)
+    _check_effort(scene, options.top_speed, "options.top_speed")
     return scene, options.top_speed, int(options.modes)
 
 
-def _check_effort(scene: Scene, top_speed: float) -> None:
-    """Refuse a top speed that takes minutes: the faster a beam turns, the more functions a mode needs."""
-    first = 2 * math.pi * float(natural_modes(scene, 0.0, 1, tolerance=0.01).frequency[0])
-    if top_speed > _FASTEST * first:
+def read_at_speed(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
+    """The scene, one speed [rad/s] and the number of modes; raises `ConfigError`."""
+    speed, modes = read_aside(tables, "operation").speed, read_aside(tables, "options").modes
+    scene = read_scene(tables)
+    _check_effort(scene, speed, "operation.speed")
+    return scene, speed, int(modes)
+
+
+def read_scene(tables: Mapping[str, Any]) -> Scene:
+    """The scene alone; raises `ConfigError`."""
+    return scene_from_dict({name: table for name, table in tables.items() if name not in ASIDE})
+
+
+def read_aside(tables: Mapping[str, Any], name: str) -> Any:
+    """The values of a table that is not in the file of a scene; raises `ConfigError`."""
+    model = create_model("_Aside", __base__=Section, **{name: (ASIDE[name], ...)})  # pyright: ignore[reportCallIssue, reportArgumentType]
+    return getattr(validated(model, {name: tables.get(name, {})}, name), name)
+
+
+def _check_effort(scene: Scene, speed: float, path: str) -> None:
+    """Refuse a speed that takes minutes: the faster a beam turns, the more functions a mode needs."""
+    first = first_frequency(scene)
+    if speed > _FASTEST * first:
         bound = f"it must be at most {{limit}}, {_FASTEST} times the first natural frequency at rest"
-        raise InvalidValue("options.top_speed", top_speed, bound, unit="rad/s", limit=_FASTEST * first)
+        raise InvalidValue(path, speed, bound, unit="rad/s", limit=_FASTEST * first)
 
 
-class _OptionsTable(Section):
-    options: OptionsInput
+def first_frequency(scene: Scene) -> float:
+    """The first natural frequency at rest, to some digits [rad/s]."""
+    return 2 * math.pi * float(natural_modes(scene, 0.0, 1, tolerance=0.01).frequency[0])

@@ -6,18 +6,37 @@ from importlib.resources import files
 
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.app.inputs import inputs_of
+from beamdyn.app.mode_shapes import MODE_SHAPES
+from beamdyn.app.rotor import ROTOR
 from beamdyn.app.steady_state import STEADY_STATE
+from beamdyn.app.trade import TRADE
+from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.app.screens import Document, Program
 from beamdyn.config import parse_scene, with_physics_as_table
 
-SCREENS = (FREQUENCIES, STEADY_STATE)
+SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE)
 SCENE = Document(
     "scene",
     (files("beamdyn.app") / "scene.toml").read_text(encoding="utf-8"),
     inputs_of,
     parse_scene,
     SCREENS,
-    aside={"options.top_speed": "150 rad/s", "options.modes": "2"},
+    aside={
+        "options.top_speed": "150 rad/s",
+        "options.modes": "2",
+        "operation.speed": "100 rad/s",
+        "trade.digits": "3",
+        "run.end": "12 s",
+        "run.window_start": "0 s",
+        "run.window_end": "",
+    },
     in_fields=with_physics_as_table,
+    headings={
+        "options": "Speeds and modes",
+        "model": "Gravity and damping ratio",
+        "operation": "Speed",
+        "trade": "Digits to keep",
+        "run": "Time and window",
+    },
 )
 BEAMDYN = Program("beamdyn", "Rotating beam", (SCENE,))

@@ -40,6 +40,14 @@ class LineCrossing:
         Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
     operating : bool
         Whether the speed lies in the operating range; True where none was given.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> crossing = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(4,)).crossings[0]
+    >>> round(2 * np.pi * crossing.frequency / crossing.speed, 9)  # on the line: four a turn
+    4.0
     """
 
     label: str

@@ -14,6 +14,8 @@ from beamdyn._version import __version__
 from beamdyn.campbell_diagram.crossings import LineCrossing, coincident, find_crossings
 from beamdyn.campbell_diagram.margins import Margin, margins_at_rated, margins_in_range
 from beamdyn.common.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
+from beamdyn.common.display_units import DisplayUnits
+from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import DiscretizationChoice
@@ -74,6 +76,14 @@ class Campbell(StatesModelError):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> diagram = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(3, 4), rated=130.0)
+    >>> [(m.line.name, round(m.margin, 3)) for m in diagram.margins]
+    [('4P', -0.026)]
     """
 
     labels: tuple[str, ...]
@@ -89,6 +99,24 @@ class Campbell(StatesModelError):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)  # the first one
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        found, top = counted(len(self.crossings), "crossing"), self.loci[0].speeds[-1]
+        yield f"{found} of {counted(len(self.lines), 'line')} up to {self.say_speed(top)}"
+        yield counted(len(self.loci), "scene") if len(self.loci) > 1 else ""
+        yield error_at_most([c.error for c in self.crossings]) if self.crossings else ""
+        yield warned(self.warnings)
+
+    @property
+    def plot_label(self) -> str:
+        """Nothing: the labels of the scenes stand in the picture."""
+        return ""
+
+    @property
+    def display_units(self) -> DisplayUnits:
+        """Units of its tables, columns and pictures: of speeds the one that was asked for."""
+        return vars(self).get("_display_units") or super().display_units.with_others({"speed": self.unit})
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
@@ -117,7 +145,7 @@ class Campbell(StatesModelError):
             {line.name: line.multiple for line in self.lines},
             self._marked(),
             ax,
-            unit=self.unit,
+            unit=self.display_units.speed_unit().name,
             rated=self.rated,
             operating=self.operating,
         )
@@ -151,7 +179,7 @@ def campbell(
     per_rev: Iterable[int] = range(1, 7),
     rated: float | None = None,
     operating: tuple[float, float] | None = None,
-    unit: str = "rad/s",
+    unit: str | None = None,
     bounds: bool = False,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
@@ -176,8 +204,9 @@ def campbell(
     operating : (float, float), optional
         Lowest and highest operating speed [rad/s]: margins are stated over the range, and the crossings in it
         are marked.
-    unit : {"rad/s", "rpm"}
-        Unit of speeds in the picture and the tables; the numbers of the result are in rad/s.
+    unit : {"rad/s", "rpm"}, optional
+        Unit of speeds in the picture and the tables, by default that of the first scene; the numbers of the
+        result are in rad/s.
     bounds : bool
         Whether guaranteed bounds of the frequencies are computed at the rated speed, or else the top speed.
     discretization, tolerance
@@ -191,10 +220,18 @@ def campbell(
     ------
     ValueError
         If an argument is out of its range.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> diagram = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(2, 3, 4))
+    >>> [(c.line.name, round(c.speed, 2)) for c in diagram.crossings]  # rad/s
+    [('4P', 136.01)]
     """
     start = perf_counter()
     by_label, orders, bounds = _check_scenes(scenes), _check_orders(per_rev), flag("bounds", bounds)
-    one_of("unit", unit, UNITS)
+    unit = _check_unit(unit, next(iter(by_label.values())))
     speeds = _check_speeds(speeds)
     rated, operating = _check_operation(speeds, rated, operating)
     speeds = _with_operation(speeds, rated, operating)
@@ -243,15 +280,35 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
         for label in by_label:
             kind("scenes", label, str, "labels are text")
     else:
-        try:
-            by_label = {f"scene {i}": scene for i, scene in enumerate(scenes, 1)}
-        except TypeError:
-            by_label = {"": scenes}
+        by_label = _with_labels(scenes)
     if not by_label:
         raise InvalidValue("scenes", scenes, "it is empty; give at least one scene")
     for label, scene in by_label.items():
         kind(f"scenes[{label!r}]" if label else "scenes", scene, Scene, "give a beamdyn.Scene, or several")
     return by_label
+
+
+def _with_labels(scenes: Any) -> dict[str, Any]:
+    """One scene or several by their labels; by numbers if several have none, or the same."""
+    try:
+        each = [*scenes]
+    except TypeError:
+        return {_label_of(scenes): scenes}
+    numbered = {f"scene {i}": scene for i, scene in enumerate(each, 1)}
+    named = {_label_of(scene) or number: scene for number, scene in numbered.items()}
+    return named if len(named) == len(each) else numbered
+
+
+def _label_of(scene: object) -> str:
+    return scene.label if isinstance(scene, Scene) else ""
+
+
+def _check_unit(unit: str | None, scene: Scene) -> str:
+    """The unit that is given, or that of the scene."""
+    if unit is not None:
+        one_of("unit", unit, UNITS)
+        return unit
+    return scene.units.speed if scene.units.speed in UNITS else UNITS[0]
 
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:

@@ -37,6 +37,14 @@ class Margin:
     margin : float
         Frequency of the line over the natural frequency, less one: negative where the line is below; 0
         where they cross.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> margin = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(3, 4), rated=130.0).margins[0]
+    >>> margin.where, margin.mode
+    ('rated speed', 1)
     """
 
     label: str

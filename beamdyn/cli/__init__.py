@@ -9,6 +9,8 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
     linear_models,
     loads,
     published,
+    random_loads,
+    rotor,
     sensitivities,
     steady_state,
     studies,
@@ -17,6 +19,9 @@ from beamdyn.cli import (  # noqa: F401  (they add their commands to the app)
 )
 from beamdyn.cli.program import app, main
 from beamdyn.cli.values import parse_speeds
+from beamdyn.common.edge.completion import add_completion
 from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
 __all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "app", "main", "parse_speeds"]
+
+add_completion(app)

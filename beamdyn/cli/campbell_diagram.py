@@ -19,6 +19,7 @@ from beamdyn.cli.values import (
     parse_quantity,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
+from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,7 +34,11 @@ _SPEEDS = 301
 _SIZE = (8.5, 6.0)  # of the picture [inch]
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2',
+    )
+)
 def campbell(
     scenes: SceneFiles,
     /,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,18 +10,22 @@ from cyclopts import Parameter
 from beamdyn.cli.program import app, warn
 from beamdyn.cli.values import Text, naming_option, parse_quantity, parse_speed
 from beamdyn.common.edge.outputs import Flag, Outputs
+from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from beamdyn.decks.deck import Deck, DeckAudit
+    from beamdyn.decks.deck import Deck
 
 DeckFile = Annotated[Path, Parameter(name="FILE")]
 Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]
 PolynomialFile = Annotated[Path | None, Parameter(name="--polynomials")]
 
 
-@app.command(name="import")
+@app.command(
+    name="import",
+    help_epilogue=examples(
+        'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"',
+    ),
+)
 def import_deck(
     file: DeckFile,
     /,
@@ -56,6 +59,7 @@ def import_deck(
         Overwrite a file that exists.
     """
     from beamdyn.common.edge.tables import show
+    from beamdyn.decks.deck_tables import deck_tables
 
     outputs = Outputs(force=force)
     outputs.check(file, output=output, polynomials=polynomials)
@@ -64,7 +68,7 @@ def import_deck(
         raise ValueError(f'--speed = "{speed}": it is that of --polynomials; give both, or leave it out')
     deck = read_with(file, length, hub_radius)
     outputs.check(*deck.sources, output=output, polynomials=polynomials)
-    show(_deck_tables(deck))
+    show(deck_tables(deck))
     if output is not None:
         deck.write_scene(output, force)
         show([f"Written: {output}, for beamdyn modes {output} and the other commands."])
@@ -98,48 +102,3 @@ def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
         naming_option("hub_radius", "--hub-radius", hub_radius or ""),
     ):
         return read_deck(file, **given)
-
-
-def _deck_tables(deck: Deck) -> list[RenderableType]:
-    """What the deck is, its audit, and what of it is ignored."""
-    from beamdyn.common.edge.tables import table
-
-    audit, scene = deck.audit, deck.scene
-    size = f"{scene.beam.length:.6g} m on a hub of {scene.mount.radius:.6g} m"
-    title = f"{deck.title or 'Blade'} ({deck.kind}), {size}"
-    parts: list[RenderableType] = [table(title, ("", "", ""), _audit_rows(audit), (0, 2))]
-    if audit.steps:
-        heads = ("steep steps between stations", "x/L", "to x/L", "factor")
-        rows = [(s.name, f"{s.start:g}", f"{s.end:g}", f"{s.factor:.4g}") for s in audit.steps]
-        parts.append(table("", heads, rows))
-    if audit.shapes:
-        parts.append(_shape_table(audit))
-    ignored = [(entry.name, entry.values, entry.reason) for entry in deck.ignored]
-    if ignored:
-        parts.append(table("Ignored", ("in the deck", "values", "because"), ignored, (0, 1, 2)))
-    return parts
-
-
-def _audit_rows(audit: DeckAudit) -> Iterator[tuple[str, str, str]]:
-    yield "stations", f"{audit.stations}", "ascending from 0 to 1"
-    yield "mass", f"{audit.mass:.8g}", "kg, linear between stations, without tip body"
-    yield "centre of mass", f"{audit.centre:.8g}", "m from the root"
-    yield "first moment", f"{audit.first_moment:.8g}", "kg m about the root"
-    yield "second moment", f"{audit.second_moment:.8g}", "kg m2 about the root"
-    yield "", f"{audit.hub_second_moment:.8g}", "kg m2 about the axis of rotation"
-    for plane, ratio in zip(("flap", "edge"), audit.stiffness_ratios, strict=False):
-        yield f"{plane} stiffness", f"{ratio:.3g}", "smallest over largest"
-
-
-def _shape_table(audit: DeckAudit) -> RenderableType:
-    from beamdyn.common.edge.tables import table
-
-    rpm = audit.shape_speed * 9.549296585513721
-    speed = f"at {rpm:.4g} rpm" if audit.shape_speed else "at rest"
-    heads = ("mode", "sum of coefficients", "largest difference", "at x/L", "our frequency [Hz]")
-    rows = [
-        (s.mode, f"{s.coefficient_sum:.6f}", f"{s.difference:.4f}", f"{s.place:.3f}", f"{s.frequency:.5g}")
-        for s in audit.shapes
-    ]
-    title = f"Mode shapes of the deck beside those of its stations, without twist, {speed}; tip deflection 1"
-    return table(title, heads, rows)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from beamdyn.cli.program import app, deliver
-from beamdyn.cli.values import Discretization, SceneFile, Text, parse_positive, speed_or_final
+from beamdyn.cli.values import Discretization, SceneFile, Text, load_with, parse_positive, speed_or_final
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+from beamdyn.common.edge.program import examples
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"',
+    )
+)
 def equilibrium(
     scene: SceneFile,
     /,
@@ -34,12 +39,12 @@ def equilibrium(
     outputs
         Output files.
     """
-    from beamdyn import equilibrium, load_scene
+    from beamdyn import equilibrium
     from beamdyn.common.edge.html_report import Question
     from beamdyn.tables.equilibria import equilibrium_csv, equilibrium_table
 
     outputs.check(scene)
-    loaded = load_scene(scene)
+    loaded = load_with(scene, None, speed)
     given = {"speed": speed, "branch": branch, "discretization": discretization}
     question = Question.on_file("beamdyn equilibrium", scene, **given)
     result = equilibrium(loaded, speed_or_final(loaded, speed), branch, discretization)
@@ -47,7 +52,11 @@ def equilibrium(
     deliver(result, outputs, question, tables, rows, on_axes(result.plot), result.warnings)
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn branches examples/rolling_harvester.toml --top-speed "250 rad/s"',
+    )
+)
 def branches(
     scene: SceneFile,
     /,
@@ -69,7 +78,7 @@ def branches(
     outputs
         Output files.
     """
-    from beamdyn import equilibrium_branches, load_scene
+    from beamdyn import equilibrium_branches
     from beamdyn.common.edge.html_report import Question
     from beamdyn.tables.equilibria import branches_csv, branches_table
 
@@ -77,6 +86,6 @@ def branches(
     top = parse_positive("--top-speed", top_speed, "rad/s")
     given = {"top_speed": top_speed, "discretization": discretization}
     question = Question.on_file("beamdyn branches", scene, **given)
-    result = equilibrium_branches(load_scene(scene), top, discretization)
+    result = equilibrium_branches(load_with(scene, None, top_speed), top, discretization)
     tables, rows = [branches_table(result)], branches_csv(result)
     deliver(result, outputs, question, tables, rows, on_axes(result.plot), result.warnings)

@@ -18,9 +18,11 @@ from beamdyn.cli.values import (
     parse_positive,
     parse_speeds,
     speed_or_final,
+    unit_of_speed,
 )
 from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes
+from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +31,10 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.modes import Modes
 
 
-@app.command
+_GROWING = "divergence", "flutter"  # states of modes
+
+
+@app.command(help_epilogue=examples('beamdyn modes examples/tyre_harvester.toml --speed "50 rad/s"'))
 def modes(
     scene: SceneFile,
     /,
@@ -71,7 +76,7 @@ def modes(
     from beamdyn.tables.rows import modes_csv
 
     outputs.check(scene, shapes=shapes)
-    loaded = load_with(scene, physics)
+    loaded = load_with(scene, physics, speed)
     question = Question.on_file(
         "beamdyn modes",
         scene,
@@ -90,7 +95,11 @@ def modes(
     deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn locus examples/tyre_harvester.toml --speeds "0:150:31 rad/s"',
+    )
+)
 def locus(
     scene: SceneFile,
     /,
@@ -138,12 +147,12 @@ def locus(
         tolerance=tolerance,
         physics=physics,
     )
-    result = frequency_locus(load_with(scene, physics), given, modes, discretization, tolerance)
+    result = frequency_locus(load_with(scene, physics, speeds), given, modes, discretization, tolerance)
     tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
-    deliver(result, outputs, question, tables, rows, draw, warnings_of(result, tolerance))
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result, tolerance), _never(result))
 
 
-@app.command
+@app.command(help_epilogue=examples("beamdyn critical examples/tyre_harvester.toml"))
 def critical(
     scene: SceneFile,
     /,
@@ -186,7 +195,11 @@ def critical(
     deliver(result, outputs, question, [critical_answer(result)], warnings=warnings, refusal=refusal)
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn limits examples/tyre_harvester.toml --top-speed "400 rad/s"',
+    )
+)
 def limits(
     scene: SceneFile,
     /,
@@ -227,6 +240,7 @@ def limits(
     outputs.check(scene)
     top = parse_positive("--top-speed", top_speed, "rad/s")
     result = setting_angle_limits(load_with(scene, physics), top, discretization)
+    result = result.in_units(speed=unit_of_speed(top_speed))
     question = Question.on_file(
         "beamdyn limits", scene, top_speed=top_speed, discretization=discretization, physics=physics
     )
@@ -235,7 +249,7 @@ def limits(
     deliver(result, outputs, question, [limits_table(result)], warnings=result.warnings)
 
 
-@app.command
+@app.command(help_epilogue=examples("beamdyn terms examples/rolling_harvester.toml"))
 def terms(
     scene: SceneFile,
     /,
@@ -260,19 +274,15 @@ def terms(
     force
         Overwrite files that exist.
     """
-    from beamdyn.common.edge.file_words import as_in_files
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.tables import table
     from beamdyn.equations.terms import terms
+    from beamdyn.tables.single_answers import terms_table
 
     outputs = Outputs(json=json, report=report, force=force)
     outputs.check(scene)
     result = terms(load_with(scene, physics))
-    heads = ("", "term", "symbol", "largest", "reason")
-    shown = table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4))
-    left_out = [as_in_files(f"Left out: {effect.name}: {effect.reason}.") for effect in result.left_out]
     question = Question.on_file("beamdyn terms", scene, physics=physics)
-    deliver(result, outputs, question, [shown, result.excited(), *left_out])
+    deliver(result, outputs, question, [terms_table(result)])
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:
@@ -281,7 +291,7 @@ def _draw_locus(result: Locus, ax: Axes) -> None:
     from beamdyn.output.plots import mark_critical
 
     critical = critical_point(result.scene)
-    mark_critical(result.plot(ax), critical.speed, critical_label(critical))
+    mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
 
 
 def _write_shapes(result: Modes, path: Path, force: bool) -> None:
@@ -294,11 +304,19 @@ def _write_shapes(result: Modes, path: Path, force: bool) -> None:
     write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)
 
 
+def _never(result: Locus) -> str:
+    """That the beam is stable at none of the speeds; empty if it is at one."""
+    import numpy as np
+
+    unstable = np.isin(result.status, _GROWING).any(axis=1)
+    return f"at none of {len(result.speeds)} speeds is the beam stable" if unstable.all() else ""
+
+
 def _unstable(result: Modes) -> str:
     """The sentence that names the unstable modes and the critical speed; empty if all are stable."""
     from beamdyn import critical_point
 
-    unstable = [i for i, status in enumerate(result.status) if status in ("divergence", "flutter")]
+    unstable = [i for i, status in enumerate(result.status) if status in _GROWING]
     if not unstable:
         return ""
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)

@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from beamdyn.common.app.screens import Program
 
 
-def _program() -> Program:
+def make_program() -> Program:
+    """The program, imported when it is wanted."""
     from beamdyn.app.program import BEAMDYN
 
     return BEAMDYN
@@ -19,7 +20,7 @@ def _program() -> Program:
 
 add_command(
     app,
-    _program,
+    make_program,
     port=8080,
     about="The interactive program: frequencies and steady response of a beam in the browser.",
 )

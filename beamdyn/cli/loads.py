@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal
+
+from cyclopts import Parameter
 
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
@@ -24,6 +29,7 @@ from beamdyn.cli.values import (
     speed_or_final,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -34,7 +40,53 @@ if TYPE_CHECKING:
 LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 
 
-@app.command
+@Parameter(name="*")
+@dataclass(frozen=True)
+class SpanPlaces:
+    """Where loads are wanted: stations along the span, and points of their sections.
+
+    Parameters
+    ----------
+    at : str, optional
+        Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of jumps.
+    points : str, optional
+        Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, in which
+        the beam bends, and along the second. Default: the outermost.
+    """
+
+    at: Text | None = None
+    points: Text | None = None
+
+    @property
+    def options(self) -> dict[str, object]:
+        """The options, for the head of a report; None where one is not given."""
+        return dict(vars(self))
+
+    @property
+    def where(self) -> dict[str, Any]:
+        """The arguments of the core."""
+        return {
+            "at": None if self.at is None else parse_positions(self.at),
+            "points": None if self.points is None else parse_points(self.points),
+        }
+
+    @contextmanager
+    def named(self) -> Iterator[None]:
+        """Within it, a refusal of a place names its option and shows it as given."""
+        at, points = self.at or "", self.points or ""
+        with naming_option("at", "--at", at), naming_option("points", "--points", points):
+            yield
+
+
+EVERYWHERE = SpanPlaces()
+
+
+@app.command(
+    help_epilogue=examples(
+        'beamdyn loads examples/tyre_harvester.toml --speed "50 rad/s"',
+        'beamdyn loads examples/rolling_harvester.toml --t-end "12 s" --modes 3',
+    )
+)
 def loads(
     scene: SceneFile,
     /,
@@ -42,8 +94,7 @@ def loads(
     speed: Text | None = None,
     t_end: Text | None = None,
     speeds: Text | None = None,
-    at: Text | None = None,
-    points: Text | None = None,
+    places: SpanPlaces = EVERYWHERE,
     angle: Text | None = None,
     window: Text | None = None,
     cycles: LoadQuantity | None = None,
@@ -69,11 +120,8 @@ def loads(
         In a transient: end of the run with its unit, e.g. "30 s".
     speeds
         In steady response: start:stop:count, e.g. "1:150:100 rad/s", or a list, e.g. "50, 55 rad/s".
-    at
-        Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of jumps.
-    points
-        Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, in which
-        the beam bends, and along the second. Default: the outermost.
+    places
+        Stations, and points of the section.
     angle
         In equilibrium: angle of rotation at which gravity acts, with its unit, e.g. "90 deg"; default 0.
     window
@@ -99,22 +147,19 @@ def loads(
     outputs.check(scene)
     _check_together(speed, t_end, speeds, angle, window, cycles)
     question = Question.on_file(
-        "beamdyn loads", scene, speed=speed, t_end=t_end, speeds=speeds, at=at, points=points, angle=angle,
-        window=window, cycles=cycles, modes=modes, tolerance=tolerance, discretization=discretization,
-        physics=physics,
+        "beamdyn loads", scene, speed=speed, t_end=t_end, speeds=speeds, **places.options,
+        angle=angle, window=window, cycles=cycles, modes=modes, tolerance=tolerance,
+        discretization=discretization, physics=physics,
     )  # fmt: skip
-    where: dict[str, Any] = {
-        "at": None if at is None else parse_positions(at),
-        "points": None if points is None else parse_points(points),
-    }
+    where = places.where
     basis: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
-    with naming_option("at", "--at", at or ""), naming_option("points", "--points", points or ""):
+    with places.named():
         if t_end is not None:
             result, tables = _in_transient(load_moving(scene, physics), t_end, window, cycles, where, basis)
         elif speeds is not None:
-            result, tables = _in_steady_response(load_with(scene, physics), speeds, where, basis)
+            result, tables = _in_steady_response(load_with(scene, physics, speeds), speeds, where, basis)
         else:
-            loaded = load_with(scene, physics)
+            loaded = load_with(scene, physics, speed)
             result, tables = _in_equilibrium(loaded, speed, angle, where, discretization)
     span = {} if window is None else dict(zip(("start", "end"), parse_window(window), strict=True))
     draw = on_axes(lambda ax: result.plot(ax, quantity, **span))

@@ -71,12 +71,14 @@ def deliver(
         With the refusal, after everything has been written.
     """
     from beamdyn.cautions import describe_choice, noted
+    from beamdyn.common.display_units import in_display_units
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
 
     draw = None if draw is None else noted(draw, result)
     refusals = [refusal] if refusal else []
     tables = [*tables, *describe_choice(result)]
+    rows = in_display_units(rows, result.display_units)
     # The files of a long computation do not depend on who reads the tables.
     write(result, outputs, rows, draw, Report(question, tables, [*warnings, *refusals]))
     show(tables)

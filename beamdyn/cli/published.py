@@ -6,17 +6,17 @@ from pathlib import Path
 
 from beamdyn.cli.program import app
 from beamdyn.common.edge.outputs import Flag, check_folder
-from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.program import NoAnswer, examples
 
 
-@app.command
+@app.command(help_epilogue=examples("beamdyn reproduce --output pictures"))
 def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
     """Published numbers beside ours, with deviations and verdicts; draws the paper's figures.
 
     Parameters
     ----------
     output
-        Folder for the pictures; it is made if needed, and its pictures are replaced.
+        Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
     tables
         Compare with the tables of beams and blades of other sources too; takes some twenty seconds.
     """
@@ -25,6 +25,7 @@ def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False)
 
     check_folder("output", output)
     screen = console()
+    screen.print(f"Pictures go into the folder {output} (--output names another).\n")
     checked = compare_all(screen, output, tables)
     unexpected = sum(not row.as_expected for row in checked)
     if unexpected:

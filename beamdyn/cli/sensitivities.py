@@ -18,6 +18,7 @@ from beamdyn.cli.values import (
     speed_or_final,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -26,7 +27,12 @@ if TYPE_CHECKING:
 Answer = Literal["frequencies", "critical_speed", "crossings"]
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        "beamdyn sensitivities examples/tyre_harvester.toml --inputs beam.thickness",
+        "beamdyn sensitivities examples/tyre_harvester.toml --what critical_speed",
+    )
+)
 def sensitivities(
     scene: SceneFile,
     /,
@@ -42,8 +48,6 @@ def sensitivities(
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Derivatives of frequencies, of the critical speed or of resonance speeds by the numbers of the scene.
-
-    For example: beamdyn sensitivities scene.toml --speed "50 rad/s" --inputs beam.thickness --inputs speed
 
     Parameters
     ----------
@@ -88,7 +92,16 @@ def sensitivities(
     with of_file({}):
         result = _solve(loaded, what, speed, modes, order, inputs or None, discretization, tolerance)
     tables, rows = [sensitivities_table(result)], sensitivities_csv(result)
-    deliver(result, outputs, question, tables, rows, on_axes(result.plot), result.warnings)
+    draw, refusal = on_axes(result.plot), _refusal(result)
+    deliver(result, outputs, question, tables, rows, draw, result.warnings, refusal)
+
+
+def _refusal(result: Sensitivities) -> str:
+    """Which of the answers has no derivative, because it is none; empty if each has."""
+    import numpy as np
+
+    lost = [name for name, known in zip(result.answers, np.isfinite(result.value), strict=True) if not known]
+    return f"{' and '.join(lost)}: no such frequency, and no derivative of it" if lost else ""
 
 
 def _solve(

@@ -18,9 +18,14 @@ from beamdyn.cli.values import (
     parse_speeds,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+from beamdyn.common.edge.program import examples
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn resonances examples/rolling_harvester.toml --top-speed "150 rad/s"',
+    )
+)
 def resonances(
     scene: SceneFile,
     /,
@@ -61,12 +66,16 @@ def resonances(
     top = parse_positive("--top-speed", top_speed, "rad/s")
     options = {"modes": modes, "order": order, "discretization": discretization}
     question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options, physics=physics)
-    result = resonance_speeds(load_with(scene, physics), top, modes, order, discretization)
+    result = resonance_speeds(load_with(scene, physics, top_speed), top, modes, order, discretization)
     tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, warnings_of(result))
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn steady examples/rolling_harvester.toml --speeds "1:150:30 rad/s"',
+    )
+)
 def steady(
     scene: SceneFile,
     /,
@@ -107,7 +116,7 @@ def steady(
     given = parse_speeds(speeds)
     options: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
     question = Question.on_file("beamdyn steady", scene, speeds=speeds, **options, physics=physics)
-    result = steady_response(load_with(scene, physics), given, **options)
+    result = steady_response(load_with(scene, physics, speeds), given, **options)
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
     refusal = "" if result.stable.any() else none
     tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from beamdyn.cli.program import app, deliver
+from beamdyn.cli.spreads import answer_spread
 from beamdyn.cli.values import (
     Discretization,
     ModeCount,
@@ -16,22 +17,32 @@ from beamdyn.cli.values import (
     speed_or_final,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
+from beamdyn.common.edge.program import examples
+from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.input_sweep import Axis
     from beamdyn.common.edge.inputs import Input
+    from beamdyn.scene.scene import Scene
+    from beamdyn.studies.result import Study
 
 _MOST = 1_000_000  # designs
 _FACTOR = "factor of a property along the beam"
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn study examples/tyre_harvester.toml --vary "beam.thickness=0.1:0.4:7 mm"',
+        'beamdyn study examples/tyre_harvester.toml --spread "beam.thickness=+-2%"',
+    )
+)
 def study(
     scene: SceneFile,
     /,
     *,
     varying: VaryOptions = NOTHING_VARIED,
+    spreading: SpreadOptions = NO_SPREAD,
     what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     speed: Text | None = None,
     modes: ModeCount = 3,
@@ -43,7 +54,7 @@ def study(
 ) -> None:
     """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs.
 
-    For example: beamdyn study scene.toml --vary "beam.thickness=0.1:0.4:31 mm" --vary "speed=0:100:11 rad/s"
+    Or their ranges over tolerances, and the input that matters most.
 
     Parameters
     ----------
@@ -52,6 +63,8 @@ def study(
     varying
         Inputs that are varied. Names are those of the file; "speed"; or factors of properties as they are
         along the beam, such as "beam.scale.bending_stiffness=0.9:1.1:5".
+    spreading
+        Inputs that have a tolerance, in place of those that are varied.
     what
         frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the speeds at
         which modes meet lines of the excitation; amplitude, of the tip in steady motion; or peak, its largest
@@ -77,22 +90,28 @@ def study(
     from beamdyn.common.designs import check_designs
     from beamdyn.common.edge.html_report import Question
     from beamdyn.common.edge.input_sweep import designs_of, parse_axis
-    from beamdyn.common.edge.tables import progress_bar
+    from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.wording import of_file
     from beamdyn.tables.studies import study_csv, study_table
 
     outputs.check(scene)
-    if not varying.vary:
+    spreading.check(varying)
+    if not varying.vary and not spreading.spread:
         raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
-    known = _inputs()
+    loaded = load_with(scene, physics)
+    known = _inputs(loaded)
     axes = [parse_axis(known, text, OPTION, _MOST) for text in varying.vary]
     check_designs(designs_of(axes, varying.combine), _MOST, OPTION)
-    loaded = load_with(scene, physics)
     options = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
-    asked = varying.options | {"what": what, "speed": speed, "window": window} | options
+    asked = varying.options | spreading.options | {"what": what, "speed": speed, "window": window} | options
     question = Question.on_file("beamdyn study", scene, **asked, physics=physics)
     span = parse_window(window)
-    with progress_bar("designs") as progress, of_file({}):
+    if spreading.spread:
+        how = options | {"what": what, "speed": speed_or_final(loaded, speed), "window": span}
+        how |= {"workers": varying.workers, "store": varying.store}
+        answer_spread(loaded, known, spreading, outputs, question, how)
+        return
+    with at_work("designs") as progress, of_file({}):
         result = study(
             loaded,
             {axis.input.path: axis.values for axis in axes},
@@ -107,23 +126,50 @@ def study(
         )
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
     tables, rows = [study_table(result, units)], study_csv(result)
-    deliver(result, outputs, question, tables, rows, on_axes(result.plot), warnings_of(result, tolerance))
+    warnings, refusal = warnings_of(result, tolerance), _refusal(result)
+    deliver(result, outputs, question, tables, rows, on_axes(result.plot), warnings, refusal)
 
 
-def _inputs() -> list[Input]:
-    """The inputs of scene files that a study varies, each once, and the speed."""
+def _refusal(result: Study) -> str:
+    """Why no design has an answer; empty if one has."""
+    import numpy as np
+
+    from beamdyn.studies.answers import NO_ANSWERS
+
+    if result.answered.any():
+        return ""
+    states = ", ".join(np.unique(result.status[np.isin(result.status, NO_ANSWERS)]).tolist())
+    return f"at none of {result.designs.count} designs is there an answer: {states}"
+
+
+def _inputs(scene: Scene) -> list[Input]:
+    """The inputs of scene files that a study varies, each once, those in lists of a scene, and the speed."""
     from beamdyn.common.edge.input_sweep import numbers
     from beamdyn.common.edge.inputs import Input, Quantity, describe
     from beamdyn.config import SceneInput
-    from beamdyn.studies.inputs import NAMES, SCALE, SPEED
+    from beamdyn.studies.inputs import NAMES, SCALE, SPEED, unit_of
+    from beamdyn.studies.listed_numbers import listed_names
 
     by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in NAMES}
     factors = (name for name in NAMES if name.startswith(SCALE))
+
+    class ByWholeName(Input):
+        """An input that the last part of its name alone does not mean: a factor, or one in a list."""
+
+        @property
+        def name(self) -> str:
+            return self.path.removeprefix("beam.")
+
     of_scale = [
-        Input(name, SceneInput, float, Quantity("", "", _FACTOR), (), False, None) for name in factors
+        ByWholeName(name, SceneInput, float, Quantity("", "", _FACTOR), (), False, None) for name in factors
+    ]
+    in_lists = [
+        ByWholeName(name, SceneInput, float, Quantity(unit_of(name), "", name), (), False, None)
+        for name in listed_names(scene)
     ]
     of_speed = Quantity("rad/s", "omega", "speed")
-    return [*by_path.values(), *of_scale, Input(SPEED, SceneInput, float, of_speed, (), False, None)]
+    speed = Input(SPEED, SceneInput, float, of_speed, (), False, None)
+    return [*by_path.values(), *of_scale, *in_lists, speed]
 
 
 def _unit_of(axis: Axis) -> tuple[str, float]:

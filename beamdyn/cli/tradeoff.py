@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
-
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import ModeCount, SceneFile, Text, parse_positive, parse_speed
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from rich.console import Group
-
-    from beamdyn.tradeoffs import Diagram, Tradeoff
+from beamdyn.common.edge.outputs import NO_FILES, Outputs
+from beamdyn.common.edge.program import examples
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn tradeoff examples/tyre_harvester.toml --budget "10 s" --plot t.png',
+    )
+)
 def tradeoff(
     scene: SceneFile,
     /,
@@ -48,7 +44,8 @@ def tradeoff(
     """
     from beamdyn import load_scene
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.tables import progress_bar
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.tables.tradeoffs import diagram_table, tradeoff_csv, tradeoff_figure
     from beamdyn.tradeoffs import tradeoff
 
     outputs.check(scene)
@@ -59,47 +56,11 @@ def tradeoff(
     question = Question.on_file(
         "beamdyn tradeoff", scene, speed=speed, modes=modes, t_end=t_end, budget=budget
     )
-    with progress_bar("measuring") as progress:
+    with at_work("measuring") as progress:
         result = tradeoff(loaded, given, modes, end, limit, progress)
     tables, rows, draw = (
-        [_table(diagram) for diagram in result.diagrams],
-        _csv(result),
-        on_axes(lambda ax: _draw(result, ax)),
+        [diagram_table(diagram) for diagram in result.diagrams],
+        tradeoff_csv(result),
+        lambda: tradeoff_figure(result),
     )
     deliver(result, outputs, question, tables, rows, draw, result.warnings)
-
-
-def _table(diagram: Diagram) -> Group:
-    """Cost of each digit, the Pareto front, and the reference of the errors."""
-    from rich.console import Group
-    from rich.text import Text as Line
-
-    from beamdyn.common.edge.tables import table
-
-    rows = [
-        (f"{d.error:.0e}", d.family, d.setting, f"{1e3 * d.time:.3g}", "" if i == 0 else f"{d.ratio:.2f}")
-        for i, d in enumerate(diagram.per_digit)
-    ]
-    heads = ("error", "cheapest", "setting", "time [ms]", "over the digit before")
-    return Group(
-        table(diagram.title[:1].upper() + diagram.title[1:], heads, rows, (1, 2)),
-        Line(f"Pareto front: {diagram.summary}."),
-        Line(f"Error: of {diagram.error_of}."),
-        Line(f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that."),
-        *(Line(f"Left out: {sentence}.") for sentence in diagram.skipped),
-        Line(),
-    )
-
-
-def _csv(result: Tradeoff) -> Iterator[Sequence[object]]:
-    yield "diagram", "family", "setting", "size", "relative_error", "time_s", "in_front"
-    for diagram in result.diagrams:
-        for m in diagram.measurements:
-            yield diagram.title, m.family, m.setting, m.size, m.error, m.time, m in diagram.front
-
-
-def _draw(result: Tradeoff, ax: Axes) -> None:
-    rows, figure = -(-len(result.diagrams) // 2), ax.figure
-    size: Any = figure
-    size.set_size_inches(6.5 * min(2, len(result.diagrams)), 4.5 * rows)
-    result.plot(ax)

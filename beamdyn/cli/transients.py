@@ -25,7 +25,7 @@ from beamdyn.cli.values import (
     parse_window,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
-from beamdyn.common.edge.program import Interrupted
+from beamdyn.common.edge.program import Interrupted, examples
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,7 +37,11 @@ Integrator = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 _PERIODS, _FRAMES = 3, 60  # of a close-up
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn simulate examples/rolling_harvester.toml --t-end "12 s" --modes 3',
+    )
+)
 def simulate(
     scene: SceneFile,
     /,
@@ -101,7 +105,11 @@ def simulate(
     deliver(run, outputs, question, tables, rows, on_axes(run.plot), warnings_of(run))
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        'beamdyn sweep examples/rough_road.toml --speeds "50:60:3 rad/s" --window "1:2 s"',
+    )
+)
 def sweep(
     scene: SceneFile,
     /,
@@ -148,7 +156,7 @@ def sweep(
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
-    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene, physics)
+    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene, physics, speeds)
     question = Question.on_file(
         "beamdyn sweep",
         scene,
@@ -223,8 +231,8 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
     """A bar with the remaining time; where the sweep is interrupted, say what is done."""
-    from beamdyn.common.edge.tables import progress_bar
-    from beamdyn.transient.chunk_collector import SweepInterrupted
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.transient.sweep import SweepInterrupted
 
     finished = 0
 
@@ -234,7 +242,7 @@ def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], N
         show(done, total)
 
     try:
-        with progress_bar("sweep") as show:
+        with at_work("sweep") as show:
             yield progress
     except KeyboardInterrupt:
         raise Interrupted(_how_to_resume(finished, cases, store)) from None

@@ -198,19 +198,31 @@ def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]
     return [[parse_quantity(option, f"{number} {unit.group()}", "m") for number in part] for part in parts]
 
 
-def load_with(path: Path, physics: PhysicsOption = None) -> Scene:
-    """Read a scene, with the physics of the option in place of its own if that is given."""
+def load_with(path: Path, physics: PhysicsOption = None, *speeds: str | None) -> Scene:
+    """Read a scene, with the physics of the option in place of its own if that is given.
+
+    The answer shows its speeds in the unit of the options `speeds`, if one is given, else as in the file.
+    """
     from beamdyn.config import load_scene
 
     scene = load_scene(path)
-    return scene if physics is None else replace(scene, physics=physics)
+    units = scene.units.with_others({"speed": unit_of_speed(*speeds)})
+    return replace(scene, units=units, **({} if physics is None else {"physics": physics}))
 
 
-def load_moving(path: Path, physics: PhysicsOption = None) -> Scene:
+def unit_of_speed(*texts: str | None) -> str:
+    """Unit of the first option on speeds that is given; empty if none is, or speeds are not shown in it."""
+    from beamdyn.common.display_units import known_unit
+
+    found = (_UNIT.search(text.strip()) for text in texts if text is not None)
+    return next((known_unit("speed", unit.group()) for unit in found if unit), "")
+
+
+def load_moving(path: Path, physics: PhysicsOption = None, *speeds: str | None) -> Scene:
     """Read a scene that must have a motion, as `load_with` does."""
     from beamdyn.config import ConfigError
 
-    scene = load_with(path, physics)
+    scene = load_with(path, physics, *speeds)
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
         sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"

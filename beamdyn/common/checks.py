@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from types import NoneType, UnionType
 from typing import Any, get_args
 
@@ -12,6 +12,25 @@ import numpy as np
 
 MOST = 1e50  # largest size in SI units: products of six are still far from overflow
 _LONGEST = 60  # characters of a value that a message shows
+
+
+@dataclass(frozen=True)
+class RefusedCases:
+    """Which of N cases are refused.
+
+    Parameters
+    ----------
+    bad : ndarray of bool, shape (N,)
+        Those that are refused.
+    value : ndarray, shape (N,)
+        The value of each.
+    limit : ndarray, shape (N,), optional
+        Its bound, where that is a number.
+    """
+
+    bad: np.ndarray
+    value: np.ndarray
+    limit: np.ndarray | None
 
 
 @dataclass(eq=False)
@@ -37,6 +56,8 @@ class InvalidValue(ValueError):
         Name of another argument that the message mentions.
     where : str
         Said after the value: where it is refused, or in how many cases.
+    cases : RefusedCases, optional
+        Of an array of cases, which are refused.
     """
 
     field: str
@@ -47,6 +68,7 @@ class InvalidValue(ValueError):
     limit: float | None = None
     other: str = ""
     where: str = ""
+    cases: RefusedCases | None = None
 
     def __str__(self) -> str:
         name, remedy = self.field and f"{self.field} = ", self.remedy and f"; {self.remedy}"
@@ -54,6 +76,22 @@ class InvalidValue(ValueError):
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))
+
+    def by_case(self) -> dict[int, InvalidValue]:
+        """What is refused in each bad case, by the case."""
+        if self.cases is None:
+            return {}
+        bad, value, limit = self.cases.bad, self.cases.value, self.cases.limit
+        return {
+            i: replace(
+                self,
+                value=float(value[i]),
+                limit=None if limit is None else float(limit[i]),
+                where="",
+                cases=None,
+            )
+            for i in np.flatnonzero(bad).tolist()
+        }
 
     @property
     def shown(self) -> str:
@@ -69,6 +107,14 @@ class InvalidValue(ValueError):
     def _filled(self, text: str) -> str:
         limit = "" if self.limit is None else self._with_unit(self.limit)
         return text.replace("{limit}", limit).replace("{unit}", self.unit).replace("{other}", self.other)
+
+
+class NoModelAnswer(ValueError):
+    """Good arguments to which the model has no answer, such as a speed past the critical speed."""
+
+
+class BeyondModel(InvalidValue, NoModelAnswer):
+    """A good value at which the model has no answer."""
 
 
 def refuse(
@@ -103,7 +149,17 @@ def refuse(
         return
     more = f" (and {int(bad.sum()) - 1} more of {bad.size} cases)" if bad.sum() > 1 else ""
     past = None if limit is None else _first(limit, bad)
-    raise InvalidValue(name, _first(value, bad), bound, remedy, unit, past, other, more)
+    raise InvalidValue(
+        name, _first(value, bad), bound, remedy, unit, past, other, more, _cases(bad, value, limit)
+    )
+
+
+def _cases(bad: np.ndarray, value: Any, limit: Any) -> RefusedCases | None:
+    """The cases of an array; None of a single value."""
+    if bad.ndim != 1:
+        return None
+    value, limit = (x if x is None else np.broadcast_to(x, bad.shape) for x in (value, limit))
+    return RefusedCases(bad, value, limit)
 
 
 def _first(values: Any, bad: np.ndarray) -> float:

@@ -13,6 +13,8 @@ from beamdyn.common.pictures import COLOURS
 
 _STYLES = ("-", "--", "-.", ":")
 _MOST_CURVES = 8
+_LOWEST, _ROW = 0.02, 0.03  # heights of crosses on the axes, and between those of two curves
+_GREY = "0.5"
 
 
 def sweep_figure(swept: Any) -> Figure:
@@ -34,7 +36,7 @@ def sweep_figure(swept: Any) -> Figure:
         order = np.argsort(swept.values[0], kind="stable") if swept.combine == "zip" else slice(None)
         curves(ax, swept.values[0][order], values[:, order], labels)
         ax.set_ylabel(heading)
-        if len(labels) > 1:
+        if mark_missing(ax, "no answer") or len(labels) > 1:
             ax.legend(title=_second(swept), fontsize=9, title_fontsize=9)
     panels[-1].set_xlabel(_input(swept, 0))
     return figure
@@ -103,6 +105,33 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
         ax.plot(x, values[i], color=colour, linestyle=style, linewidth=1.6, label=label)
     grid(ax)
     return ax
+
+
+def mark_missing(ax: Axes, label: str) -> bool:
+    """Mark places where curves have no value by crosses at the bottom, in a row and the colour of each curve.
+
+    Parameters
+    ----------
+    ax : Axes
+        Axes with the curves.
+    label : str
+        What the crosses mean, for the legend.
+
+    Returns
+    -------
+    bool
+        Whether there are any.
+    """
+    place = ax.get_xaxis_transform()
+    gaps = [(line, np.isnan(np.asarray(line.get_ydata(), dtype=float))) for line in ax.get_lines()]
+    lacking = [(line, np.asarray(line.get_xdata())[gap]) for line, gap in gaps if gap.any()]
+    for row, (line, x) in enumerate(lacking):
+        height = np.full(len(x), _LOWEST + row * _ROW)
+        colour = line.get_color() if len(gaps) > 1 else _GREY
+        ax.plot(x, height, "x", color=colour, markersize=5, transform=place, label="_")
+    if lacking:
+        ax.plot([], [], "x", color=_GREY, markersize=5, label=label)
+    return bool(lacking)
 
 
 def grid(ax: Axes) -> None:

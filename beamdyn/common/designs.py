@@ -26,6 +26,13 @@ class VariedInput:
         Unit of the values.
     values : ndarray, shape (n,)
         Its values [unit].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> varied = bd.study(bd.Scene(strip), {"beam.thickness": [0.0002, 0.0004]}, modes=1).inputs[0]
+    >>> varied.name, varied.unit
+    ('beam.thickness', 'm')
     """
 
     name: str

@@ -20,10 +20,15 @@ def gauss_points_on(ends: np.ndarray, points: int) -> np.ndarray:
 
 
 @cache
+def legendre_values(points: int, degree: int) -> np.ndarray:
+    """Legendre polynomials up to a degree at the points of the Gauss rule, shape (points, degree + 1)."""
+    return legendre.legvander(gauss_rule(points)[0], degree)
+
+
+@cache
 def legendre_series(points: int) -> np.ndarray:
     """Legendre coefficients, in rows, of the interpolant through Gauss points by its values there."""
-    t, w = gauss_rule(points)
-    return (np.arange(points)[:, None] + 0.5) * legendre.legvander(t, points - 1).T * w
+    return (np.arange(points)[:, None] + 0.5) * legendre_values(points, points - 1).T * gauss_rule(points)[1]
 
 
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.one_line import counted, number, warned
 from beamdyn.common.results import Result
 from beamdyn.decks.blade import Blade
 from beamdyn.decks.mode_shapes import PLACES, polynomial, shape_of
@@ -33,6 +35,12 @@ class PropertyStep:
         The stations x/L; they are the same at a jump.
     factor : float
         Value at the end over that at the start.
+
+    Examples
+    --------
+    >>> step = bd.PropertyStep("bending_stiffness", 0.2, 0.25, 3.0)
+    >>> step.sentence()
+    'bending_stiffness rises by a factor of 3 from x/L = 0.2 to 0.25, 0.05 of the length'
     """
 
     name: str
@@ -60,13 +68,19 @@ class ShapeCheck:
     mode : str
         Such as "flap 1".
     coefficient_sum : float
-        Sum of its coefficients: its deflection at the tip, which should be 1.
+        Sum of its nondimensional coefficients: its deflection at the tip, which should be 1.
     difference : float
-        Largest difference of the two shapes, each with the tip deflection 1.
+        Largest difference of the two shapes, relative to the tip deflection, which is the same.
     place : float
         Where it is, x/L.
     frequency : float
         Frequency of the mode of the stations [Hz].
+
+    Examples
+    --------
+    >>> check = bd.ShapeCheck("flap 1", coefficient_sum=1.0, difference=0.003, place=0.4, frequency=0.68)
+    >>> check.difference < 0.01
+    True
     """
 
     mode: str
@@ -105,6 +119,12 @@ class DeckAudit(Result):
         Speed at which shapes are compared [rad/s].
     warnings : tuple of str
         What looks like a mistake in the deck.
+
+    Examples
+    --------
+    >>> deck = bd.read_deck("examples/blade_stations.csv", length=40.0, hub_radius=1.25)
+    >>> deck.audit.stations, round(deck.audit.centre / 40.0, 2)  # centre of mass over the length
+    (9, 0.3)
     """
 
     stations: int
@@ -118,6 +138,13 @@ class DeckAudit(Result):
     shapes: tuple[ShapeCheck, ...]
     shape_speed: float
     warnings: tuple[str, ...]
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{counted(self.stations, 'station')}, {number(self.mass, 'kg')}"
+        yield f"centre at {number(self.centre, 'm')}"
+        yield counted(len(self.steps), "steep step") if self.steps else ""
+        yield warned(self.warnings)
 
 
 def audit(blade: Blade, scene: Scene) -> DeckAudit:

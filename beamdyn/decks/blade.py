@@ -25,6 +25,12 @@ class IgnoredProperty:
         Unit, as the deck has it.
     reason : str
         Why it is left out, or how to have it all the same.
+
+    Examples
+    --------
+    >>> left_out = bd.IgnoredProperty("torsional stiffness", 1e5, 5e9, "N m2", "no torsion is modelled")
+    >>> left_out.sentence()
+    'torsional stiffness (100000 to 5e+09 N m2): no torsion is modelled'
     """
 
     name: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
@@ -13,6 +14,7 @@ from beamdyn.common.checks import InvalidValue, moderate, not_negative, size
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.data_text import DataText, read_data
 from beamdyn.common.files import check_writable, write_text
+from beamdyn.common.one_line import counted, number
 from beamdyn.common.results import Result
 from beamdyn.config import scene_from_dict
 from beamdyn.decks import bmodes, csv_table, elastodyn
@@ -44,6 +46,12 @@ class Deck(Result):
         The blade on its hub: it points outward, flap out of the plane of rotation, edge in it.
     ignored : tuple of IgnoredProperty
         What of the files the scene does not have.
+
+    Examples
+    --------
+    >>> deck = bd.read_deck("examples/blade_stations.csv", length=40.0, hub_radius=1.25)
+    >>> deck.kind, deck.scene.beam.length
+    ('CSV table', 40.0)
     """
 
     kind: str
@@ -53,6 +61,13 @@ class Deck(Result):
     ignored: tuple[IgnoredProperty, ...]
     tables: dict[str, Any] = field(repr=False)
     blade: Blade = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield self.kind
+        yield repr(self.title) if self.title else ""
+        yield f"{number(self.scene.beam.length, 'm')} long"
+        yield f"{counted(len(self.ignored), 'property', 'properties')} ignored" if self.ignored else ""
 
     @cached_property
     def audit(self) -> DeckAudit:
@@ -149,6 +164,12 @@ def read_deck(
         If a file cannot be read: names the file, the line, and what was expected.
     ValueError
         If `length` or `hub_radius` is wrong, or given though the files say it.
+
+    Examples
+    --------
+    >>> deck = bd.read_deck("examples/blade_stations.csv", length=40.0, hub_radius=1.25)
+    >>> deck.scene.mount.radius  # m
+    1.25
     """
     given = {"length": length, "hub_radius": hub_radius}
     given |= {"length": None if length is None else size("length", length, "m")}

@@ -32,9 +32,15 @@ class ModePolynomial:
     coefficients : tuple of float
         Those of the powers 2 to 6; they add up to 1, the deflection at the tip.
     difference : float
-        Largest difference from the mode shape with the same deflection at the tip.
+        Largest difference from the mode shape with the same deflection at the tip, relative to it.
     frequency : float
         Frequency of the mode [Hz].
+
+    Examples
+    --------
+    >>> shape = bd.ModePolynomial("flap 1", (0.06, 1.7, -3.2, 3.8, -1.36), 1e-3, 0.68)
+    >>> round(sum(shape.coefficients), 2)  # 1 at the tip
+    1.0
     """
 
     mode: str

@@ -120,6 +120,15 @@ class Discretization(Protocol):
        `converges_regularly` says whether the estimate needs no further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
        in `beamdyn.modal.choice`.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> for discretization in (bd.Ritz(), bd.Fem()):
+    ...     modes = bd.natural_modes(bd.Scene(strip), modes=1, discretization=discretization)
+    ...     print(f"{modes.frequency[0]:.5f} Hz")
+    65.23046 Hz
+    65.23046 Hz
     """
 
     @property

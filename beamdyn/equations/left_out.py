@@ -25,6 +25,12 @@ class OmittedEffect:
         What the model assumes in its place, and how to include the effect if that can be done.
     physics : str
         Name of the field of `Physics` that includes it; empty if no model has it.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> [effect.name for effect in bd.terms(bd.Scene(strip)).left_out][:2]
+    ['second plane of bending', 'shear deformation']
     """
 
     name: str

@@ -23,16 +23,15 @@ which integrals are exact, and eigenvalues are upper bounds as those of other as
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgeqp3, dorgqr
 
-from beamdyn.common.legendre import gauss_rule, legendre_series
+from beamdyn.common.legendre import legendre_series, legendre_values
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
 from beamdyn.equations.centrifugal_tension import axial_tension
@@ -103,25 +102,20 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def cells(self) -> np.ndarray:
         """Ends of cells on which every compliance and the highest polynomial are resolved, as x/L."""
-        breakpoints = np.array(self.beam.breakpoints)
-        fine, (left, right) = [], (breakpoints[:-1], breakpoints[1:])
-        while left.size:
-            coarse = self._are_coarse(left, right)
-            fine.append(left[~coarse])
-            middle = (left + right)[coarse] / 2
-            left, right = np.concatenate([left[coarse], middle]), np.concatenate([middle, right[coarse]])
-        return np.append(np.sort(np.concatenate(fine)), 1.0)
+        phases, ends = self.polynomials.phases, np.array(self.beam.breakpoints)
+        halved = _halve(ends, lambda left, right: phases(left, right, self.forces) > _PHASE)
+        return _halve(halved, self._are_unresolved)
 
-    def _are_coarse(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """Whether each cell, of these ends, is to be halved."""
-        coarse = self.polynomials.phases(left, right, self.forces) > _PHASE
+    def _are_unresolved(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        """Whether an entry of a compliance on each cell, of these ends, needs a smaller one."""
+        at_nodes, unresolved = Sampler(left, right, NODES), np.zeros(len(left), dtype=bool)
         for name, tensor in self._stiffnesses.items():
-            at_nodes = {profile: profile.within(left, right, NODES) for profile in set(tensor.values())}
-            values = {entry: at_nodes[profile] for entry, profile in tensor.items()}
-            for (i, _), entry in invert(values).items():
-                rounding = _ROUNDING * self._largest[name, i] / np.abs(values[i, i]).min(axis=1)
-                coarse |= ~_are_resolved(entry, rounding)
-        return coarse & (right - left > _SHORTEST)
+            values = {entry: at_nodes(profile).reshape(-1, NODES) for entry, profile in tensor.items()}
+            for (i, j), entry in invert(values).items():
+                if i <= j:
+                    rounding = _ROUNDING * self._largest[name, i] / np.abs(values[i, i]).min(axis=1)
+                    unresolved |= ~_are_resolved(entry, rounding)
+        return unresolved
 
     @cached_property
     def _stiffnesses(self) -> dict[str, Tensor]:
@@ -147,7 +141,7 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def at_nodes(self) -> Sampler:
         """Values of properties at the nodes."""
-        return Sampler(self.nodes.cells)
+        return Sampler.on_cells(self.nodes.cells)
 
     @cached_property
     def compliance(self) -> dict[str, Values]:
@@ -165,7 +159,19 @@ class MomentSpaces(FieldsOnly):
     @cached_property
     def at_points(self) -> Sampler:
         """Values of properties at the points of that rule."""
-        return Sampler(self.quadrature.cells)
+        return Sampler.on_cells(self.quadrature.cells)
+
+
+def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
+    """Ends (c + 1,) of cells after those that are coarse, by a function of their ends, have been halved."""
+    fine, (left, right) = [], (ends[:-1], ends[1:])
+    while left.size:
+        coarse = are_coarse(left, right) & (right - left > _SHORTEST)
+        fine.append(left[~coarse])
+        left, right = left[coarse], right[coarse]
+        middle = (left + right) / 2
+        left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
+    return np.append(np.sort(np.concatenate(fine)), ends[-1])
 
 
 @lru_cache(maxsize=16)  # fields of a scene, and pairs of them, ask for the same functions
@@ -206,7 +212,7 @@ def _are_resolved(values: np.ndarray, rounding: np.ndarray) -> np.ndarray:
 @cache
 def _interpolation(points: int) -> np.ndarray:
     """Values at Gauss points of the interpolants through fewer: shape (points, nodes)."""
-    return legendre.legvander(gauss_rule(points)[0], NODES - 1) @ legendre_series(NODES)
+    return legendre_values(points, NODES - 1) @ legendre_series(NODES)
 
 
 # Forces -------------------------------------------------------------------------------------------
@@ -225,9 +231,8 @@ def _build_forces(
     counts = parts.counts(spaces.forces)
     first, others = _share(counts, len(causes))
     fewer, lower = _share(parts.counts(spaces.coarse), len(causes))
-    polynomials = partial(parts, spaces.nodes.xi, continuous=derivatives == 2)
     contained = partial(parts.contained, continuous=derivatives == 2)
-    P = polynomials(others)
+    P = _polynomials(spaces, tuple(others), derivatives == 2)
     causing = P[contained(others, first)]
     displaced = {
         name: _displace(spaces, causing, name, direction) for name in {name for name, _, _ in causes}
@@ -240,6 +245,12 @@ def _build_forces(
         return np.concatenate([P, *caused]), None
     of_coarse = [contained(others, lower), *[contained(first, fewer)] * len(causes)]
     return np.concatenate([P, *caused]), np.concatenate(of_coarse)
+
+
+@lru_cache(maxsize=4)  # each direction has the same
+def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool) -> np.ndarray:
+    """So many polynomials on each part of the beam, at the nodes: shape (n, N)."""
+    return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 
 def _causes(spaces: MomentSpaces, stiffness: str, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
@@ -256,7 +267,11 @@ def _causes(spaces: MomentSpaces, stiffness: str, direction: int) -> Iterator[tu
 
 
 def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
-    """Share forces on each part: how many polynomials cause others, by each cause, and how many there are."""
+    """Share forces on each part: how many polynomials cause others, by each cause, and how many there are.
+
+    Which trial functions there are is a choice, and approximates nothing but the space that they span; errors
+    are told by fewer of them.
+    """
     causing = [count // (1 + causes) for count in counts]
     return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]
 

@@ -43,6 +43,13 @@ class Ritz:
         Integrated Legendre polynomials; or the modes of the uniform beam at rest, which the papers use
         and whose error falls slowly, as N^-5, under rotation; or deflections by bending moments that are
         polynomials over the whole beam, for beams of many segments.
+
+    Examples
+    --------
+    >>> scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0))
+    >>> modes = bd.natural_modes(scene, modes=1, discretization=bd.Ritz(functions=10))
+    >>> round(2 * np.pi * float(modes.frequency[0]), 9)  # 1.8751...^2
+    3.516015269
     """
 
     functions: int = 14
@@ -183,6 +190,12 @@ class RitzSpace(SampledSpace):
     @cached_property
     def _gauss_rule(self) -> tuple[np.ndarray, np.ndarray]:
         return _gauss_rule(np.array(self.spaces.breakpoints), self.spaces.points)
+
+    def weights(self, weight: Profile) -> np.ndarray:
+        """Multiply the weights of the rule by a property."""
+        if weight.breakpoints == self.spaces.breakpoints:
+            return self.rule * weight.at_points(self.spaces.points).ravel()
+        return super().weights(weight)
 
     @property
     def points(self) -> np.ndarray:

@@ -6,10 +6,14 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 
 import numpy as np
+from numpy.polynomial import legendre
 
+from beamdyn.common.legendre import gauss_rule
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.scene.profile import Profile
+
+_OF_TENSION = 3  # degree of the moment of a linear mass
 
 
 class Sampler:
@@ -17,20 +21,47 @@ class Sampler:
 
     Parameters
     ----------
-    cells : Cells
-        The cells and the number of points on each; properties are smooth within them.
+    left, right : ndarray, shape (c,)
+        Ends of the cells, as x/L; properties are smooth within them.
+    points : int
+        Number of points on each.
     """
 
-    def __init__(self, cells: Cells) -> None:
-        self._cells = cells
+    def __init__(self, left: np.ndarray, right: np.ndarray, points: int) -> None:
+        self._left, self._right, self._points = left, right, points
         self._known: dict[Profile, np.ndarray] = {}
+        self._placed: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}
+
+    @classmethod
+    def on_cells(cls, cells: Cells) -> Sampler:
+        """That of cells one after the other."""
+        return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:
-        """Values (k,) of a property."""
+        """Values (c points,) of a property."""
         if profile not in self._known:
-            ends, points = self._cells.ends, self._cells.points
-            self._known[profile] = profile.within(ends[:-1], ends[1:], points).ravel()
+            segment, polynomials = self._place(profile.breakpoints, profile.degree)
+            series = profile.series.T[segment]
+            values = np.einsum("cpd,cd->cp", polynomials[..., : profile.degree + 1], series)
+            self._known[profile] = values.ravel()
         return self._known[profile]
+
+    def _place(self, breakpoints: tuple[float, ...], degree: int) -> tuple[np.ndarray, np.ndarray]:
+        """Segment (c,) of each cell, and Legendre polynomials of the segment at its points (c, points, n).
+
+        They are those up to the degree, or to a higher one; most properties have the same segments.
+        """
+        placed = self._placed.get(breakpoints)
+        if placed is None or placed[1].shape[2] <= degree:
+            placed = self._placed[breakpoints] = self._find(np.array(breakpoints), max(degree, _OF_TENSION))
+        return placed
+
+    def _find(self, ends: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
+        segment = ends[1:-1].searchsorted((self._left + self._right) / 2, side="right")
+        a, b = ends[segment, None], ends[segment + 1, None]
+        lengths = (self._right - self._left)[:, None]
+        xi = self._left[:, None] + lengths * (1 + gauss_rule(self._points)[0]) / 2
+        return segment, legendre.legvander(((xi - a) - (b - xi)) / (b - a), degree)
 
 
 class SampledSpace(FieldsOnly, ABC):

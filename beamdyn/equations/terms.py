@@ -10,6 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.one_line import counted
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.explanations import Explanation, SampledScene
@@ -68,6 +69,13 @@ class Terms(Result):
         Frequencies that translation and gravity excite, as multiples of the speed.
     provenance : Provenance
         Program version, discretization and computing time.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.terms(bd.Scene(strip, bd.Mount(radius=0.215), bd.SteadyRotation(50.0)))
+    >>> [entry.name for entry in found.entries][:3]
+    ['mass', 'bending stiffness', 'root spring']
     """
 
     entries: tuple[Entry, ...]
@@ -75,6 +83,12 @@ class Terms(Result):
     lines: tuple[Line, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.present)} of {counted(len(self), 'term')} present"
+        yield f"{counted(len(self.left_out), 'effect')} left out"
+        yield counted(len(self.lines), "line")
 
     def __iter__(self) -> Iterator[Entry]:
         return iter(self.entries)
@@ -127,6 +141,13 @@ def terms(scene: Scene) -> Terms:
     Returns
     -------
     Terms
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.terms(bd.Scene(strip, bd.Mount(radius=0.215), bd.SteadyRotation(50.0)))
+    >>> len(found.present) > 0
+    True
     """
     start = perf_counter()
     check_scene(scene)

@@ -32,6 +32,8 @@ class Refined:
     ----------
     model : ModelAtSpeed
         The model.
+    larger : ModelAtSpeed or None
+        The one with more modes, or all functions; None if the model has them all, or there is none.
     value, error : ndarray
         The value and its estimated error, of one shape.
     truncation : float
@@ -41,6 +43,7 @@ class Refined:
     """
 
     model: ModelAtSpeed
+    larger: ModelAtSpeed | None
     value: np.ndarray
     error: np.ndarray
     truncation: float
@@ -160,4 +163,4 @@ def _with_error(
     kept = "all functions" if model.modes is None else f"{model.modes} modes at {model.speed:.6g} rad/s"
     method = f"{model.discretization}, {kept}"
     largest = float(np.max(truncation))
-    return Refined(model, value, error + truncation, largest, method, ", ".join(compared))
+    return Refined(model, larger, value, error + truncation, largest, method, ", ".join(compared))

@@ -38,6 +38,12 @@ class BaseMotion:
     ------
     ValueError
         If the direction is unknown.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], input=bd.BaseMotion("n2")).input
+    'base acceleration, n2 [m/s2]'
     """
 
     direction: BaseDirection = "bending"
@@ -104,6 +110,14 @@ class PointForce:
     ------
     ValueError
         If the position is not positive, or the direction is unknown.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.frequency_response(scene, 0.0, [1e-3], input=bd.PointForce(), output="tip")
+    >>> by_hand = scene.beam.length**3 / (3 * scene.beam.bending_stiffness(0))
+    >>> round(float(abs(found.response[0, 0]) / by_hand), 4)  # L^3/(3 EI)
+    1.0
     """
 
     position: float | None = None

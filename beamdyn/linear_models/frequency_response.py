@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue, ascending, refuse
+from beamdyn.common.checks import BeyondModel, ascending, refuse
+from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
 from beamdyn.linear_models.convergence import Refined, refine
 from beamdyn.linear_models.excitations import Excitation, as_excitation
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, as_observation
+from beamdyn.linear_models.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear_models.transfer import check_stable, transfer
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
@@ -49,6 +51,9 @@ class FrequencyResponse(Result):
     error : ndarray, shape (F, k)
         Estimated error of the response [same unit]: its distance from that of more modes and of a coarser
         discretization, each with a margin.
+    peaks : beamdyn.linear_models.resonance_peaks.ResonancePeaks
+        Peaks between the lowest and the highest frequency, also between those given: `frequency`, `size`,
+        half-power `bandwidth`, and their errors.
     input, output : str
         The excitation and what is observed, with units.
     unit : str
@@ -57,6 +62,13 @@ class FrequencyResponse(Result):
         Limitations of the result.
     provenance : Provenance
         How the response was computed.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.frequency_response(scene, 50.0, np.geomspace(10, 200, 20))
+    >>> found.input, found.output, found.response.shape
+    ('base acceleration, bending [m/s2]', 'deflection at the tip [m]', (20, 1))
     """
 
     speed: float
@@ -64,12 +76,20 @@ class FrequencyResponse(Result):
     response: np.ndarray
     harmonics: np.ndarray
     error: np.ndarray
+    peaks: ResonancePeaks
     input: str
     output: str
     unit: str
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        at, size = self.peak
+        names = [text.partition(" [")[0] for text in (self.output, self.input)]
+        yield f"{number(size, self.unit)} at {number(at, 'Hz')} and {self.say_speed(self.speed)}"
+        yield from (error_at_most(self.error), warned(self.warnings), " by ".join(names))
 
     @property
     def response_frequencies(self) -> np.ndarray:
@@ -78,17 +98,27 @@ class FrequencyResponse(Result):
 
     @property
     def peak(self) -> tuple[float, float]:
-        """Frequency of the excitation [Hz] and magnitude of the largest response among those given."""
-        size = np.abs(self.response).max(axis=1)
-        return float(self.frequencies[size.argmax()]), float(size.max())
+        """Frequency of the excitation [Hz] and magnitude of the largest response, peaks included."""
+        found = [(size.max(), f[size.argmax()]) for f, size in map(self._curve, range(len(self.harmonics)))]
+        size, at = max(found)
+        return float(at), float(size)
+
+    def _curve(self, column: int) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies of the excitation, given and at the peaks of a harmonic, and magnitudes there."""
+        own = (self.peaks.harmonic == self.harmonics[column]) & np.isfinite(self.peaks.size)
+        f = np.concatenate([self.frequencies, self.peaks.frequency[own]])
+        size = np.concatenate([np.abs(self.response[:, column]), self.peaks.size[own]])
+        order = np.argsort(f, kind="stable")
+        return f[order], size[order]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the magnitude over the frequency of the excitation, both logarithmic."""
+        """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
         from beamdyn.output.plots_over_frequency import plot_frequency_response
 
         labels = [_label(h) for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
-        return plot_frequency_response(self.frequencies, np.abs(self.response), value, labels, ax)
+        curves = [self._curve(k) for k in range(len(labels))]
+        return plot_frequency_response(curves, value, labels, ax)
 
 
 def _label(harmonic: int) -> str:
@@ -144,6 +174,13 @@ def frequency_response(
     ValueError
         If an argument is out of its range, the speed is past the critical speed, or an undamped beam is
         excited at a natural frequency.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.frequency_response(scene, 50.0, [20.0, 200.0], input="n2", output="root strain")
+    >>> found.response.shape, found.unit  # answers at f - n and f + n
+    ((2, 2), '1 per m/s2')
     """
     start = perf_counter()
     given = ascending("frequencies", frequencies)
@@ -163,13 +200,14 @@ def frequency_response(
     if not np.isfinite(refined.value).all():
         bad = given[~np.isfinite(refined.value).all(axis=1)][0]
         bound = "an undamped beam has no finite response at a natural frequency"
-        raise InvalidValue("frequencies", float(bad), bound, "give damping, or another frequency", "Hz")
+        raise BeyondModel("frequencies", float(bad), bound, "give damping, or another frequency", "Hz")
     return FrequencyResponse(
         speed=speed,
         frequencies=given,
         response=refined.value,
         harmonics=harmonics,
         error=refined.error,
+        peaks=find_peaks(refined.model, refined.larger, drive, seen, (float(given[0]), float(given[-1]))),
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
         unit=f"{seen.unit or '1'} per {drive.unit}",

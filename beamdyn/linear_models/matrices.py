@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, real_array, refuse, several
+from beamdyn.common.one_line import counted
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
@@ -35,26 +36,34 @@ class Matrices(Result):
     speed : float
         Speed [rad/s].
     mass : ndarray, shape (n, n)
-        M, symmetric.
+        M, symmetric [unit of the row / (unit of the coordinate / s2)].
     damping : ndarray, shape (n, n)
-        C, symmetric.
+        C, symmetric [unit of the row / (unit of the coordinate / s)].
     gyroscopic : ndarray, shape (n, n)
-        G at this speed, skew.
+        G at this speed, skew [as C].
     stiffness : ndarray, shape (n, n)
-        K at this speed: elastic, with centrifugal stiffening and spin softening.
+        K at this speed: elastic, with centrifugal stiffening and spin softening
+        [unit of the row / unit of the coordinate].
     stiffness_by_axial_acceleration : ndarray, shape (n, n)
         What K loses for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
-        the parametric term of translation and gravity.
+        the parametric term of translation and gravity [unit of K / (m/s2)].
     static_load : ndarray, shape (n,)
-        f, the load by the steady rotation.
+        f, the load by the steady rotation [units of the rows].
     input_matrix : ndarray, shape (n, k)
-        B: load by a unit of each input.
+        B: load by a unit of each input [unit of the row / unit of the input].
     inputs : tuple of str
         The inputs u, with units.
     coordinates, rows : tuple of str
         What each coordinate q and each equation is, with units.
     provenance : Provenance
         How the matrices were computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.matrices(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=3)
+    >>> found.mass.shape, len(found.coordinates)
+    ((3, 3), 3)
     """
 
     speed: float
@@ -71,6 +80,11 @@ class Matrices(Result):
     provenance: Provenance
     equations: Equations = field(repr=False)
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
+        yield counted(len(self.inputs), "input")
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
         """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).
@@ -122,6 +136,14 @@ def matrices(
     ------
     ValueError
         If an argument is out of its range, or an input is periodic at this speed.
+
+    Examples
+    --------
+    >>> from scipy.linalg import eigh
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.matrices(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=3)
+    >>> (np.sqrt(eigh(found.stiffness, found.mass)[0]) / (2 * np.pi)).round(2)  # Hz
+    array([  61.96,  406.33, 1142.13])
     """
     start = perf_counter()
     scene, speed = check_linear(scene, speed, modes)

@@ -23,7 +23,7 @@ import scipy.linalg
 from beamdyn.common.checks import InvalidValue
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
-from beamdyn.linear_models.spectra import PowerSpectrum
+from beamdyn.linear_models.spectra import PowerSpectrum, SpectrumPiece
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _NEAR = 1.5  # distance of a pole from a piece, over its length, below which it is integrated apart
@@ -65,26 +65,102 @@ class PartialFractions:
 
     def mean_square(self, spectrum: PowerSpectrum, shift: float = 0.0) -> float:
         """Integral over f of a one-sided density times |H|^2 at f plus a shift [Hz]."""
-        mu, c = self.poles / (2j * np.pi) - shift, self.of_square / (2j * np.pi)
-        total = 0.0
-        for piece in (part for whole in spectrum.pieces() for part in whole.divided()):
-            half = (piece.end - piece.start) / 2
-            f = (piece.start + piece.end) / 2 + half * _POINTS
-            S, w = piece(f), half * _WEIGHTS
-            gap = np.abs(mu - np.clip(mu.real, piece.start, piece.end))
-            near = gap < _NEAR * 2 * half
-            total += abs(self.direct) ** 2 * float(w @ S)
-            total += 2 * float(np.real(((w * S) @ (1 / (f[:, None] - mu[~near]))) @ c[~near]))
-            at_pole = piece(mu[near])
-            smooth = w @ ((S[:, None] - at_pole) / (f[:, None] - mu[near]))
-            closed = at_pole * np.log((piece.end - mu[near]) / (piece.start - mu[near]))
-            total += 2 * float(np.real((smooth + closed) @ c[near]))
-        return total
+        integrals = pole_integrals(spectrum, self.poles / (2j * np.pi) - shift)
+        of_poles = (self.of_square / (2j * np.pi)) @ integrals.by_pole
+        return abs(self.direct) ** 2 * integrals.whole + 2 * float(np.real(of_poles))
 
     def mean_square_of_white(self, density: float) -> float:
         """Mean square by white noise of a one-sided density at all frequencies, without d."""
         proper = PartialFractions(0.0, self.residues, self.poles)
         return density / 2 * float(np.real(proper.of_square.sum()))
+
+
+@dataclass(frozen=True)
+class PoleIntegrals:
+    """Integrals over f of g(f) S(f), with a density S and a weight g.
+
+    Parameters
+    ----------
+    whole : float
+        Of g S.
+    by_pole : ndarray of complex, shape (m,)
+        Of g S / (f - mu_k).
+    """
+
+    whole: float
+    by_pole: np.ndarray
+
+
+def pole_integrals(
+    spectrum: PowerSpectrum, mu: np.ndarray, shift: float = 0.0, order: int = 0
+) -> PoleIntegrals:
+    """Integrate a density with the weight (2 pi (f + shift))^order and simple poles.
+
+    Parameters
+    ----------
+    spectrum : PowerSpectrum
+        The density.
+    mu : ndarray of complex, shape (m,)
+        Poles [Hz], none of them real.
+    shift : float
+        How far the response is from the input [Hz].
+    order : int
+        0 for mean squares of the response, 2 for those of its rate.
+    """
+
+    def weighted(piece: SpectrumPiece, f: np.ndarray) -> np.ndarray:
+        return piece(f) * (2 * np.pi * (f + shift)) ** order
+
+    whole, by_pole = 0.0, np.zeros(len(mu), dtype=complex)
+    for piece in (part for each in spectrum.pieces() for part in each.divided()):
+        half = (piece.end - piece.start) / 2
+        f, w = (piece.start + piece.end) / 2 + half * _POINTS, half * _WEIGHTS
+        S = weighted(piece, f)
+        near = np.abs(mu - np.clip(np.real(mu), piece.start, piece.end)) < _NEAR * 2 * half
+        whole += float(w @ S)
+        by_pole[~near] += (w * S) @ (1 / (f[:, None] - mu[~near]))
+        at_pole = weighted(piece, mu[near])
+        smooth = w @ ((S[:, None] - at_pole) / (f[:, None] - mu[near]))
+        by_pole[near] += smooth + at_pole * np.log((piece.end - mu[near]) / (piece.start - mu[near]))
+    return PoleIntegrals(whole, by_pole)
+
+
+@dataclass(frozen=True)
+class FreeDecay:
+    """Free motion of a linear model, by its eigenvalues.
+
+    Parameters
+    ----------
+    poles : ndarray of complex, shape (m,)
+        Eigenvalues [1/s], in the left half-plane.
+    vectors : ndarray of complex, shape (m, m)
+        Eigenvectors: coordinates, then velocities.
+    """
+
+    poles: np.ndarray
+    vectors: np.ndarray
+
+    @classmethod
+    def of(cls, model: ModelAtSpeed) -> FreeDecay:
+        """That of a model.
+
+        Raises
+        ------
+        InvalidValue
+            If a mode is not damped: its mean square is not finite.
+        """
+        M, C, K, n = model.M, model.C, model.K, model.equations.size
+        A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+        poles, vectors = scipy.linalg.eig(A)
+        if (poles.real > -_UNDAMPED * np.abs(poles)).any():
+            bound = "a mode is not damped, and its mean square grows without limit"
+            raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
+        return cls(poles, vectors)
+
+    def residues(self, pushed: np.ndarray) -> np.ndarray:
+        """Residues (n, m) of the coordinates, by the accelerations (n,) with which a unit input starts."""
+        n = len(pushed)
+        return self.vectors[:n] * np.linalg.solve(self.vectors, np.concatenate([np.zeros(n), pushed]))
 
 
 def partial_fractions(
@@ -99,16 +175,9 @@ def partial_fractions(
     InvalidValue
         If a mode is not damped: its mean square is not finite.
     """
-    M, C, K, n = model.M, model.C, model.K, model.equations.size
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
-    poles, vectors = scipy.linalg.eig(A)
-    if (poles.real > -_UNDAMPED * np.abs(poles)).any():
-        bound = "a mode is not damped, and its mean square grows without limit"
-        raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
-    pushed = np.linalg.solve(M, drive.load)
-    shares = np.linalg.solve(vectors, np.concatenate([np.zeros(n), pushed]))
+    free, pushed = FreeDecay.of(model), np.linalg.solve(model.M, drive.load)
+    q, poles = free.residues(pushed), free.poles
     row, extra = model.row(observation), model.residual(observation, drive)
-    q = vectors[:n] * shares
     residues = row.position @ q + poles * (row.velocity @ q) + poles**2 * (row.acceleration @ q)
     fractions = PartialFractions(complex(row.acceleration @ pushed + extra[0]), residues, poles)
     delay = model.scene.damping.stiffness_factor

@@ -139,7 +139,12 @@ class ModelAtSpeed(FieldsOnly):
         eye = np.eye(n)
         A = np.block([[zero, eye], [-self.K, -self.C]])
         E = np.block([[eye, zero], [zero, self.M]])
-        return np.asarray(scipy.linalg.eigvals(A, E))
+        try:
+            return np.asarray(scipy.linalg.eigvals(A, E))
+        except np.linalg.LinAlgError:  # QZ, which allows for a singular E, need not converge
+            inverse = np.linalg.eigvals(np.linalg.solve(A, E))
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return 1 / inverse
 
     # Inputs -----------------------------------------------------------------------------------------
 

@@ -28,6 +28,13 @@ class DeflectionAt:
     ------
     ValueError
         If the position is negative, or the direction is unknown.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> where = bd.DeflectionAt(position=scene.beam.length / 2)
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=where).unit
+    'm per m/s2'
     """
 
     position: float | None = None
@@ -65,6 +72,12 @@ class AccelerationAt(DeflectionAt):
     ----------
     position, direction
         As for `DeflectionAt`.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.AccelerationAt()).unit
+    'm/s2 per m/s2'
     """
 
     @property
@@ -80,7 +93,14 @@ class AccelerationAt(DeflectionAt):
 
 @dataclass(frozen=True)
 class MomentAtRoot:
-    """Bending moment at the root [N m], about the axis of bending of the section there."""
+    """Bending moment at the root [N m], about the axis of bending of the section there.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.MomentAtRoot()).unit
+    'N m per m/s2'
+    """
 
     @property
     def unit(self) -> str:
@@ -95,7 +115,14 @@ class MomentAtRoot:
 
 @dataclass(frozen=True)
 class StrainAtRoot:
-    """Bending strain of the outer fibre at the root, in the section's first direction."""
+    """Bending strain of the outer fibre at the root, in the section's first direction.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.StrainAtRoot()).unit
+    '1 per m/s2'
+    """
 
     @property
     def unit(self) -> str:

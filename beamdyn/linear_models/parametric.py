@@ -39,10 +39,17 @@ class ParametricTerm:
     stiffness_variation : float
         Root mean square of the random variation of the squared lowest frequency, relative to it.
     by_gravity : float
-        Amplitude of its variation by gravity as the beam turns.
+        Amplitude of its variation by gravity as the beam turns, likewise relative.
     rms_change : float
         Estimated relative change of the root mean square of the lowest mode by the random variation; inf
         where it would grow without limit.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/harvester_on_road.toml")
+    >>> found = bd.random_response(scene, 83.3, bd.RoadRoughness("C", highest=10.0))
+    >>> found.parametric.stiffness_variation < 0.1
+    True
     """
 
     stiffness_variation: float

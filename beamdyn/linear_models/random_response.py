@@ -12,19 +12,20 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
-from beamdyn.common.checks import InvalidValue, ascending, kind, positive, refuse
+from beamdyn.common.checks import InvalidValue, ascending, refuse
+from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
 from beamdyn.linear_models.convergence import refine
-from beamdyn.linear_models.excitations import BaseMotion, Excitation, as_excitation
+from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.mean_square import PartialFractions, partial_fractions
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, as_observation
 from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
+from beamdyn.linear_models.random_input import highest_frequency, random_input, warn_of_band
 from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
 from beamdyn.linear_models.transfer import check_stable
 from beamdyn.modal.choice import DiscretizationChoice
-from beamdyn.scene.motion import RollingWheel
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
@@ -58,7 +59,7 @@ class RandomResponse(Result):
     psd : ndarray, shape (F,)
         One-sided power spectral density of the response at these [its unit squared per Hz].
     psd_error : ndarray, shape (F,)
-        Estimated error of `psd`.
+        Estimated error of `psd` [same unit].
     input_rms : float
         Root mean square of the input [its unit]; inf for white noise.
     parametric : ParametricTerm
@@ -71,6 +72,13 @@ class RandomResponse(Result):
         Limitations of the result.
     provenance : Provenance
         How the response was computed.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.random_response(scene, 50.0, bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0]), input="bending")
+    >>> found.unit, found.psd.shape == found.frequencies.shape
+    ('m', True)
     """
 
     speed: float
@@ -88,13 +96,19 @@ class RandomResponse(Result):
     provenance: Provenance
     scene: Scene = field(repr=False)
 
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{self.output.partition(' [')[0]} at {self.say_speed(self.speed)}"
+        yield f"rms {number(self.rms, self.unit)}"
+        yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the density over frequency, both logarithmic."""
         from beamdyn.output.plots_over_frequency import plot_frequency_response
 
         unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
         label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"
-        return plot_frequency_response(self.frequencies, self.psd[:, None], label, [""], ax)
+        return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)
 
 
 @announced
@@ -147,15 +161,23 @@ def random_response(
         If an argument is out of its range, a density is negative, a mode is not damped, the speed is past
         the critical speed, or a road is given without a wheel, or with white noise an acceleration or a
         moment, whose mean square is not finite.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> flat = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])  # (m/s2)^2/Hz
+    >>> found = bd.random_response(scene, 50.0, flat, input="bending", output="tip")
+    >>> found.rms_error < 1e-6 * found.rms
+    True
     """
     start = perf_counter()
     seen = as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
-    drive, spectrum = _excitation(scene, speed, psd, input)
+    drive, spectrum = random_input(scene, speed, psd, input)
     if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
         bound = "by white noise its mean square is not finite, or takes all modes"
         raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
-    top, loaded = _highest(spectrum), with_forces(scene, [drive])
+    top, loaded = highest_frequency(spectrum), with_forces(scene, [drive])
     refined = refine(
         loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
         lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
@@ -181,40 +203,13 @@ def random_response(
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
         unit=seen.unit,
-        warnings=(*_warnings(scene, seen, rms, parametric), *_warn_of_band(spectrum, drive, model)),
+        warnings=(*_warnings(scene, seen, rms, parametric), *warn_of_band(spectrum, drive, model)),
         provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
         scene=scene,
     )
 
 
-# The input ----------------------------------------------------------------------------------------
-
-
-def _excitation(
-    scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness | float, given: Excitation | str | None
-) -> tuple[Excitation, PowerSpectrum | float]:
-    """The excitation and its density; a road becomes the vertical acceleration of the wheel."""
-    if isinstance(psd, RoadRoughness):
-        if given not in (None, "n2", BaseMotion("n2")):
-            raise InvalidValue("input", given, "a road moves the wheel along n2", "leave the input out")
-        wheel = scene.motion
-        if not isinstance(wheel, RollingWheel):
-            bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
-            raise InvalidValue("scene.motion", wheel, bound, remedy)
-        refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
-        return BaseMotion("n2"), psd.acceleration(wheel.rolling_radius * speed)
-    excitation = as_excitation("input", "bending" if given is None else given)
-    if isinstance(psd, PowerSpectrum):
-        return excitation, psd
-    if not hasattr(psd, "__float__"):
-        kind("psd", psd, PowerSpectrum, "PowerSpectrum(frequencies, values), a RoadRoughness, or a number")
-    density = positive("psd", psd, "", "give the density of white noise")
-    return excitation, density
-
-
-def _highest(spectrum: PowerSpectrum | float) -> float:
-    """Highest frequency of the input [Hz]; 0 for white noise."""
-    return spectrum.frequencies[-1] if isinstance(spectrum, PowerSpectrum) else 0.0
+# The response -------------------------------------------------------------------------------------
 
 
 def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: ModelAtSpeed) -> np.ndarray:
@@ -231,9 +226,6 @@ def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: 
     lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
     top = top or 10 * float(lowest.min())
     return np.union1d(np.geomspace(top / 10**_DECADES, top, _POINTS), resonances[resonances < top])
-
-
-# The response -------------------------------------------------------------------------------------
 
 
 def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:
@@ -260,21 +252,6 @@ def _density(
         there = np.abs(f - h * speed / _TURN)
         total += size * (spectrum.at(there) if isinstance(spectrum, PowerSpectrum) else spectrum)
     return total
-
-
-def _warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: ModelAtSpeed) -> Iterator[str]:
-    """Yield a warning if the input ends below the first resonance, or begins above it."""
-    resonances = np.abs(np.imag(model.poles[np.isfinite(model.poles)])) / _TURN
-    if not isinstance(spectrum, PowerSpectrum) or not resonances.any():
-        return
-    first = resonances[resonances > 0].min()
-    shift = max(map(abs, model.drives(drive))) * abs(model.speed) / _TURN
-    lowest, highest = max(spectrum.frequencies[0] - shift, 0.0), spectrum.frequencies[-1] + shift
-    end = f"the first resonance at {first:.4g} Hz: what the input has beyond is not in the answer"
-    if highest < first:
-        yield f"the input excites up to {highest:.4g} Hz, below {end}; give all of it"
-    if lowest > first:
-        yield f"the input excites from {lowest:.4g} Hz on, above {end}; give all of it"
 
 
 def _warnings(scene: Scene, seen: Observation, rms: float, parametric: ParametricTerm) -> Iterator[str]:

@@ -75,6 +75,12 @@ class PowerSpectrum:
     ValueError
         If a density is negative, the frequencies do not ascend from 0 or more, their numbers differ, or a
         frequency or a density is 0 on logarithmic axes.
+
+    Examples
+    --------
+    >>> flat = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])
+    >>> round(float(flat.rms), 3)  # sqrt(495)
+    22.249
     """
 
     frequencies: Sequence[float]
@@ -139,7 +145,7 @@ class RoadRoughness:
         G(n0) at n0 = 0.1 1/m [m3], or a class from "A" (very good, 16e-6 m3) to "H", each four times as
         rough as the one before.
     waviness : float
-        Exponent w.
+        Exponent w, nondimensional.
     lowest, highest : float
         Spatial frequencies between which the road is rough [1/m].
 
@@ -147,6 +153,11 @@ class RoadRoughness:
     ------
     ValueError
         If a value is not positive, the class is unknown, or the frequencies do not ascend.
+
+    Examples
+    --------
+    >>> bd.RoadRoughness("C").roughness  # m3, ISO 8608 at 0.1 1/m
+    'C'
     """
 
     roughness: Annotated[Any, Described("m3", "G", "density of the height at 0.1 1/m", above=0)]

@@ -62,6 +62,14 @@ def state_space(
     ValueError
         If an argument is out of its range, an input is periodic at this speed, or a kept coordinate has no
         mass.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    >>> system = bd.state_space(scene, 50.0, inputs=["bending"], outputs=["tip"], modes=2)
+    >>> system.A.shape, system.C.shape
+    ((4, 4), (1, 4))
     """
     from scipy.signal import StateSpace  # here, because it is slow to import
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import BeyondModel
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
@@ -63,7 +63,7 @@ def check_stable(model: ModelAtSpeed) -> None:
 
     Raises
     ------
-    InvalidValue
+    BeyondModel
         With the speed.
     """
     poles = model.poles[np.isfinite(model.poles)]
@@ -73,8 +73,8 @@ def check_stable(model: ModelAtSpeed) -> None:
             "the beam turns freely about its root, or is at its critical speed",
             "change the speed, or give root_stiffness",
         )
-        raise InvalidValue("speed", speed, bound, remedy, "rad/s")
+        raise BeyondModel("speed", speed, bound, remedy, "rad/s")
     growth = np.real(poles)
     if (growth > _GROWING * np.abs(poles)).any():
         bound = f"free motion grows at {growth.max():.3g} 1/s: the speed is past the critical speed"
-        raise InvalidValue("speed", speed, bound, "lower the speed", "rad/s")
+        raise BeyondModel("speed", speed, bound, "lower the speed", "rad/s")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import count, kind, positive
+from beamdyn.common.one_line import number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.loads.span_loads import UNITS
 from beamdyn.loads.transient_loads import TransientLoads, window_in
@@ -37,13 +38,21 @@ class LoadCycles(Result):
     means : ndarray, shape (n,)
         Their means [unit of the quantity].
     counts : ndarray, shape (n,)
-        1 for a whole cycle, 0.5 for half a one.
+        Numbers of cycles: 1 for a whole one, 0.5 for half a one.
     start, end : float
         The time window [s].
     warnings : tuple of str
         What limits the answer.
     provenance : Provenance
         How it was computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), bd.SpinUp(55.0, duration=0.5))
+    >>> cycles = bd.count_cycles(bd.transient_loads(bd.simulate(scene, t_end=0.5, modes=2), at=[0.0]))
+    >>> cycles.ranges.shape == cycles.counts.shape
+    True
     """
 
     quantity: str
@@ -57,6 +66,12 @@ class LoadCycles(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{number(self.counts.sum())} of {self.quantity} at {self.say_length(self.x)}"
+        yield f"largest range {number(self.ranges.max(initial=0.0), UNITS[self.quantity])}"
+        yield warned(self.warnings)
 
     def equivalent_range(self, exponent: float, cycles: float = 1.0) -> float:
         """Range of so many equal cycles that do the damage of these, by Miner's rule.
@@ -122,6 +137,14 @@ def count_cycles(
         If an argument is out of its range.
     ImportError
         If the package that counts is missing: the extra `fatigue` installs it.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), bd.SpinUp(55.0, duration=0.5))
+    >>> loads = bd.transient_loads(bd.simulate(scene, t_end=0.5, modes=2), at=[0.0])
+    >>> bool(bd.count_cycles(loads, "strain").counts.sum() > 1)
+    True
     """
     begin = perf_counter()
     kind("loads", loads, TransientLoads, "transient_loads makes one")

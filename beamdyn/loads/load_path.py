@@ -19,7 +19,6 @@ from beamdyn.transient.system import ModalSystem
 
 _COMPARED = 4000  # times at which two runs are compared; at most twice as many
 _BATCH = 500  # times at once
-_ROUNDING = 1e-12  # relative to the largest along the span
 _REFINEMENTS, _FINE = 3, 17  # of a maximum, each on a grid so many times as fine
 
 
@@ -132,8 +131,9 @@ class LoadPath(FieldsOnly):
         distance, largest = _compare(*(LoadPath(run, everywhere) for run in (self.run, self.run.refined)))
         along_span = largest.max(axis=0)
         basis = self.run.request.basis
-        of_modes = mode_error(distance, along_span, self.stations, self.outputs, basis)
-        return of_modes + through(self.outputs, self._time_errors + _ROUNDING * along_span)
+        length = self.run.scene.beam.length
+        of_modes = mode_error(distance, along_span, self.stations, self.outputs, basis, length)
+        return of_modes + through(self.outputs, self._time_errors)
 
     @property
     def _time_errors(self) -> np.ndarray:

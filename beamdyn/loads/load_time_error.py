@@ -12,8 +12,6 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import TimeError, estimate_time_error, vibration_frequencies
 from beamdyn.transient.trajectory import Path, Trajectory
 
-_TIMES_CHECKED = 65  # of a run, at which loads per coordinate are compared
-
 
 def time_errors_of_rows(rows: LoadRows, system: ModalSystem, path: Path, of_tip: float) -> np.ndarray:
     """Time-integration errors (S, K) of loads on a path, given that of the tip deflection [m].
@@ -23,16 +21,16 @@ def time_errors_of_rows(rows: LoadRows, system: ModalSystem, path: Path, of_tip:
     if of_tip == 0 or not isinstance(path, Trajectory):
         return np.full(rows.shape, of_tip)
     frequencies = vibration_frequencies(system, path.end - path.start)
-    per_coordinate = _largest_per_coordinate(rows, system, path, frequencies)
+    per_coordinate = largest_per_coordinate(rows, system, path, frequencies)
     components = range(rows.shape[1])
     return np.stack([_of_component(per_coordinate[:, k], system, path) for k in components], axis=1)
 
 
-def _largest_per_coordinate(
+def largest_per_coordinate(
     rows: LoadRows, system: ModalSystem, path: Trajectory, frequencies: np.ndarray
 ) -> np.ndarray:
     """Largest load over the run per unit of the amplitude of each coordinate: shape (S, K, n)."""
-    root = system.root(np.linspace(path.start, path.end, _TIMES_CHECKED))
+    root = system.root(path.samples[0])  # several in each step: steps are short where a shock acts
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):
         for quantity, row in by_quantity.items():

@@ -16,6 +16,7 @@ from beamdyn.modal.modal_basis import ModalBasis
 _MARGIN = 3.0  # error over the distance: moments of modes fall as k^-3 after a sudden load
 _MARGIN_OF_FORCES = 4.0  # shear forces as k^-2: those left out are 3 times those that half as many more add
 _LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
+_ROUNDING = 1e-12  # relative to the largest along the span
 _BETWEEN = 21  # stations besides those asked for
 
 
@@ -31,10 +32,11 @@ def mode_error(
     stations: SpanStations,
     outputs: StationOutputs,
     basis: ModalBasis,
+    length: float,
 ) -> np.ndarray:
-    """Errors of outputs (..., S, K) from distances of loads (..., N, 1 + 2 d).
+    """Errors of outputs (..., S, K) from distances of loads (..., N, 1 + 2 d), with those of rounding.
 
-    They are infinite where the distance is too large to judge by.
+    They are infinite where the distance is too large to judge by, which it is not where the load is rounding.
 
     Parameters
     ----------
@@ -48,6 +50,8 @@ def mode_error(
         Outputs there.
     basis : ModalBasis
         The modes kept.
+    length : float
+        Length of the beam [m].
     """
     everywhere = with_neighbours(stations).xi
     half_wave = 1 / (_count_modes(basis) + 0.5)
@@ -55,8 +59,19 @@ def mode_error(
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
     planes = (distance.shape[-1] - 1) // 2
     margins = np.repeat([_MARGIN, _MARGIN_OF_FORCES, _MARGIN], [1, planes, planes])
-    too_large = through(outputs, nearby) > _LIMIT * through(outputs, along_span[..., None, :])
-    return np.where(too_large, np.inf, through(outputs, margins * nearby))
+    rounding = through(outputs, _rounding(along_span, length)[..., None, :])
+    too_large = through(outputs, nearby) > _LIMIT * through(outputs, along_span[..., None, :]) + rounding
+    return np.where(too_large, np.inf, through(outputs, margins * nearby) + rounding)
+
+
+def _rounding(along_span: np.ndarray, length: float) -> np.ndarray:
+    """Rounding errors of the loads (..., 1 + 2 d): of the largest force, and of that on the whole length."""
+    planes = (along_span.shape[-1] - 1) // 2
+    forces, moments = along_span[..., : 1 + planes], along_span[..., 1 + planes :]
+    largest = forces.max(axis=-1, keepdims=True)
+    of_moments = np.maximum(moments.max(axis=-1, keepdims=True), length * largest)
+    both = [np.repeat(largest, 1 + planes, axis=-1), np.repeat(of_moments, planes, axis=-1)]
+    return _ROUNDING * np.concatenate(both, axis=-1)
 
 
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, count, one_of
+from beamdyn.common.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.loads.section_points import QUANTITIES, Sections
@@ -40,6 +42,13 @@ class LargestLoad:
         Index of the direction, of the force, or of the point of the section.
     case : float
         Time [s] or speed [rad/s].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> loads = bd.static_loads(bd.Scene(strip, bd.Mount(radius=0.215)), speeds=50.0)
+    >>> loads.largest("strain").quantity
+    'strain'
     """
 
     quantity: str
@@ -86,6 +95,13 @@ class SpanLoads(Result):
         What limits the answer.
     provenance : Provenance
         How it was computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> loads = bd.static_loads(bd.Scene(strip, bd.Mount(radius=0.215)), speeds=50.0)
+    >>> isinstance(loads, bd.SpanLoads)
+    True
     """
 
     x: np.ndarray
@@ -106,6 +122,16 @@ class SpanLoads(Result):
     scene: Scene = field(repr=False)
 
     case: ClassVar[str]  # what the first axis of the arrays is, with its unit
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.cases)} x {counted(len(self.x), 'station')}"
+        for name in ("moment", "strain"):
+            size = np.abs(self.values(name))
+            if np.isfinite(size).any():
+                yield f"{name} to {number(np.nanmax(size), UNITS[name])}"
+                yield error_at_most(self.error_of(name), UNITS[name])
+        yield warned(self.warnings)
 
     @property
     def cases(self) -> np.ndarray:
@@ -189,7 +215,7 @@ class SpanLoads(Result):
 
         self.check_known(quantity)
         values, labels = self.values(quantity), self.components(quantity)
-        return plot_along_span(self.x, values, labels, with_unit(quantity), ax)
+        return plot_along_span(self.x, values, labels, with_unit(quantity), ax, self.display_units)
 
 
 def with_unit(quantity: str) -> str:

@@ -25,6 +25,7 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
+    warn_of_elastic_limit,
     warn_of_left_out,
     warn_of_static_deflection,
     warn_of_strain,
@@ -51,6 +52,13 @@ class StaticLoads(SpanLoads):
         Angle of rotation at which gravity acts [rad].
     tip : ndarray, shape (C, d)
         Deflection of the tip in each modelled direction [m].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> loads = bd.static_loads(bd.Scene(strip, bd.Mount(radius=0.215)), speeds=50.0)
+    >>> bool(loads.force[0, 0, 0] < 0)  # inward: compressed
+    True
     """
 
     speeds: np.ndarray
@@ -108,6 +116,14 @@ def static_loads(
     NoEquilibrium
         An ArithmeticError: if rotation or its weight buckles the straight beam, or turns freely about its
         root.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> pull = bd.static_loads(scene, speeds=50.0).force[0, 0, 0]  # N, at the root
+    >>> round(float(pull), 4), round(7850 * 0.01 * 0.0002 * 0.05 * (0.215 + 0.025) * 50**2, 4)  # m r w^2
+    (0.471, 0.471)
     """
     start = perf_counter()
     check_scene(scene)
@@ -132,6 +148,7 @@ def static_loads(
             *warn_of_left_out(scene),
             *_warn_of_stretch(model, speeds),
             *_warn_of_tip(tip, scene, speeds),
+            *warn_of_elastic_limit(outputs.split(values)["strain"]),
         ),
         provenance=Provenance(
             __version__,

@@ -13,18 +13,17 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import kind, one_of
 from beamdyn.common.results import Provenance
 from beamdyn.loads.load_lines import LoadLines, lines_of_response
-from beamdyn.loads.mode_error import mode_error, through, with_neighbours
+from beamdyn.loads.mode_error import mode_error, with_neighbours
 from beamdyn.loads.section_points import QUANTITIES, SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection, with_unit
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
 from beamdyn.scene.motion import Line
+from beamdyn.scene.validity import warn_of_elastic_limit
 from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.response import SteadyResponse
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_ROUNDING = 1e-12  # relative to the largest along the span
 
 
 @dataclass(frozen=True)
@@ -42,6 +41,15 @@ class SteadyLoads(SpanLoads):
         Multiples j of the rotation and k of the road of each line.
     lines : tuple of Line, length l
         The lines of the loads; the static one has the mean.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> response = bd.steady_response(bd.Scene(strip, bd.Mount(radius=0.215), wheel), [55.0], modes=3)
+    >>> loads = bd.steady_loads(response, at=[0.0, 0.025])
+    >>> bool(loads.moment[0, 0, 0] > loads.moment[0, 1, 0])  # largest at the root
+    True
     """
 
     speeds: np.ndarray
@@ -85,7 +93,7 @@ class SteadyLoads(SpanLoads):
         self.check_known(quantity)
         largest = np.nanmax(self.values(quantity), axis=0, keepdims=True)
         label = f"largest {with_unit(quantity)}, of all speeds"
-        return plot_along_span(self.x, largest, self.components(quantity), label, ax)
+        return plot_along_span(self.x, largest, self.components(quantity), label, ax, self.display_units)
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
@@ -117,6 +125,14 @@ def steady_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or the response is one of large
         deflection.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> response = bd.steady_response(bd.Scene(strip, bd.Mount(radius=0.215), wheel), [55.0], modes=3)
+    >>> bd.steady_loads(response, at=[0.0]).x
+    array([0.])
     """
     start = perf_counter()
     kind("response", response, SteadyResponse, "steady_response makes one")
@@ -131,7 +147,11 @@ def steady_loads(
         **placed(scene, stations, sections),
         **outputs.split(lines.largest),
         **outputs.split(_error(response, lines, stations, outputs), "_error"),
-        warnings=(*sections.notes, *response.warnings),
+        warnings=(
+            *sections.notes,
+            *response.warnings,
+            *warn_of_elastic_limit(outputs.split(lines.largest)["strain"]),
+        ),
         provenance=Provenance(
             __version__,
             response.provenance.method,
@@ -156,5 +176,5 @@ def _error(
     rough, fine = (lines_of_response(each, everywhere) for each in (response, response.refined))
     along_span = np.abs(rough.amplitude).sum(axis=-1).max(axis=1)
     basis = response.request.basis
-    of_modes = mode_error(rough.distance_from(fine), along_span, stations, outputs, basis)
-    return of_modes + lines.of_harmonics + through(outputs, _ROUNDING * along_span[:, None])
+    distance, length = rough.distance_from(fine), response.scene.beam.length
+    return mode_error(distance, along_span, stations, outputs, basis, length) + lines.of_harmonics

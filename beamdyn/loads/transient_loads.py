@@ -23,6 +23,7 @@ from beamdyn.loads.span_loads import (
     with_unit,
 )
 from beamdyn.loads.stations import Positions, stations_at
+from beamdyn.scene.validity import warn_of_elastic_limit
 from beamdyn.transient.simulate import Transient
 
 if TYPE_CHECKING:
@@ -47,6 +48,14 @@ class TransientLoads(SpanLoads):
     The errors, of shape (S, k), hold for the whole run.  They are infinite if there is no larger model to
     compare with or the distance from it is too large to judge by, and nan for the methods of `solve_ivp`,
     whose time-integration error is not known.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), bd.SpinUp(55.0, duration=0.5))
+    >>> loads = bd.transient_loads(bd.simulate(scene, t_end=0.5, modes=2), at=[0.0, 0.025])
+    >>> loads.largest("strain").x  # m, at the root
+    0.0
     """
 
     t: np.ndarray
@@ -124,7 +133,8 @@ class TransientLoads(SpanLoads):
         self.check_known(quantity)
         first, last = window_in(self.run, start, end)
         values = self.values(quantity)[(self.t >= first) & (self.t <= last)]
-        return plot_along_span(self.x, values, self.components(quantity), with_unit(quantity), ax)
+        labels = self.components(quantity)
+        return plot_along_span(self.x, values, labels, with_unit(quantity), ax, self.display_units)
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""
@@ -148,11 +158,13 @@ def transient_loads(
     ----------
     run : Transient
         The transient, of `simulate`.
-    at, points, youngs_modulus
+    at, points
         As for `static_loads`.
     t : sequence of float, optional
         Times of the result [s], ascending; by default those of the run, or at most 2000 of them.  The
         largest values (`largest`, `peaks`) and the errors are those of the run, whatever these times are.
+    youngs_modulus
+        As for `static_loads`.
 
     Returns
     -------
@@ -163,6 +175,14 @@ def transient_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or the run is one of large
         deflection.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), bd.SpinUp(55.0, duration=0.5))
+    >>> loads = bd.transient_loads(bd.simulate(scene, t_end=0.5, modes=2), at=[0.0, 0.025])
+    >>> loads.x
+    array([0.   , 0.025])
     """
     start = perf_counter()
     kind("run", run, Transient, "simulate makes one")
@@ -174,9 +194,9 @@ def transient_loads(
     times = run.t[:: 1 + (len(run.t) - 1) // _MOST_TIMES] if t is None else _times_in(run, t)
     return TransientLoads(
         **placed(scene, stations, sections),
-        **path.outputs.split(path.at(times)),
+        **(values := path.outputs.split(path.at(times))),
         **path.outputs.split(path.error, "_error"),
-        warnings=(*sections.notes, *run.warnings),
+        warnings=(*sections.notes, *run.warnings, *warn_of_elastic_limit(values["strain"])),
         provenance=Provenance(
             __version__,
             run.provenance.method,

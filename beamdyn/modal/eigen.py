@@ -19,6 +19,14 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.massless import condense, has_massless
+from beamdyn.modal.one_speed import (
+    factor_stiffness,
+    largest_modes,
+    largest_values,
+    rounding_of_factored,
+    static_coordinates,
+    transformed,
+)
 from beamdyn.modal.springs import (
     factor_graded,
     find_free_turns,
@@ -46,35 +54,50 @@ _REAL = 1e-8  # relative growth rate of a mode below which it counts as stable: 
 class Solver(Eigensolver):
     """Eigensolver by full matrices, for all modes.
 
+    For many speeds it has coordinates of its own, in which K = diag(1 + speed^2 growth), minus `pencil.shift`
+    times the mass; conservative equations at one speed are solved by a factorization of the stiffness there.
+
     Parameters
     ----------
     pencil : SteadyPencil
         Equations at steady speed.
-
-    Attributes
-    ----------
-    growth : ndarray, shape (n,)
-        Stiffness per squared speed: in the coordinates of the solver K = diag(1 + speed^2 growth), minus
-        `pencil.shift` times the mass.
-    basis : ndarray, shape (n, n)
-        Coordinates of the pencil per coordinate of the solver.
-    mass : ndarray, shape (n, n)
-        Mass matrix in the coordinates of the solver.
     """
 
     def __init__(self, pencil: SteadyPencil) -> None:
         self.pencil = pencil
+
+    @cached_property
+    def _at_rest(self) -> np.ndarray:
+        """Cholesky factor (n, n) of the stiffness at rest, with the shift."""
         with explained():
-            L = np.linalg.cholesky(_shifted_stiffness(pencil))
-        growth, Q = np.linalg.eigh(_transform_by_inverse(L, pencil.K2))
-        self.growth = growth
-        self.basis = solve_lower_transposed(L, Q)
-        self.mass = _symmetrize(Q.T @ _transform_by_inverse(L, pencil.M) @ Q)
+            return np.linalg.cholesky(_shifted_stiffness(self.pencil))
+
+    @cached_property
+    def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        L = self._at_rest
+        growth, Q = np.linalg.eigh(_transform_by_inverse(L, self.pencil.K2))
+        mass = _symmetrize(Q.T @ _transform_by_inverse(L, self.pencil.M) @ Q)
+        return growth, solve_lower_transposed(L, Q), mass
+
+    @property
+    def growth(self) -> np.ndarray:
+        """Stiffness per squared speed (n,), in coordinates in which it is diagonal at every speed."""
+        return self._diagonal[0]
+
+    @property
+    def basis(self) -> np.ndarray:
+        """Coordinates of the pencil per coordinate of these (n, n)."""
+        return self._diagonal[1]
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Mass matrix (n, n) in these."""
+        return self._diagonal[2]
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """By the largest eigenvalue of the mass in the coordinates of the solver."""
-        return 1 / np.linalg.eigvalsh(self.mass)[-1]
+        """By the largest eigenvalue of the inverse problem."""
+        return float(1 / largest_values(transformed(self._at_rest, self.pencil.M), 1)[0])
 
     @property
     def softening(self) -> float:
@@ -112,15 +135,20 @@ class Solver(Eigensolver):
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
         """Without vectors where the equations are conservative, and stiff at each speed."""
+        if (L := self._factor(speeds)) is not None:
+            mu = _above_rounding(largest_values(transformed(L, self.pencil.M), count))
+            return 1j / np.sqrt(mu)[None]
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         if not self.pencil.conservative or stiffness.min() < LEAST_STIFFNESS or self.pencil.shift:
             return self.solve(speeds, count).eigenvalue
         return 1j / np.sqrt(inverse_squares(self.mass, stiffness, count))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """In the coordinates of the solver, in which each is by itself."""
+        """By a factorization at one speed, else in the coordinates of the solver: each is by itself."""
         if self.pencil.shift:
             return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
+        if (L := self._factor(speeds)) is not None:
+            return (outputs @ static_coordinates(L, speeds[0] ** 2 * self.pencil.f2))[None]
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         with np.errstate(divide="ignore", invalid="ignore"):
             q = (self.basis.T @ self.pencil.f2) * speeds[:, None] ** 2 / stiffness
@@ -129,7 +157,25 @@ class Solver(Eigensolver):
 
     # Conservative equations: a real symmetric problem -----------------------------------------------
 
+    def _factor(self, speeds: np.ndarray) -> np.ndarray | None:
+        """Factor of the stiffness at one speed, which is safely positive there; else None."""
+        if len(speeds) > 1 or self.pencil.shift or not self.pencil.conservative:
+            return None
+        return factor_stiffness(self.pencil, speeds[0], LEAST_STIFFNESS)
+
+    def _solve_factored(self, L: np.ndarray, speed: float, count: int) -> Eigen:
+        """Modes at one speed by the factor of the stiffness there."""
+        mu, y = largest_modes(transformed(L, self.pencil.M), count)
+        mu = _above_rounding(mu)
+        v = solve_lower_transposed(L, y) / np.sqrt(mu)
+        size, squared = np.abs(v), 1 / mu
+        found = squared[None], size[None], rounding_of_factored(self.pencil, speed, squared, v, size)[None]
+        rounding = forward_error(mu) + rounding_of_scene(self.pencil, np.array([speed]), *found)
+        return Eigen(1j * np.sqrt(squared)[None], v[None], rounding)
+
     def _solve_conservative(self, speeds: np.ndarray, count: int) -> Eigen:
+        if (L := self._factor(speeds)) is not None:
+            return self._solve_factored(L, speeds[0], count)
         stiffness = 1 + speeds[:, None] ** 2 * self.growth
         squared, z, rounding = solve_diagonal(self.mass, stiffness, count, self.lowest_at_rest)
         rounding += self._estimate_rounding(speeds, squared, z)
@@ -350,8 +396,8 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _above_rounding(mu: np.ndarray) -> np.ndarray:
-    """Raise eigenvalues (S, k), descending, to half their rounding error, where it may make them negative."""
-    return np.maximum(mu, _FORWARD / 2 * mu[:, :1])
+    """Raise eigenvalues (..., k), descending, to half their rounding error: it may make them negative."""
+    return np.maximum(mu, _FORWARD / 2 * mu[..., :1])
 
 
 def forward_error(mu: np.ndarray) -> np.ndarray:

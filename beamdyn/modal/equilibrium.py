@@ -23,7 +23,13 @@ _FASTEST = 100.0  # speed over the first angular frequency at rest, to which equ
 
 
 class NoEquilibrium(ArithmeticError):
-    """The beam has no equilibrium on the branch at this speed."""
+    """The beam has no equilibrium on the branch at this speed.
+
+    Examples
+    --------
+    >>> issubclass(bd.NoEquilibrium, Exception)
+    True
+    """
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,14 @@ from beamdyn.modal.model import Model
 from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
+_OF_ORDER_2 = 1 / 3  # of the distance of two meshes, what is left of it by extrapolation at order 2 or more
+_RESOLVED = 0.3  # stiffness of an element by tension over that by bending: it is three layers long
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
 _REGULAR, _IRREGULAR = (1.0, 0.01), (2.0, 0.3)  # parts of a mode's distance, and of the largest, elsewhere
 _MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
+_ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
 
@@ -77,7 +80,10 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
-        truncation = relative / 3 if order is not None else _ritz_error_of(model, distance, squared)
+        if order is not None:
+            truncation = relative * np.where(_layers_are_resolved(model, speeds), _OF_ORDER_2, 1.0)[:, None]
+        else:
+            truncation = _ritz_error_of(model, fine, distance, squared)
     error = truncation + _ROUNDING * fine.rounding[:, :modes] + integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     neutral = (s == 0) & _is_hinged(model)
@@ -85,6 +91,19 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
     return EstimatedModes(model, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
+
+
+def _layers_are_resolved(model: Model, speeds: np.ndarray) -> np.ndarray:
+    """Whether elements are shorter than the layers in which the tension lets the beam bend, shape (S,).
+
+    The tension N has layers of the length (EI/N)^(1/2), for instance at a clamped root.  Stiffnesses of
+    functions of one element of length h by N and by E I have the quotient N h^2/(30 EI) or so.  Where
+    elements are far longer than the layers, their error falls with h only.
+    """
+    pencil = model.solver.pencil
+    rest, spin = np.diag(pencil.K0), np.diag(pencil.K2)
+    most = np.max(spin[rest > 0] / rest[rest > 0], initial=0.0)
+    return speeds**2 * most <= _RESOLVED
 
 
 def error_of_assumed_modes(
@@ -161,11 +180,19 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
     return -np.real(squared) > lowest
 
 
-def _ritz_error_of(model: Model, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
+def _ritz_error_of(model: Model, fine: Eigen, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
     """The error `_ritz_error` of a model, by its basis and by what it may lack."""
     margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_FIELDS
     parts = _REGULAR if model.discretization.converges_regularly else _IRREGULAR
-    return _ritz_error(distance, squared, np.asarray(model.solver.lowest_at_rest), margin, parts)
+    lowest = 0.0 if _are_above_rest(model, fine, squared) else model.solver.lowest_at_rest
+    return _ritz_error(distance, squared, np.asarray(lowest), margin, parts)
+
+
+def _are_above_rest(model: Model, fine: Eigen, squared: np.ndarray) -> bool:
+    """Whether no square is below the lowest at rest: a first mode's quotient there bounds that from above."""
+    pencil, first = model.solver.pencil, fine.vector[:, :, 0]
+    stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
+    return bool(np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift))
 
 
 def _ritz_error(

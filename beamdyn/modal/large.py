@@ -16,7 +16,6 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from beamdyn.common.triangular import solve_lower, solve_lower_transposed
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 from beamdyn.modal.eigen import (
     LEAST_STIFFNESS,
     Solver,
@@ -26,6 +25,7 @@ from beamdyn.modal.eigen import (
     select_lowest,
 )
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
+from beamdyn.modal.one_speed import rounding_of_factored
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
@@ -111,27 +111,10 @@ class LargeSolver(Eigensolver):
         if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
             return None
         v = solve_lower_transposed(L, x) / np.sqrt(mu)
-        rounding = forward_error(mu) + self._rounding(speed, 1 / mu, v)
+        size, squared = np.abs(v), 1 / mu
+        found = squared[None], size[None], rounding_of_factored(self.pencil, speed, squared, v, size)[None]
+        rounding = forward_error(mu) + rounding_of_scene(self.pencil, np.array([speed]), *found)[0]
         return 1j / np.sqrt(mu), v, rounding
-
-    def _rounding(self, speed: float, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Relative error (k,) of frequencies by rounding of the matrices, as `Solver` estimates it."""
-        size = np.abs(v)
-        spin = speed**2 * (size * (self._absolute_spin @ size)).sum(axis=0)
-        terms = (v * (self.pencil.K0 @ v)).sum(axis=0) + spin
-        mass = (size * (self._absolute_mass @ size)).sum(axis=0)
-        by_terms = terms / squared
-        growth = max(1.0, self.size / ROUNDING_SIZE)
-        rounding = growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
-        return rounding_of_scene(self.pencil, np.array([speed]), squared, size[None], rounding)[0]
-
-    @cached_property
-    def _absolute_spin(self) -> np.ndarray:
-        return np.abs(self.pencil.K2)
-
-    @cached_property
-    def _absolute_mass(self) -> np.ndarray:
-        return np.abs(self.pencil.M)
 
     def _transformed(self, L: np.ndarray, A: np.ndarray) -> LinearOperator:
         """The operator L^-1 A L^-T."""

@@ -41,15 +41,25 @@ class ModalBasis:
     def __str__(self) -> str:
         if self.modes is None:
             return "all modes"
-        if self.speeds == (0.0,):
+        if self.is_at_rest:
             return f"{self.modes} modes"
         return f"{self.modes} modes at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the modes are those at rest."""
+        return self.speeds == (0.0,)
 
     def refined(self) -> ModalBasis | None:
         """Enlarge the basis by half as many modes, at least two; None if that is too many."""
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
+
+    def with_one_more(self) -> ModalBasis | None:
+        """Enlarge the basis by one mode; None if that is too many."""
+        assert self.modes is not None
+        return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
 
 
 def given_basis(modes: int | str) -> ModalBasis | None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -181,13 +182,34 @@ def say_size(size: float) -> str:
 # Results that carry it ----------------------------------------------------------------------------
 
 
+class NotJudged(LeftOutEffects):
+    """Stands for what the effects left out would change where that takes long and was not asked for."""
+
+    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> str:
+        """Say how it is asked for."""
+        return (
+            "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."
+        )
+
+
 class StatesModelError(OfChosenPhysics):
     """Base of results that say what the effects left out of their model would change; see `OfChosenPhysics`.
 
     A subclass has the cached property `left_out_effects`, which is computed when asked for.
     """
 
+    kept = ("left_out_effects",)
     left_out_effects: Any
+    judged_by_solving: ClassVar[bool] = False  # whether the model error takes longer than the answer
+
+    def without_waiting(self) -> Any:
+        """The same, with model errors that take long and were not asked for left out: to be shown at once."""
+        if not self.judged_by_solving or "left_out_effects" in vars(self):
+            return self
+        shape = np.shape(getattr(self, "left_out_speeds", 0.0))
+        shown = copy(self)
+        vars(shown)["left_out_effects"] = NotJudged({}, {}, {}, (), {}, shape)
+        return shown
 
     @property
     def left_out(self) -> Mapping[str, np.ndarray]:

@@ -12,11 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import ScaledTranslation
 
+from beamdyn.common.display_units import DisplayUnits
 from beamdyn.common.pictures import COLOURS
 from beamdyn.output.plots import set_up_axes
 from beamdyn.output.plots_by_plane import draw_by_plane, style_by_plane
 
-_FACTOR = {"rad/s": 1.0, "rpm": 30 / np.pi}
 _MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
 _HEADROOM = 1.06
 _MOST_HIDDEN = 2  # modes above the picture that the legend names
@@ -64,7 +64,7 @@ class Curves:
 
 
 @dataclass(frozen=True)
-class _Label:
+class _CurveName:
     text: str
     y: float
     colour: str
@@ -93,7 +93,7 @@ def plot_campbell(
         Speed [rad/s] and natural frequency [Hz] of crossings of each kind.
     ax : Axes, optional
         Where to draw; new axes if not given.
-    unit : {"rad/s", "rpm"}
+    unit : {"rad/s", "rpm", "deg/s"}
         Unit of the axis of speeds.
     rated : float, optional
         Rated speed [rad/s], marked by a line.
@@ -104,7 +104,7 @@ def plot_campbell(
     -------
     Axes
     """
-    factor = _FACTOR[unit]
+    factor = DisplayUnits(unit).speed_unit().per_si
     ax = set_up_axes(ax, f"{'rotor speed' if unit == 'rpm' else 'angular speed'} [{unit}]", "frequency [Hz]")
     first, last = scenes[0].speeds[[0, -1]]
     top = _top(scenes, lines, last)
@@ -137,7 +137,7 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], first: float, last: float, top: float
-) -> tuple[list[_Label], list[tuple[str, str, float]]]:
+) -> tuple[list[_CurveName], list[tuple[str, str, float]]]:
     """Draw the lines; labels of those that end at the right, and name, colour, speed where others leave."""
     at_right, above = [], []
     ends = np.array([first, last])
@@ -147,7 +147,7 @@ def _draw_lines(
         y = multiple * ends / (2 * np.pi)
         ax.plot(factor * ends, y, dashes, color=colour, linewidth=0.9 if per_rev else 1.2, zorder=1.5)
         if y[1] <= top:
-            at_right.append(_Label(name, y[1], colour))
+            at_right.append(_CurveName(name, y[1], colour))
         else:
             above.append((name, colour, 2 * np.pi * top / multiple))
     return at_right, above
@@ -166,7 +166,7 @@ def _name_at_top(ax: Axes, factor: float, above: Sequence[tuple[str, str, float]
     return len(ends)
 
 
-def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_Label]:
+def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
     """Draw the modes, and yield their labels."""
     for k, curves in enumerate(scenes):
         solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
@@ -174,7 +174,7 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
             style = style_by_plane(i if len(scenes) == 1 else k)
             draw_by_plane(ax, factor * curves.speeds, y, dashes, style)
             if np.isfinite(y[-1]) and y[-1] <= top:
-                yield _Label(name + _changed(curves, i), float(y[-1]), style["color"])
+                yield _CurveName(name + _changed(curves, i), float(y[-1]), style["color"])
             else:
                 _name_inside(ax, factor * curves.speeds, y, name, style["color"], top)
         if len(scenes) > 1:
@@ -215,7 +215,7 @@ def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
         ax.plot([], [], " ", label=f"above: {', '.join(shown)}{more}")
 
 
-def _name_at_right(ax: Axes, labels: Sequence[_Label], top: float) -> None:
+def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
     """Name curves beside their right ends, the labels apart, each with a leader to its curve."""
     labels = sorted(_merged(labels, top), key=lambda label: label.y)
     heights = _spread([label.y / top for label in labels])
@@ -236,13 +236,13 @@ def _name_at_right(ax: Axes, labels: Sequence[_Label], top: float) -> None:
         )
 
 
-def _merged(labels: Sequence[_Label], top: float) -> list[_Label]:
+def _merged(labels: Sequence[_CurveName], top: float) -> list[_CurveName]:
     """The labels, with one in grey for those of one name whose curves end close to one another."""
-    merged: list[_Label] = []
+    merged: list[_CurveName] = []
     for label in labels:
         same = [i for i, m in enumerate(merged) if m.text == label.text and abs(m.y - label.y) < _SAME * top]
         if same:
-            merged[same[0]] = _Label(label.text, (merged[same[0]].y + label.y) / 2, "0.2")
+            merged[same[0]] = _CurveName(label.text, (merged[same[0]].y + label.y) / 2, "0.2")
         else:
             merged.append(label)
     return merged

@@ -7,17 +7,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogFormatterSciNotation
+from matplotlib.ticker import LogFormatterSciNotation, ScalarFormatter
 
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.pictures import COLOURS, DASHES, add_legend
 from beamdyn.common.pictures import save_figure as save_figure  # exported with the plots
 
-_DASHES = ("-", "--", "-.", ":")
 _MARKERS = "osD^vXP"
 _MOST_THICK = 2000  # samples above which a line over time is drawn thin
-_MOST_INSIDE = 6  # entries above which the legend stands beside the axes
-_LONGEST_INSIDE = 28  # letters of an entry above which it stands below them
-SPEED_LABEL = "angular speed [rad/s]"
 
 
 def plot_locus(
@@ -26,6 +23,7 @@ def plot_locus(
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
     critical_speed: float | None = None,
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw natural frequencies over speed, one line a mode.
 
@@ -41,12 +39,14 @@ def plot_locus(
         For the legend; "mode 1" and so on if not given.
     critical_speed : float, optional
         Speed [rad/s] to mark, as `mark_critical` does.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
     Axes
     """
-    return _plot_over_speed(speeds, frequency, "natural frequency [Hz]", ax, labels, critical_speed)
+    return _plot_over_speed(speeds, frequency, "natural frequency [Hz]", ax, labels, critical_speed, units)
 
 
 def plot_growth(
@@ -55,6 +55,7 @@ def plot_growth(
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
     critical_speed: float | None = None,
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw growth rates over speed, one line a mode, in the colours of `plot_locus`.
 
@@ -62,7 +63,7 @@ def plot_growth(
 
     Parameters
     ----------
-    speeds, ax, labels, critical_speed
+    speeds, ax, labels, critical_speed, units
         As for `plot_locus`.
     growth_rate : ndarray, shape (S, m)
         Growth rates [1/s]: positive where a mode is unstable, negative where it is damped.
@@ -71,7 +72,7 @@ def plot_growth(
     -------
     Axes
     """
-    return _plot_over_speed(speeds, growth_rate, "growth rate [1/s]", ax, labels, critical_speed)
+    return _plot_over_speed(speeds, growth_rate, "growth rate [1/s]", ax, labels, critical_speed, units)
 
 
 def plot_loci_by_angle(
@@ -98,10 +99,18 @@ def plot_loci_by_angle(
     Axes
     """
     labels = [f"setting angle {angle:.10g}°" for angle in angles_deg]
-    return _plot_over_speed(speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels, None)
+    return _plot_over_speed(
+        speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels, None, SI_UNITS
+    )
 
 
-def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Axes | None = None) -> Axes:
+def plot_shapes(
+    x: np.ndarray,
+    shapes: np.ndarray,
+    labels: Sequence[str],
+    ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
     """Draw mode shapes, each over its own largest deflection.
 
     Parameters
@@ -114,6 +123,8 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
         For the legend.
     ax : Axes, optional
         Where to draw; new axes if not given.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
@@ -121,8 +132,8 @@ def plot_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], ax: Ax
     """
     largest = np.abs(shapes).max(axis=1, keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = set_up_shapes(ax)
-    _draw_lines(ax, x, scaled, labels)
+    ax = set_up_shapes(ax, units)
+    _draw_lines(ax, units.length_unit("m").of(x), scaled, labels)
     return add_legend(ax)
 
 
@@ -132,6 +143,7 @@ def plot_response(
     bound: np.ndarray | None = None,
     ax: Axes | None = None,
     by_direction: Mapping[str, np.ndarray] | None = None,
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw a resonance curve with a logarithmic scale of deflection.
 
@@ -147,17 +159,21 @@ def plot_response(
         Where to draw; new axes if not given.
     by_direction : mapping of str to ndarray, shape (S,), optional
         Largest tip deflections in single directions [m].
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
     Axes
     """
-    ax = set_up_axes(ax, SPEED_LABEL, "largest tip deflection [mm]")
+    speed, length = units.speed_unit(), units.length_unit()
+    ax = set_up_axes(ax, speed_label(units), f"largest tip deflection [{length.name}]")
     rows = {"largest over both phases": np.asarray(amplitude)}
     if bound is not None:
         rows["sum of the lines"] = np.asarray(bound)
     rows |= by_direction or {}
-    _draw_lines(ax, speeds, (1e3 * np.where(row > 0, row, np.nan) for row in rows.values()), list(rows))
+    drawn = (length.of(np.where(row > 0, row, np.nan)) for row in rows.values())
+    _draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
     for line in ax.lines[1:]:
         line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
     if (np.asarray(amplitude) > 0).any():
@@ -166,7 +182,11 @@ def plot_response(
 
 
 def plot_transient(
-    t: np.ndarray, tip: np.ndarray, ax: Axes | None = None, labels: Sequence[str] = ("",)
+    t: np.ndarray,
+    tip: np.ndarray,
+    ax: Axes | None = None,
+    labels: Sequence[str] = ("",),
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw the tip deflection over time, one line a direction.
 
@@ -180,20 +200,27 @@ def plot_transient(
         Where to draw; new axes if not given.
     labels : sequence of str, length d
         For the legend, which one line needs none of.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
     Axes
     """
-    ax = set_up_axes(ax, "time [s]", "tip deflection [mm]")
+    ax = set_up_axes(ax, "time [s]", f"tip deflection [{units.length_unit().name}]")
     for colour, row, label in zip(COLOURS, np.atleast_2d(tip), labels, strict=False):
-        ax.plot(t, 1e3 * row, color=colour, linewidth=0.8 if len(t) > _MOST_THICK else 1.8, label=label)
+        width = 0.8 if len(t) > _MOST_THICK else 1.8
+        ax.plot(t, units.length_unit().of(row), color=colour, linewidth=width, label=label)
     ax.margins(x=0)
     return add_legend(ax) if len(labels) > 1 else ax
 
 
 def plot_sweep(
-    speeds: np.ndarray, peaks: np.ndarray, ax: Axes | None = None, labels: Sequence[str] = ("peak",)
+    speeds: np.ndarray,
+    peaks: np.ndarray,
+    ax: Axes | None = None,
+    labels: Sequence[str] = ("peak",),
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw the peaks of transients over speed, one line each.
 
@@ -207,13 +234,16 @@ def plot_sweep(
         Where to draw; new axes if not given.
     labels : sequence of str, length d
         For the legend, which one line needs none of.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
     Axes
     """
-    ax = set_up_axes(ax, SPEED_LABEL, "peak of the tip deflection [mm]")
-    _draw_lines(ax, speeds, 1e3 * np.atleast_2d(peaks), labels)
+    speed, length = units.speed_unit(), units.length_unit()
+    ax = set_up_axes(ax, speed_label(units), f"peak of the tip deflection [{length.name}]")
+    _draw_lines(ax, speed.of(np.asarray(speeds)), length.of(np.atleast_2d(peaks)), labels)
     ax.set_ylim(bottom=0)
     return add_legend(ax) if len(labels) > 1 else ax
 
@@ -318,26 +348,32 @@ def mark_points(
     return add_legend(ax)
 
 
-def mark_critical(ax: Axes, speed: float, label: str = "critical speed") -> Axes:
+def mark_critical(
+    ax: Axes, speed: float, label: str = "critical speed", units: DisplayUnits = SI_UNITS
+) -> Axes:
     """Mark a critical speed by a line, and shade what lies past it.
 
     Parameters
     ----------
     ax : Axes
-        With angular speed [rad/s] on x; its limits stay.
+        With angular speed on x; its limits stay.
     speed : float
         Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
     label : str
         What to call it.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
     Axes
     """
     left, right = ax.get_xlim()
-    if left <= speed < right:
-        ax.axvline(speed, color="0.3", linestyle="--", linewidth=1, label=f"{label} {speed:.5g} rad/s")
-        ax.axvspan(speed, right, color="0.93", zorder=0)
+    unit = units.speed_unit()
+    at = unit.of(speed)
+    if left <= at < right:
+        ax.axvline(at, color="0.3", linestyle="--", linewidth=1, label=f"{label} {unit.say(speed, 5)}")
+        ax.axvspan(at, right, color="0.93", zorder=0)
         ax.set_xlim(left, right)
     return add_legend(ax)
 
@@ -349,12 +385,14 @@ def _plot_over_speed(
     ax: Axes | None,
     labels: Sequence[str] | None,
     critical_speed: float | None,
+    units: DisplayUnits,
 ) -> Axes:
     values = np.asarray(values)
-    ax = set_up_axes(ax, SPEED_LABEL, quantity)
+    speeds = units.speed_unit().of(np.asarray(speeds))
+    ax = set_up_axes(ax, speed_label(units), quantity)
     _draw_lines(ax, speeds, values.T, labels or number_modes(values.shape[1]))
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
-    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed)
+    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
 
 def number_modes(count: int) -> list[str]:
@@ -362,27 +400,42 @@ def number_modes(count: int) -> list[str]:
     return [f"mode {i}" for i in range(1, count + 1)]
 
 
-def set_up_shapes(ax: Axes | None) -> Axes:
+def set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
     """Label the axes for mode shapes, each over its largest deflection, and draw the beam at rest."""
-    ax = set_up_axes(ax, "position along the beam [m]", "deflection / its largest value")
+    ax = set_up_axes(ax, position_label(units), "deflection / its largest value")
     ax.axhline(0, color="0.4", linewidth=0.8)
     return ax
 
 
+def speed_label(units: DisplayUnits) -> str:
+    """Name of an axis of speeds."""
+    return f"angular speed [{units.speed_unit().name}]"
+
+
+def position_label(units: DisplayUnits) -> str:
+    """Name of an axis of positions along the beam."""
+    return f"position along the beam [{units.length_unit('m').name}]"
+
+
 def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
     """Label the axes, new ones if none are given, with a grid and plain numbers."""
-    ax = _new_axes() if ax is None else ax
+    ax = new_axes() if ax is None else ax
     ax.set_xlabel(xlabel, fontsize=12)
     ax.set_ylabel(ylabel, fontsize=12)
     ax.tick_params(labelsize=11)
-    ax.ticklabel_format(useOffset=False)
+    for axis in (ax.xaxis, ax.yaxis):
+        if isinstance(
+            formatter := axis.get_major_formatter(), ScalarFormatter
+        ):  # not of axes drawn on before
+            formatter.set_useOffset(False)
     ax.margins(x=0.02)
     ax.grid(color="0.85", linewidth=0.7)
     ax.set_axisbelow(True)
     return ax
 
 
-def _new_axes() -> Axes:
+def new_axes() -> Axes:
+    """Axes of a new figure, which matplotlib keeps to show it."""
     from matplotlib import pyplot
 
     return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
@@ -398,67 +451,10 @@ def _draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Seq
 def _line_style(i: int) -> dict[str, Any]:
     """Colour and dashes of line i; the dashes change when the colours are used up."""
     cycle, colour = divmod(i, len(COLOURS))
-    return {"color": COLOURS[colour], "linestyle": _DASHES[cycle % len(_DASHES)]}
+    return {"color": COLOURS[colour], "linestyle": DASHES[cycle % len(DASHES)]}
 
 
 def is_isolated(y: np.ndarray) -> np.ndarray:
     """Whether each value lies between gaps: a line does not show it, so that it needs a marker."""
     known = np.pad(np.isfinite(y), 1)
     return known[1:-1] & ~known[:-2] & ~known[2:]
-
-
-def add_legend(ax: Axes) -> Axes:
-    """Add a legend: beside the axes if it has many entries, below them if these are long."""
-    labels = ax.get_legend_handles_labels()[1]
-    place: dict[str, Any] = {"loc": "best"}
-    if max(map(len, labels), default=0) > _LONGEST_INSIDE:
-        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
-    elif len(labels) > _MOST_INSIDE:
-        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
-    ax.legend(fontsize=10, **place)
-    return ax
-
-
-def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a bent beam to one scale: its positions along the straight beam and across it, over its length."""
-    ax = _new_axes() if ax is None else ax
-    ax.plot(along, across, color=COLOURS[0])
-    ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)
-    labels = {"xlabel": "along the beam at rest, over its length", "ylabel": "deflection over the length"}
-    ax.set(title=title, **labels)
-    ax.set_aspect("equal", adjustable="datalim")  # fills the axes, however little the beam bends
-    return ax
-
-
-def plot_branches(
-    branches: Sequence[tuple[str, np.ndarray, np.ndarray, np.ndarray]], ax: Axes | None = None
-) -> Axes:
-    """Draw branches of equilibria over speed: solid where they are stable, dashed where not.
-
-    Parameters
-    ----------
-    branches : sequence of tuple
-        Name, speeds (k,) [rad/s], tip deflections over the length (k,) and stability (k,) of each.
-    ax : Axes, optional
-        Where to draw; new axes if not given.
-
-    Returns
-    -------
-    Axes
-    """
-    ax = _new_axes() if ax is None else ax
-    for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
-        for where, style, word in ((stable, "-", "stable"), (_with_neighbours(~stable), "--", "unstable")):
-            if where.any():
-                ax.plot(speeds, np.where(where, tip, np.nan), style, color=colour, label=f"{name}, {word}")
-    ax.set(xlabel=SPEED_LABEL, ylabel="tip deflection over the length")
-    ax.legend()
-    return ax
-
-
-def _with_neighbours(where: np.ndarray) -> np.ndarray:
-    """Extend a selection of points by those next to it, so that lines meet."""
-    extended = where.copy()
-    extended[1:] |= where[:-1]
-    extended[:-1] |= where[1:]
-    return extended

@@ -7,14 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from beamdyn.common.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.pictures import COLOURS
-from beamdyn.output.plots import add_legend, set_up_axes
+from beamdyn.output.plots import add_legend, position_label, set_up_axes
 
 _FEW = 4  # cases that are drawn as lines; of more, their range is
 
 
 def plot_along_span(
-    x: np.ndarray, values: np.ndarray, labels: Sequence[str], quantity: str, ax: Axes | None = None
+    x: np.ndarray,
+    values: np.ndarray,
+    labels: Sequence[str],
+    quantity: str,
+    ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw a quantity along the beam, one colour a component: lines of few cases, the range of more.
 
@@ -30,12 +36,15 @@ def plot_along_span(
         Name of the quantity, with its unit.
     ax : Axes, optional
         Where to draw; new axes if not given.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
     Axes
     """
-    ax = set_up_axes(ax, "position along the beam [m]", quantity)
+    ax = set_up_axes(ax, position_label(units), quantity)
+    x = units.length_unit("m").of(x)
     for k, label in enumerate(labels):
         colour, of_component = COLOURS[k % len(COLOURS)], values[..., k]
         if len(values) <= _FEW:

@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from beamdyn.common.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.pictures import COLOURS
 from beamdyn.output.plots import (
-    SPEED_LABEL,
     add_legend,
     is_isolated,
     number_modes,
     set_up_axes,
     set_up_shapes,
+    speed_label,
 )
 
 
@@ -26,12 +27,13 @@ def plot_locus_by_plane(
     directions: tuple[str, str],
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw natural frequencies over speed, solid where a mode bends mostly in one direction, else dashed.
 
     Parameters
     ----------
-    speeds, frequency, ax, labels
+    speeds, frequency, ax, labels, units
         As for `beamdyn.output.plots.plot_locus`.
     share : ndarray, shape (S, m)
         Share of each mode's energy in the first direction, which is drawn solid.
@@ -42,11 +44,12 @@ def plot_locus_by_plane(
     -------
     Axes
     """
-    ax = set_up_axes(ax, SPEED_LABEL, "natural frequency [Hz]")
+    speeds = units.speed_unit().of(np.asarray(speeds))
+    ax = set_up_axes(ax, speed_label(units), "natural frequency [Hz]")
     names = labels or number_modes(np.shape(frequency)[1])
     columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, names, strict=True)
     for i, (y, solid, label) in enumerate(columns):
-        draw_by_plane(ax, np.asarray(speeds), y, solid, style_by_plane(i))
+        draw_by_plane(ax, speeds, y, solid, style_by_plane(i))
         _name_colour(ax, label, i)
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
     return _name_planes(ax, [f"mostly {direction}" for direction in directions])
@@ -58,6 +61,7 @@ def plot_shapes_by_plane(
     labels: Sequence[str],
     directions: tuple[str, str],
     ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw mode shapes in two directions, both over the largest deflection in either.
 
@@ -73,6 +77,8 @@ def plot_shapes_by_plane(
         The two directions in words, for the legend.
     ax : Axes, optional
         Where to draw; new axes if not given.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
 
     Returns
     -------
@@ -80,7 +86,7 @@ def plot_shapes_by_plane(
     """
     largest = np.abs(shapes).max(axis=(1, 2), keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = set_up_shapes(ax)
+    ax, x = set_up_shapes(ax, units), units.length_unit("m").of(x)
     for i, (both, label) in enumerate(zip(scaled, labels, strict=True)):
         ax.plot(x, both[0], "-", **style_by_plane(i))
         ax.plot(x, both[1], "--", **style_by_plane(i))

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from beamdyn.common.curves import curves
+from beamdyn.common.curves import curves, mark_missing
 from beamdyn.output.plots import add_legend, set_up_axes
+
+_TITLE = 80  # characters of a line of the title
 
 
 def plot_over_input(
-    x: np.ndarray, rows: np.ndarray, labels: Sequence[str], xlabel: str, ylabel: str, ax: Axes | None = None
+    x: np.ndarray,
+    rows: np.ndarray,
+    labels: Sequence[str],
+    xlabel: str,
+    ylabel: str,
+    ax: Axes | None = None,
+    title: str = "",
+    missing: str = "no answer",
 ) -> Axes:
     """Draw curves over an input.
 
@@ -21,18 +31,24 @@ def plot_over_input(
     x : ndarray, shape (n,)
         Values of the input.
     rows : ndarray, shape (m, n)
-        The curves, with gaps where they are not finite; of many, some spread evenly are drawn.
+        The curves, with crosses at the bottom where they are not finite; of many, some spread evenly are
+        drawn.
     labels : sequence of str
         One a curve; empty for a single one.
     xlabel, ylabel : str
         Labels of the axes.
     ax : Axes, optional
         Where to draw; a new one by default.
+    title : str
+        What holds of all curves, wrapped.
+    missing : str
+        What the crosses mean.
     """
     ax = set_up_axes(ax, xlabel, ylabel)
     order = np.argsort(x, kind="stable")
     curves(ax, x[order], rows[:, order], labels)
-    return add_legend(ax) if any(labels) else ax
+    ax.set_title("\n".join(textwrap.wrap(title, _TITLE)), fontsize=10)
+    return add_legend(ax) if mark_missing(ax, missing) or any(labels) else ax
 
 
 def plot_bars(

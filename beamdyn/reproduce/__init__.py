@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 from beamdyn.common.comparison import Comparison
-from beamdyn.common.edge.tables import comparison_table, progress_bar
+from beamdyn.common.edge.progress import at_work
+from beamdyn.common.edge.tables import comparison_table
 from beamdyn.common.pictures import save_figure
 from beamdyn.published import load
 from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables
@@ -47,7 +48,7 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
         style="bold",
     )
     screen.print(_INTRODUCTION)
-    with progress_bar("Fig. 6") as progress:
+    with at_work("Fig. 6") as progress:
         fig_6_sweep = motion.run_sweep(progress)
     all_comparisons = _print_comparisons(screen, fig_6_sweep)
     for note in (*frequencies.notes(), *motion.notes(), *large_deflection.notes()):

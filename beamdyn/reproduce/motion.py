@@ -17,7 +17,8 @@ from beamdyn.published import load
 from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, rolling_scene
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.resonance import Crossings, resonance_speeds
+from beamdyn.steady.crossings import Crossings
+from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
 from beamdyn.tables.results import sweep_peaks
 from beamdyn.transient.simulate import simulate

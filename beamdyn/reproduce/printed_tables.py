@@ -43,9 +43,9 @@ def compare_papers() -> tuple[list[Summary], Errata]:
     """Compare all values: summaries by source and discretization, and the errata with their sources."""
     summaries: list[Summary] = []
     errata: dict[tuple[str, str, int], tuple[str, PrintedValue]] = {}
-    for source in _all_entries("ritz"):
+    for source in all_entries("ritz"):
         for name, discretization in _DISCRETIZATIONS.items():
-            entries = _all_entries(discretization)[source]
+            entries = all_entries(discretization)[source]
             summaries.append(summarize_entries(source, name, entries))
             for entry in entries:
                 if entry.exact:
@@ -54,7 +54,7 @@ def compare_papers() -> tuple[list[Summary], Errata]:
 
 
 @cache
-def _all_entries(discretization: str) -> Mapping[str, Sequence[PrintedValue]]:
+def all_entries(discretization: str) -> Mapping[str, Sequence[PrintedValue]]:
     """All values by their source."""
     groups: dict[str, list[PrintedValue]] = {}
     for paper in PAPERS:

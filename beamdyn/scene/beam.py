@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
@@ -19,6 +19,7 @@ from beamdyn.common.checks import (
     several,
     size,
 )
+from beamdyn.common.one_line import OneLine, counted, number, spanned
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.direction import direction_of
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
@@ -36,7 +37,7 @@ _ROUNDING = 1e-12  # of a position, relative to the length: the distance at whic
 
 
 @dataclass(frozen=True)
-class Beam(FieldsOnly):
+class Beam(FieldsOnly, OneLine):
     """A straight beam, held at its root.  Build it by `rectangular` or `from_stiffness`.
 
     Which of its properties a model reads is said by `Physics`.
@@ -67,6 +68,14 @@ class Beam(FieldsOnly):
         Point masses along the beam; those at one place add up.
     point_springs : sequence of PointSpring
         Springs that hold points of the beam to the carrier; those at one place add up.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(
+    ...     length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0
+    ... )
+    >>> f"{strip.bending_stiffness(0.5):.3e} N m2"
+    '1.333e-03 N m2'
     """
 
     length: float
@@ -295,6 +304,16 @@ class Beam(FieldsOnly):
         warn_of_twist(beam.twist)
         return beam
 
+    def headline(self) -> Iterator[str]:
+        """Length, mass per length and bending stiffness from root to tip, and the bodies on the beam."""
+        yield number(self.length, "m")
+        for name, unit, letters in (("mass_per_length", "kg/m", ""), ("bending_stiffness", "N m2", "EI ")):
+            yield letters + spanned(getattr(self, name)(np.linspace(0, 1, 11)), unit)
+        yield f"twist to {number(np.degrees(self.tip_twist), 'deg')}" if self.twist is not None else ""
+        yield f"tip mass {number(self.tip.mass, 'kg')}" if self.tip is not None else ""
+        yield counted(len(self.point_masses), "point mass", "point masses") if self.point_masses else ""
+        yield counted(len(self.point_springs), "spring") if self.point_springs else ""
+
     def __hash__(self) -> int:
         return self._hash
 
@@ -307,8 +326,8 @@ class Beam(FieldsOnly):
         """Fractions x/L where a property may jump or have a kink, or a mass stands, with the ends 0 and 1."""
         names = (name for name in OPTIONAL_PROPERTIES if name != "outer_fibre")
         profiles = (self.mass_per_length, self.bending_stiffness, *(getattr(self, name) for name in names))
-        ends = np.array([b for p in profiles if p is not None for b in p.breakpoints])
-        return merge_breakpoints(np.concatenate([ends, self.points]))
+        ends = {b for p in profiles if p is not None for b in p.breakpoints}
+        return merge_breakpoints(np.concatenate([[*ends], self.points]))
 
     @cached_property
     def lumps(self) -> tuple[np.ndarray, np.ndarray]:
@@ -319,6 +338,8 @@ class Beam(FieldsOnly):
 
     def springs(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
         """Positions x/L (k,) of the point springs in a direction, 0 or 1, and the stiffnesses (k,) [N/m]."""
+        if not self.point_springs:
+            return np.empty(0), np.empty(0)
         found = [s for s in self.point_springs if s.stiffness and direction_of(s.direction) == direction]
         position, stiffness = np.array([(s.position, s.stiffness) for s in found]).reshape(-1, 2).T
         return np.minimum(position / self.length, 1.0), stiffness
@@ -338,6 +359,18 @@ class Beam(FieldsOnly):
         """Angle by which the section at the tip is turned [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
 
+
+PROPERTY_UNITS = {  # of what varies along a beam, but for its twist
+    "mass_per_length": "kg/m",
+    "bending_stiffness": "N m2",
+    "second_bending_stiffness": "N m2",
+    "axial_stiffness": "N",
+    "shear_stiffness": "N",
+    "second_shear_stiffness": "N",
+    "rotary_inertia": "kg m",
+    "second_rotary_inertia": "kg m",
+    "outer_fibre": "m",
+}
 
 OPTIONAL_PROPERTIES = (
     "axial_stiffness",

@@ -32,6 +32,13 @@ class Damping:
     ------
     ValueError
         If a value is not finite or out of its range.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, damping=bd.Damping(ratios=(0.01, 0.02)))  # of the first two modes
+    >>> scene.is_damped
+    True
     """
 
     ratios: Sequence[

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import cos, sin
 from typing import Annotated, Any
 
 from beamdyn.common.checks import InvalidValue, angle, not_negative, refuse, set_fields
 from beamdyn.common.described import Described
+from beamdyn.common.one_line import OneLine, number
 from beamdyn.scene.doubts import warn_of_degrees
 
 _SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}
@@ -17,7 +19,7 @@ _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is
 
 
 @dataclass(frozen=True)
-class Mount:
+class Mount(OneLine):
     """How the root of the beam is fixed to the carrier.
 
     Parameters
@@ -49,6 +51,11 @@ class Mount:
     -----
     UserWarning
         If an angle seems to be in degrees: beyond half a turn, with at most two decimals, such as 5.
+
+    Examples
+    --------
+    >>> bd.Mount(radius=0.215, setting_angle=np.pi).setting_angle == np.pi  # outward
+    True
     """
 
     radius: Annotated[
@@ -99,6 +106,16 @@ class Mount:
             warn_of_degrees(name, value)
         for name in ("root_stiffness", "second_root_stiffness"):
             set_fields(self, **{name: _spring(name, getattr(self, name))})
+
+    def headline(self) -> Iterator[str]:
+        """Radius, then the angles and springs that were given."""
+        yield f"radius {number(self.radius, 'm')}"
+        for name in ("setting_angle", "bending_angle", "precone"):
+            degrees = math.degrees(getattr(self, name))
+            yield f"{name.replace('_', ' ')} {number(degrees, 'deg')}" if degrees else ""
+        for name in ("root_stiffness", "second_root_stiffness"):
+            spring = getattr(self, name)
+            yield f"{name.replace('_', ' ')} {number(spring, 'N m/rad')}" if spring < math.inf else ""
 
     @property
     def root_stiffnesses(self) -> tuple[float, float]:

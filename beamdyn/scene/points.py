@@ -33,6 +33,12 @@ class TipMass:
     ValueError
         If a value is not finite, the mass or an inertia is negative, or one moment of inertia exceeds the
         sum of the other two.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, tip=bd.TipMass(mass=0.004))
+    >>> round(float(bd.natural_modes(bd.Scene(strip), modes=1).frequency[0]), 3)  # Hz
+    13.917
     """
 
     mass: Annotated[float, Described("kg", "m_t", "mass", least=0)]
@@ -95,6 +101,13 @@ class PointMass:
     ------
     ValueError
         If a value is not finite, the position is not positive, or the mass is negative.
+
+    Examples
+    --------
+    >>> magnet = bd.PointMass(position=0.03, mass=0.001)
+    >>> beam = bd.Beam.from_stiffness(0.05, 0.0157, 1.33e-3, point_masses=[magnet])
+    >>> beam.point_masses[0].mass
+    0.001
     """
 
     position: Annotated[
@@ -126,6 +139,13 @@ class PointSpring:
     ValueError
         If a value is not finite, the position is not positive, the stiffness is negative, or the direction
         is unknown.
+
+    Examples
+    --------
+    >>> stop = bd.PointSpring(position=0.05, stiffness=100.0)
+    >>> beam = bd.Beam.from_stiffness(0.05, 0.0157, 1.33e-3, point_springs=[stop])
+    >>> beam.point_springs[0].stiffness  # N/m
+    100.0
     """
 
     position: Annotated[

@@ -19,9 +19,9 @@ from numpy.polynomial import Polynomial, legendre
 from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
 from beamdyn.common.legendre import (
     gauss_points_on,
-    gauss_rule,
     integrate_series,
     legendre_series,
+    legendre_values,
     multiply_series,
 )
 from beamdyn.common.pickling import FieldsOnly
@@ -45,6 +45,13 @@ class Table:
         Positions x/L, from 0 to 1, ascending; a station given twice is a jump.
     values : sequence of float
         Values of the property at the stations [SI units].
+
+    Examples
+    --------
+    >>> stiffness = bd.Table([0.0, 0.5, 1.0], [4.0, 3.0, 1.0])  # N m2 at x/L, straight lines between
+    >>> beam = bd.Beam.from_stiffness(1.0, 1.0, stiffness)
+    >>> float(beam.bending_stiffness(0.75))
+    2.0
     """
 
     stations: Sequence[float]
@@ -64,6 +71,12 @@ class Profile(FieldsOnly):
         Ends of the segments in ascending order, from 0 to 1.
     coefficients : tuple of tuple of float
         Legendre coefficients on each segment mapped to [-1, 1].
+
+    Examples
+    --------
+    >>> taper = bd.Beam.from_stiffness(1.0, bd.Polynomial([2.0, -1.0]), 1.0).mass_per_length
+    >>> float(taper(0.0)), float(taper(1.0))  # kg/m at root and tip
+    (2.0, 1.0)
     """
 
     breakpoints: tuple[float, ...]
@@ -89,15 +102,6 @@ class Profile(FieldsOnly):
     @cached_property
     def _ends(self) -> np.ndarray:
         return np.array(self.breakpoints)
-
-    def within(self, left: np.ndarray, right: np.ndarray, points: int) -> np.ndarray:
-        """Values at Gauss points of intervals (c,), each within one segment: shape (c, points)."""
-        segment = np.searchsorted(self._ends[1:-1], (left + right) / 2, side="right")
-        if not self.degree:
-            return np.repeat(self.series[0, segment, None], points, axis=1)
-        a, b = self._ends[segment, None], self._ends[segment + 1, None]
-        xi = left[:, None] + (right - left)[:, None] * (1 + gauss_rule(points)[0]) / 2
-        return legendre.legval(((xi - a) - (b - xi)) / (b - a), self.series[:, segment, None], tensor=False)
 
     @cached_property
     def series(self) -> np.ndarray:
@@ -139,12 +143,11 @@ class Profile(FieldsOnly):
 
     def at_points(self, points: int) -> np.ndarray:
         """Values at Gauss points of each segment, shape (segments, points)."""
-        return (legendre.legvander(gauss_rule(points)[0], self.degree) @ self.series).T
+        return (legendre_values(points, self.degree) @ self.series).T
 
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
-        rows = [tuple([factor * c for c in row]) for row in self.coefficients]
-        return Profile(self.breakpoints, tuple(rows))
+        return _of_series(self.breakpoints, factor * self.series)
 
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
@@ -189,7 +192,7 @@ def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Pro
     parts, unresolved = [profile.split(ends) for profile in profiles], np.array([0])
     for nodes in _FIT_NODES if any(part.degree for part in parts) else (1,):
         values = np.swapaxes(function(*(part.at_points(nodes) for part in parts)), 1, 2)
-        series = np.linalg.solve(legendre.legvander(gauss_rule(nodes)[0], nodes - 1), values)
+        series = np.linalg.solve(legendre_values(nodes, nodes - 1), values)
         largest = np.abs(series).max(axis=1, keepdims=True)
         unresolved = np.flatnonzero(
             (np.abs(series[:, 1:][:, -3:]) > _FIT_TOLERANCE * largest).any(axis=(0, 1))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse, set_fields
+from beamdyn.common.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.one_line import OneLine, given_fields, number
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
 from beamdyn.scene.direction import ACROSS
@@ -21,7 +24,7 @@ _SLENDER = Physics(), Physics(stretch=True)  # in one plane
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(OneLine):
     """Input of a model: beam, mount, motion, damping and gravity.
 
     Parameters
@@ -43,12 +46,24 @@ class Scene:
         How the physics was chosen: analyses set it in the scene of their result.
     damping : Damping
         Further damping: ratios mode by mode, Rayleigh's factors, a damper at the tip.
+    label : str
+        What the scene is called in pictures that show several.
+    units : DisplayUnits or dict
+        Units in which its results are shown, such as {"speed": "rpm", "length": "mm"}; all numbers are SI
+        nevertheless.  A scene from a file has those of the file.
 
     Raises
     ------
     ValueError
         If the damping ratio is outside [0, 1), the beam lacks a property that the physics needs, or a spring
         at the root is so stiff against the beam that rounding does not tell it from a clamp.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), damping_ratio=0.01)
+    >>> scene.is_damped
+    True
     """
 
     beam: Beam
@@ -59,6 +74,8 @@ class Scene:
     physics: Physics = Physics()
     physics_choice: PhysicsChoice | None = field(default=None, repr=False, compare=False)
     damping: Damping = NO_DAMPING
+    label: str = field(default="", repr=False, compare=False)
+    units: DisplayUnits = field(default=SI_UNITS, repr=False, compare=False)
 
     if TYPE_CHECKING:  # the word "auto" is accepted, but what is read is a Physics
 
@@ -72,6 +89,8 @@ class Scene:
             physics: Physics | Literal["auto"] = Physics(),
             physics_choice: PhysicsChoice | None = None,
             damping: Damping = NO_DAMPING,
+            label: str = "",
+            units: DisplayUnits | Mapping[str, str] = SI_UNITS,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -83,6 +102,8 @@ class Scene:
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
         set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
+        kind("label", self.label, str, 'it is text, such as "0.2 mm"')
+        set_fields(self, units=DisplayUnits.of(self.units))
         kind("damping", self.damping, Damping, "Damping(tip_damper=0.1) sets a damper at the tip")
         check_one_kind_of_ratios(ratio, self.damping)
         if isinstance(self.physics, str) and self.physics == AUTO_NAME:
@@ -97,6 +118,25 @@ class Scene:
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
+
+    def headline(self) -> Iterator[str]:
+        """Label, beam, mount, motion, and what else was given."""
+        unit = self.units.length_unit("mm" if self.beam.length < 1 else "m")
+        yield repr(self.label) if self.label else ""
+        yield f"beam of {number(self.beam.length * unit.per_si, unit.name)}"
+        yield f"radius {number(self.mount.radius * unit.per_si, unit.name)}" if self.mount.radius else ""
+        yield self._say_motion()
+        yield "damped" if self.is_damped else ""
+        yield f"gravity {number(self.gravity, 'm/s2')}" if self.gravity else ""
+        yield "physics 'auto'" if self.chooses_physics else ", ".join(given_fields(self.physics))
+
+    def _say_motion(self) -> str:
+        """Kind of motion and final speed."""
+        if self.motion is None:
+            return ""
+        speed, unit = getattr(self.motion, "final_speed", math.nan), self.units.speed_unit()
+        known = f" to {number(speed * unit.per_si, unit.name)}" if math.isfinite(speed) else ""
+        return f"{type(self.motion).__name__}{known}"
 
     @property
     def is_damped(self) -> bool:

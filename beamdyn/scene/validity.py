@@ -49,6 +49,13 @@ def warn_of_strain(strain: float) -> Iterator[str]:
         yield f"static axial strain reaches {strain:.2g}: above 1 % stretch is not negligible"
 
 
+def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[str]:
+    """Yield a warning if strains, of which there may be none (nan), pass what linear elasticity describes."""
+    largest = np.abs(strain[np.isfinite(strain)]).max(initial=0.0)
+    if largest > LARGE_STRAIN:
+        yield f"strain reaches {largest:.2g}: past {LARGE_STRAIN:g} few materials are linearly elastic"
+
+
 def warn_of_static_deflection(deflection: np.ndarray, length: float, speeds: np.ndarray) -> Iterator[str]:
     """Yield a warning if the static tip deflection [m] at a speed [rad/s] exceeds linear theory."""
     bent = np.abs(deflection) > LARGE_DEFLECTION * length

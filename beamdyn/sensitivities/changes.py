@@ -62,6 +62,9 @@ def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
 def _pencils(model: Model, name: str, value: float) -> tuple[SteadyPencil, SteadyPencil]:
     """The equations of both models with another value of a number."""
     scene = scene_of(model.scene, {name: value})
+    if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
+        bound = "a point mass or spring at the tip, or where a section jumps, would leave its place"
+        raise InvalidValue(name, value, bound, "move both")
     return steady_pencils(Model(scene, model.discretization), model.equations.coarse)
 
 

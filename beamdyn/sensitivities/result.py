@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.one_line import counted, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.scene.scene import Scene
 from beamdyn.sensitivities.scene_numbers import SceneNumber
@@ -33,11 +35,18 @@ class Sensitivities(Result):
         Derivative of each answer by each number [unit / unit of the number]; nan where there is none, as
         `warnings` say.
     error : ndarray, shape (n, k)
-        Estimated absolute error of the derivative, in its unit.
+        Estimated absolute error of the derivative [same unit].
     warnings : tuple of str
         Which derivatives are missing, and why; what limits the answers.
     provenance : Provenance
         How they were found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.frequency_sensitivities(bd.Scene(strip), modes=2, inputs=["beam.density"])
+    >>> found.relative.round(6)
+    array([[-0.5, -0.5]])
     """
 
     answers: tuple[str, ...]
@@ -49,6 +58,15 @@ class Sensitivities(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{counted(len(self.answers), 'answer')} by {counted(len(self.inputs), 'number')}"
+        if self.derivative.size and np.isfinite(self.relative).any():
+            size = np.nan_to_num(np.abs(self.relative))
+            most = np.unravel_index(int(size.argmax()), size.shape)
+            yield f"most by {self.inputs[most[0]].name}: relative change {number(self.relative[most])}"
+        yield warned(self.warnings)
 
     @property
     def relative(self) -> np.ndarray:

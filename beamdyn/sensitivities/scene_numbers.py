@@ -5,28 +5,21 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.described import descriptions
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import PROPERTY_UNITS, Beam, TipMass
+from beamdyn.scene.damping import Damping
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.profile import Profile, as_profile, mean
 from beamdyn.scene.rectangle import Rectangle, rectangle_of
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.inputs import SCALE
+from beamdyn.studies.listed_numbers import POINTS
 
+_TOUCHING = 1e-6  # distance over the length at which a point stands beside another
 _STEP = 0.01  # of a value, or of the size of its kind
-_PROPERTIES = {
-    "mass_per_length": "kg/m",
-    "bending_stiffness": "N m2",
-    "second_bending_stiffness": "N m2",
-    "axial_stiffness": "N",
-    "shear_stiffness": "N",
-    "second_shear_stiffness": "N",
-    "rotary_inertia": "kg m",
-    "second_rotary_inertia": "kg m",
-}
 
 
 @dataclass(frozen=True)
@@ -46,6 +39,13 @@ class SceneNumber:
         Largest change within which the equations are evaluated for a derivative [unit].
     least : float
         Smallest value that it may have [unit].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> number = bd.frequency_sensitivities(bd.Scene(strip), modes=1, inputs=["beam.density"]).inputs[0]
+    >>> number.name, number.value
+    ('beam.density', 7850.0)
     """
 
     name: str
@@ -93,9 +93,9 @@ def _all(scene: Scene) -> Iterator[SceneNumber]:
     yield from _of_section(scene)
     yield from _of_twist(scene.modelled_beam)
     yield from _of_tip(scene.beam)
+    yield from _of_points(scene.beam)
     yield from _of_mount(scene)
-    if scene.damping_ratio:
-        yield _relative("model.damping_ratio", "", scene.damping_ratio)
+    yield from _of_damping(scene)
 
 
 def _relative(name: str, unit: str, value: float) -> SceneNumber:
@@ -122,10 +122,11 @@ def _of_material(scene: Scene, section: Rectangle) -> Iterator[SceneNumber]:
 
 
 def _of_properties(scene: Scene) -> Iterator[SceneNumber]:
-    """The properties that are modelled: axial stiffness is for the stretch alone."""
-    for name, unit in _PROPERTIES.items():
+    """The properties that are modelled: axial stiffness is for stretch alone, outer fibres for strains."""
+    unused = {"outer_fibre"} if scene.physics.stretch else {"outer_fibre", "axial_stiffness"}
+    for name, unit in PROPERTY_UNITS.items():
         profile = getattr(scene.modelled_beam, name)
-        if profile is not None and (name != "axial_stiffness" or scene.physics.stretch):
+        if profile is not None and name not in unused:
             if _is_constant(profile):
                 yield _relative(f"beam.{name}", unit, _at_root(profile))
             else:
@@ -170,3 +171,37 @@ def _of_mount(scene: Scene) -> Iterator[SceneNumber]:
             beam = scene.beam
             bending = mean(beam.bending_stiffness) / beam.length  # the scale of a soft spring, and of a hinge
             yield SceneNumber(f"mount.{name}", found.unit, value, _STEP * max(value, bending), 0.0)
+
+
+def _of_points(beam: Beam) -> Iterator[SceneNumber]:
+    """Masses and springs along the beam; their places where nothing else changes along the beam there."""
+    sizes = {
+        "mass": mean(beam.mass_per_length) * beam.length,
+        "stiffness": mean(beam.bending_stiffness) / beam.length**3,
+    }
+    for kind, field in POINTS.items():
+        for k, point in enumerate(getattr(beam, field)):
+            name, amount = f"beam.{kind}[{k}]", "mass" if kind == "point_mass" else "stiffness"
+            value, unit = getattr(point, amount), descriptions(type(point))[amount].unit
+            yield SceneNumber(f"{name}.{amount}", unit, value, _STEP * max(value, sizes[amount]), 0.0)
+            if room := _room_of(beam, field, k):
+                yield SceneNumber(f"{name}.position", "m", point.position, room, 0.0)
+
+
+def _room_of(beam: Beam, field: str, k: int) -> float:
+    """How far a point may move along the beam for a derivative [m]; 0 where it stands beside another."""
+    points = getattr(beam, field)
+    others = replace(beam, **{field: [*points[:k], *points[k + 1 :]]}).breakpoints
+    apart = min(abs(points[k].position - xi * beam.length) for xi in others)
+    return min(_STEP / 10 * beam.length, apart / 3) if apart > _TOUCHING * beam.length else 0.0
+
+
+def _of_damping(scene: Scene) -> Iterator[SceneNumber]:
+    if scene.damping_ratio:
+        yield _relative("model.damping_ratio", "", scene.damping_ratio)
+    for k, ratio in enumerate(scene.damping.ratios):
+        if ratio:
+            yield _relative(f"damping.ratios[{k}]", "", ratio)
+    for name in ("mass_factor", "stiffness_factor", "tip_damper"):
+        if value := getattr(scene.damping, name):
+            yield _relative(f"damping.{name}", descriptions(Damping)[name].unit, value)

@@ -13,7 +13,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import unannounced
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.results import Provenance
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.choice import DiscretizationChoice
@@ -30,7 +30,8 @@ from beamdyn.sensitivities.result import Sensitivities
 from beamdyn.sensitivities.scene_numbers import SceneNumber, check_names, numbers_of
 from beamdyn.spectrum.critical import critical_point
 from beamdyn.spectrum.modes import Modes, natural_modes
-from beamdyn.steady.resonance import Crossing, resonance_speeds
+from beamdyn.steady.crossings import Crossing, label_crossing
+from beamdyn.steady.resonance import resonance_speeds
 
 SPEED = "speed"
 _SAME = 1e-6  # relative distance of eigenvalues below which modes cross
@@ -69,6 +70,13 @@ def frequency_sensitivities(
     ------
     ValueError
         If an argument is out of its range, a name is unknown, or large deflection is modelled.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.frequency_sensitivities(bd.Scene(strip), modes=1, inputs=["beam.length", "beam.thickness"])
+    >>> found.relative[:, 0].round(6)  # f ~ h / L^2
+    array([-2.,  1.])
     """
     start = perf_counter()
     with_speed, names = _split_speed(inputs)
@@ -126,14 +134,19 @@ def critical_speed_sensitivities(
     ------
     ValueError
         If an argument is wrong, or there is no critical speed, or none is known.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    >>> bd.critical_speed_sensitivities(scene, inputs=["beam.thickness"]).relative.round(6)  # proportional
+    array([[1.]])
     """
     start, names = perf_counter(), check_names(inputs)
     with unannounced():
         found = critical_point(scene, discretization, tolerance)
     if found.model is None or not (0 < found.speed < np.inf and np.isfinite(found.error)):
-        raise InvalidValue(
-            "scene", found.speed, f"it has no critical speed to change: {found.reason}", unit="rad/s"
-        )
+        raise NoModelAnswer(f"there is no critical speed to change: {found.reason}")
     model = _linear(found.model)
     numbers = numbers_of(model.scene, names)
     changes = changes_of(model, numbers)
@@ -172,10 +185,12 @@ def crossing_sensitivities(
         The scene; its motion defines the lines.
     top_speed : float
         Top speed [rad/s].
-    modes, order, discretization
+    modes
         As for `resonance_speeds`.
     inputs : sequence of str, optional
         Numbers by their names in scene files; all if not given.
+    order, discretization
+        As for `resonance_speeds`.
 
     Returns
     -------
@@ -186,6 +201,14 @@ def crossing_sensitivities(
     ------
     ValueError
         If an argument is wrong, or large deflection is modelled.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), wheel)
+    >>> bd.crossing_sensitivities(scene, 75.0, modes=1, inputs=["beam.thickness"]).relative.round(6)
+    array([[1., 1.]])
     """
     start, names = perf_counter(), check_names(inputs)
     with unannounced():
@@ -314,8 +337,7 @@ def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:
 
 
 def _name(crossing: Crossing) -> str:
-    other = "" if crossing.second_mode is None else f" and {crossing.second_mode}"
-    return f"{crossing.line.name}, {crossing.kind}, mode {crossing.mode}{other}"
+    return label_crossing(crossing.line, crossing.kind, crossing.mode, crossing.second_mode)
 
 
 def _provenance(model: Model, start: float) -> Provenance:

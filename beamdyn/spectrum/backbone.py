@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, count, real
+from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import DiscretizationChoice, solve_to_tolerance
 from beamdyn.modal.finite_amplitude import SMALL, FreeVibration
@@ -29,13 +31,20 @@ class Backbone(Result):
     frequency : float
         Frequency f0 of small vibration [Hz].
     coefficient : float
-        The coefficient k; a is the longer semi-axis of the path of the tip [m], L the length.
+        The nondimensional coefficient k; a is the longer semi-axis of the path of the tip, L the length [m].
     error : float
-        Estimated error of the coefficient.
+        Estimated absolute error of the coefficient, which is nondimensional as that is.
     warnings : tuple of str
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> curve = bd.backbone(bd.Scene(strip, physics=bd.Physics(large_deflection=True)))
+    >>> round(curve.coefficient, 4)
+    0.0194
     """
 
     speed: float
@@ -46,6 +55,15 @@ class Backbone(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"mode {self.mode} at {self.say_speed(self.speed)}: {number(self.frequency, 'Hz')}"
+        yield from (
+            f"coefficient {number(self.coefficient)}",
+            error_at_most(self.error),
+            warned(self.warnings),
+        )
 
     def at(self, amplitude: np.ndarray | float) -> np.ndarray:
         """Frequency [Hz] at amplitudes of the tip [m]."""
@@ -78,6 +96,13 @@ def backbone(
         An ArithmeticError: if the beam has no equilibrium at this speed.
     ValueError
         If the mode does not vibrate about the equilibrium.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> curve = bd.backbone(bd.Scene(strip, physics=bd.Physics(large_deflection=True)))
+    >>> round(curve.frequency, 3), round(float(curve.at(0.005)), 3)  # Hz, small and at 5 mm
+    (65.23, 65.243)
     """
     start = perf_counter()
     check_scene(scene)

@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.announced import OUTSIDE, announce
 from beamdyn.common.checks import within
+from beamdyn.common.one_line import error_at_most
 from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import (
     DEFAULT_TARGET,
@@ -69,6 +70,13 @@ class CriticalPoint(StatesModelError):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> point = bd.critical_point(bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi)))
+    >>> point.speed
+    inf
     """
 
     speed: float
@@ -79,6 +87,13 @@ class CriticalPoint(StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     model: Model | None = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        found = np.isfinite(self.speed)
+        yield self.say_speed(self.speed) if found else f"none below {self.say_speed(self.none_below)}"
+        yield error_at_most(self.error) if found else ""
+        yield self.reason
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
@@ -109,6 +124,15 @@ def critical_speed(
     Returns
     -------
     float
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> round(bd.critical_speed(bd.Scene(strip, bd.Mount(radius=0.215))), 6)  # rad/s
+    159.818333
+    >>> outward = bd.Mount(radius=0.215, setting_angle=np.pi)
+    >>> bd.critical_speed(bd.Scene(strip, outward))  # there is none
+    inf
     """
     point = critical_point(scene, discretization, tolerance)
     announce(point.warnings)
@@ -139,6 +163,13 @@ def critical_point(
     Returns
     -------
     CriticalPoint
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> point = bd.critical_point(bd.Scene(strip, bd.Mount(radius=0.215)))
+    >>> round(point.speed, 6), point.error < 1e-9
+    (159.818333, True)
     """
     start = perf_counter()
     check_scene(scene)

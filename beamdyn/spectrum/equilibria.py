@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, one_of, positive, real, within
+from beamdyn.common.one_line import error_at_most, listed, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, choose_model, solve_to_tolerance
 from beamdyn.modal.continuation import (
@@ -61,6 +62,15 @@ class Equilibrium(Result):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> mount = bd.Mount(radius=0.215, setting_angle=np.pi / 4)
+    >>> scene = bd.Scene(strip, mount, physics=bd.Physics(large_deflection=True))
+    >>> found = bd.equilibrium(scene, speed=100.0)
+    >>> found.stable, round(float(np.degrees(found.tip_angle)), 2)
+    (True, -27.24)
     """
 
     speed: float
@@ -75,6 +85,13 @@ class Equilibrium(Result):
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
 
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        unit = self.display_units.length_unit()
+        yield f"at {self.say_speed(self.speed)}: tip at {listed(self.tip * unit.per_si, unit.name)}"
+        yield error_at_most(self.error * unit.per_si, unit.name)
+        yield from ("stable" if self.stable else "unstable", warned(self.warnings))
+
     def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
         """Positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
@@ -86,11 +103,11 @@ class Equilibrium(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam."""
-        from beamdyn.output.plots import plot_bent_beam
+        from beamdyn.output.plots_of_equilibria import plot_bent_beam
 
         across = _direction(self.scene)
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
-        title = f"equilibrium at {self.speed:.6g} rad/s, {self.branch} branch"
+        title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
         stable = "" if self.stable else ", unstable"
         return plot_bent_beam(points[:, 0], points[:, 1:] @ across, ax, title + stable)
 
@@ -126,6 +143,14 @@ def equilibrium(
     ------
     NoEquilibrium
         An ArithmeticError: if the branch has no equilibrium at this speed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> mount = bd.Mount(radius=0.215, setting_angle=np.pi / 4)
+    >>> scene = bd.Scene(strip, mount, physics=bd.Physics(large_deflection=True))
+    >>> bd.equilibrium(scene, speed=100.0).tip[:2].round(5)  # m, along the beam and across
+    array([ 0.04645, -0.01724])
     """
     start = perf_counter()
     scene = _with_large_deflection(scene, branch)
@@ -206,6 +231,14 @@ class EquilibriumBranch:
         Whether the potential energy, that of the centrifugal forces included, is least.
     turning_speeds : ndarray, shape (t,)
         Speeds at which the branch turns back, by a fold or where it meets the straight beam [rad/s].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), physics=bd.Physics(large_deflection=True))
+    >>> straight = bd.equilibrium_branches(scene, top_speed=180.0).branches[0]
+    >>> bool(straight.stable[0]), bool(straight.stable[-1])  # it buckles at 159.8 rad/s
+    (True, False)
     """
 
     name: str
@@ -231,6 +264,13 @@ class EquilibriumBranches(Result):
         What limits the answer.
     provenance : Provenance
         How they were found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), physics=bd.Physics(large_deflection=True))
+    >>> len(bd.equilibrium_branches(scene, top_speed=180.0).branches)
+    2
     """
 
     top_speed: float
@@ -240,13 +280,20 @@ class EquilibriumBranches(Result):
     provenance: Provenance
     scene: Scene = field(repr=False)
 
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{' and '.join(each.name for each in self.branches)} up to {self.say_speed(self.top_speed)}"
+        if np.isfinite(self.critical_speed):
+            yield f"straight beam buckles at {self.say_speed(self.critical_speed)}"
+        yield warned(self.warnings)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
-        from beamdyn.output.plots import plot_branches
+        from beamdyn.output.plots_of_equilibria import plot_branches
 
         across, length = _direction(self.scene), self.scene.beam.length
         lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]
-        return plot_branches(lines, ax)
+        return plot_branches(lines, ax, self.display_units)
 
 
 def equilibrium_branches(
@@ -266,6 +313,14 @@ def equilibrium_branches(
     Returns
     -------
     EquilibriumBranches
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), physics=bd.Physics(large_deflection=True))
+    >>> found = bd.equilibrium_branches(scene, top_speed=180.0)
+    >>> round(found.critical_speed, 3), [branch.name for branch in found.branches]
+    (159.818, ['straight', 'bent'])
     """
     start = perf_counter()
     scene = _with_large_deflection(scene, "straight")

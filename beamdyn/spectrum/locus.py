@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -12,6 +12,7 @@ import numpy as np
 
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, count
+from beamdyn.common.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import (
@@ -79,6 +80,13 @@ class Locus(StatesModelError):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> locus = bd.frequency_locus(bd.Scene(strip, bd.Mount(radius=0.215)), np.linspace(0, 200, 5), modes=1)
+    >>> locus.frequency[:, 0].round(2), locus.growth_rate[:, 0].round(2)  # past 159.8 rad/s it buckles
+    (array([65.23, 61.96, 50.91, 22.54,   nan]), array([  0.  ,   0.  ,   0.  ,   0.  , 308.99]))
     """
 
     speeds: np.ndarray
@@ -97,6 +105,17 @@ class Locus(StatesModelError):
     model: Model = field(repr=False)
     ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
     place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        count, modes = self.frequency.shape
+        yield f"{counted(modes, 'mode')}, {counted(count, 'speed')}, {self.say_speed(self.speeds)}"
+        yield spanned(self.frequency, "Hz")
+        yield from (
+            error_at_most(self.error),
+            states(self.status, ("stable", "neutral")),
+            warned(self.warnings),
+        )
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
@@ -132,10 +151,12 @@ class Locus(StatesModelError):
         from beamdyn.output.plots import plot_locus
         from beamdyn.output.plots_by_plane import plot_locus_by_plane
 
+        units = self.display_units
         if self.scene.physics.planes == 2:
             (solid, _), words = drawn_order(self.scene)
-            return plot_locus_by_plane(self.speeds, self.frequency, self.plane_share[:, :, solid], words, ax)
-        return plot_locus(self.speeds, self.frequency, ax)
+            share = self.plane_share[:, :, solid]
+            return plot_locus_by_plane(self.speeds, self.frequency, share, words, ax, units=units)
+        return plot_locus(self.speeds, self.frequency, ax, units=units)
 
 
 @announced
@@ -170,6 +191,13 @@ def frequency_locus(
     ------
     ValueError
         If an argument is out of its range.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> locus = bd.frequency_locus(bd.Scene(strip, bd.Mount(radius=0.215)), [0.0, 50.0, 100.0], modes=1)
+    >>> locus.frequency[:, 0].round(3)  # Hz
+    array([65.23 , 61.963, 50.907])
     """
     start = perf_counter()
     check_scene(scene)

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from beamdyn._version import __version__
 from beamdyn.common.announced import OUTSIDE, announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, positive
+from beamdyn.common.one_line import error_at_most, listed, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.choice import (
@@ -50,6 +51,13 @@ class SettingAngleLimits(Result):
         What limits the answer.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> limits = bd.setting_angle_limits(bd.Scene(strip, bd.Mount(radius=0.215)), top_speed=50.0)
+    >>> limits.first < limits.second
+    True
     """
 
     first: float
@@ -59,6 +67,11 @@ class SettingAngleLimits(Result):
     static_deflection: float
     warnings: tuple[str, ...]
     provenance: Provenance
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{listed(np.degrees([*self]), 'deg')} up to {self.say_speed(self.top_speed)}"
+        yield from (error_at_most(np.degrees(self.error), "deg"), warned(self.warnings))
 
     def __iter__(self) -> Iterator[float]:
         return iter((self.first, self.second))
@@ -88,6 +101,13 @@ def setting_angle_limits(
     ------
     ValueError
         If the top speed is not positive, or infinite without a basis of given size, or the root is a hinge.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> limits = bd.setting_angle_limits(bd.Scene(strip, bd.Mount(radius=0.215)), top_speed=50.0)
+    >>> round(float(np.degrees(limits.first)), 4)  # Lee and Yoo (2019): 88.35 to 88.36
+    88.3598
     """
     start = perf_counter()
     check_scene(scene)
@@ -112,7 +132,7 @@ def setting_angle_limits(
     return SettingAngleLimits(
         first=first,
         second=second,
-        error=_limits_error(first, second, coarse_limits, top_speed),
+        error=_limits_error(first, second, coarse_limits, top_speed) if model.exceeds_coarser else np.inf,
         top_speed=top_speed,
         static_deflection=deflection,
         warnings=(*warn_of_plain(unresolved), *_limit_warnings(first, second, deflection)),

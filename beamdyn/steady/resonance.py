@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -24,126 +23,19 @@ from beamdyn.modal.plane_share import plane_share
 from beamdyn.modal.tracking import track
 from beamdyn.modal.uncoupled import UncoupledSolver
 from beamdyn.model_error.choice import choose_physics
-from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
+from beamdyn.steady.crossings import Crossing, Crossings
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
-from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    pass
 
 _HIGHEST_ORDER = 20  # that may be asked for: ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
 _BENT_NODES = 100  # the same where each takes an equilibrium, about which the loci are smooth
 _FURTHER_MODES = 2  # of other parts, which may come below those that are sought
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """Speed at which a line of the excitation equals a natural frequency.
-
-    Parameters
-    ----------
-    line : Line
-        Line of the excitation.
-    mode : int
-        Number of the mode, from 1, in the order at rest.
-    speed : float
-        Speed [rad/s].
-    frequency : float
-        Natural frequency of the mode [Hz].
-    kind : {"forced", "parametric"}
-        "forced": natural frequency = line.  "parametric": twice the natural frequency, or the sum of the
-        frequencies of `mode` and `second_mode`, = line; the periodic stiffness makes the beam unstable.
-    error : float
-        Estimated relative error of the speed.
-    second_mode : int or None
-        Number of the other mode of a combination resonance.
-    plane_share : tuple of float
-        Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
-    second_plane_share : tuple of float or None
-        The same of the other mode of a combination resonance.
-    """
-
-    line: Line
-    mode: int
-    speed: float
-    frequency: float
-    kind: str
-    error: float
-    second_mode: int | None = None
-    plane_share: tuple[float, float] = (1.0, 0.0)
-    second_plane_share: tuple[float, float] | None = None
-
-
-@dataclass(frozen=True)
-class Crossings(StatesModelError, Sequence[Crossing]):
-    """Sequence of crossings, by ascending speed.
-
-    Parameters
-    ----------
-    crossings : tuple of Crossing
-        The crossings.
-    lines : tuple of Line
-        The lines that force the beam.
-    speeds : ndarray, shape (S,)
-        Speeds of the locus [rad/s], up to the top speed or the critical one.
-    frequency : ndarray, shape (S, m)
-        Natural frequencies [Hz], numbered at rest.
-    order : int
-        Highest order of the lines that were sought.
-    unlisted : int
-        Number of crossings of the next order, which are weaker and not listed; those of still higher
-        order are not counted.
-    warnings : tuple of str
-        Limitations of the result, and why there is no crossing.
-    provenance : Provenance
-        How the result was computed.
-    """
-
-    crossings: tuple[Crossing, ...]
-    lines: tuple[Line, ...]
-    speeds: np.ndarray
-    frequency: np.ndarray
-    order: int
-    unlisted: int
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
-
-    def __getitem__(self, index):  # pyright: ignore[reportIncompatibleMethodOverride]
-        return self.crossings[index]
-
-    def __len__(self) -> int:
-        return len(self.crossings)
-
-    @cached_property
-    def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the speed of each crossing (k,)."""
-        return left_out_of_resonances(self.scene, self.crossings, self.frequency.shape[1])
-
-    @property
-    def extent(self) -> str:
-        """What was sought, and what is left out, as a sentence."""
-        sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
-        if not self.unlisted:
-            return f"{sought}; there are none of order {self.order + 1}."
-        crossings = f"{self.unlisted} crossing{'s' * (self.unlisted != 1)} of order {self.order + 1}"
-        return f"{sought}; {crossings}, and those of higher order, are weaker and left out."
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
-        from beamdyn.output.campbell import Curves, plot_campbell
-
-        lines = {line.name: line.multiple for line in self.lines}
-        marked = {
-            kind: [(c.speed, c.frequency) for c in self if c.kind == kind]
-            for kind in ("forced", "parametric")
-        }
-        names = tuple(f"mode {i}" for i in range(1, self.frequency.shape[1] + 1))
-        return plot_campbell([Curves(self.speeds, self.frequency, names)], lines, marked, ax)
 
 
 @announced
@@ -185,6 +77,14 @@ def resonance_speeds(
     ------
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> found = bd.resonance_speeds(bd.Scene(strip, bd.Mount(radius=0.215), wheel), top_speed=150.0, modes=1)
+    >>> [round(crossing.speed, 3) for crossing in found.crossings if crossing.kind == "forced"]  # rad/s
+    [53.086, 69.802]
     """
     start = perf_counter()
     check_scene(scene)

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, count, positive
+from beamdyn.common.one_line import error_at_most, states, warned
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, plain
 from beamdyn.equations.directions import check_direction, modelled_directions
@@ -23,7 +24,7 @@ from beamdyn.model_error.by_solving import Answer, left_out_by_solving
 from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import nothing_known
-from beamdyn.scene.motion import Line, Motion
+from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     LARGE_DEFLECTION,
@@ -33,27 +34,27 @@ from beamdyn.scene.validity import (
     warn_of_left_out,
     warn_of_road,
 )
-from beamdyn.steady.excitation_phases import (
-    check_steady_state,
-    name_line,
-)
-from beamdyn.steady.harmonic_balance import solve_harmonic_balance
+from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
+from beamdyn.steady.tip_lines import (
+    across_bending,
+    add_static,
+    along_bending,
+    combine_pairs,
+    sizes_of,
+    solve_parts,
+)
 from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
 _MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
-_MOST_UNKNOWNS = 2**17  # that are solved for at once: they fit the processor's cache
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
 _FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
 _MOST_JUDGED = 4  # speeds of the model error, beside that of the largest amplitude
 _LINEAR = "vibration about the equilibrium being linear"
-_ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,14 @@ class SteadyResponse(StatesModelError):
     Notes
     -----
     The modal truncation error is `mode_error`, which takes a second solution at its first use.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> found = bd.steady_response(bd.Scene(strip, bd.Mount(radius=0.215), wheel), [45.0, 55.0], modes=3)
+    >>> bool((found.amplitude <= found.bound * (1 + 1e-12)).all())  # at most the sum of the lines
+    True
     """
 
     speeds: np.ndarray
@@ -121,6 +130,18 @@ class SteadyResponse(StatesModelError):
     warnings: tuple[str, ...]
     provenance: Provenance
     request: ResponseRequest = field(repr=False)
+
+    judged_by_solving: ClassVar[bool] = True
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        largest = self.say_length(np.nanmax(self.amplitude, initial=0.0))
+        yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}: up to {largest}"
+        yield from (
+            f"harmonics' {error_at_most(self.error)}",
+            states(self.status, ("stable",)),
+            warned(self.warnings),
+        )
 
     @property
     def scene(self) -> Scene:
@@ -168,10 +189,10 @@ class SteadyResponse(StatesModelError):
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
         """What the effects left out would change in the amplitude at speeds [rad/s] (k,)."""
+        if not len(speeds):
+            return nothing_known(self.scene)
         request = replace(self.request, speeds=np.asarray(speeds, dtype=float))
-        return (
-            left_out_by_solving(self.scene, request.solve_with) if len(speeds) else nothing_known(self.scene)
-        )
+        return left_out_by_solving(self.scene, request.solve_with)
 
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
         """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...).
@@ -198,7 +219,7 @@ class SteadyResponse(StatesModelError):
 
         names = modelled_directions(self.scene) if self.scene.physics.planes == 2 else ()
         by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}
-        return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction)
+        return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction, self.display_units)
 
 
 @announced
@@ -245,6 +266,14 @@ def steady_response(
     ------
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> found = bd.steady_response(bd.Scene(strip, bd.Mount(radius=0.215), wheel), [55.0], modes=5)
+    >>> round(1e3 * float(found.amplitude[0]), 5)  # mm
+    0.26188
     """
     check_scene(scene)
     speeds = ascending("speeds", speeds)
@@ -275,17 +304,17 @@ class ResponseRequest(FieldsOnly):
         scene, speeds, motion = self.scene, self.speeds, check_steady_state(self.scene.motion)
         vibration = vibration_of(self.model, self.basis, motion, speeds)
         rate, rate_error, status, undecided = vibration.stability()
-        used, c, error = _solve_parts(vibration.parts, vibration.tips, self.harmonics, self.tolerance)
+        used, c, error = solve_parts(vibration.parts, vibration.tips, self.harmonics, self.tolerance)
         stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
-        harmonic, vibrating = _combine_pairs(c, used, motion)
-        line, share = _add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
+        harmonic, vibrating = combine_pairs(c, used, motion)
+        line, share = add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
         vibrated = _largest(vibrating, harmonic, stable)
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
             amplitude=vibrated if without_static else _largest(line, harmonic, stable),
-            bound=_sizes(line).sum(axis=1),
+            bound=sizes_of(line).sum(axis=1),
             stable=stable,
             status=status,
             growth_rate=rate,
@@ -293,8 +322,8 @@ class ResponseRequest(FieldsOnly):
             error=error * share,
             lines=tuple(name_line(motion, h) for h in map(tuple, harmonic.tolist())),
             line_frequency=np.abs(vibration.parts[0][0].rates @ harmonic.T) / (2 * np.pi),
-            line_amplitude=_along(line),
-            line_amplitude_across=_across(line),
+            line_amplitude=along_bending(line),
+            line_amplitude_across=across_bending(line),
             harmonics=harmonic,
             warnings=tuple(_warnings(self, status, vibrated, error * share, undecided)),
             provenance=self._provenance(len(used), start),
@@ -347,99 +376,6 @@ class ResponseRequest(FieldsOnly):
     def model(self) -> Model:
         """The discretized scene, chosen for the number of modes and the speeds."""
         return choose_vibrating(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
-
-
-def _solve_parts(
-    parts: list[tuple[PeriodicSystem, np.ndarray]], tips: np.ndarray, steps: int | None, tolerance: float
-) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, d, H) and errors (S) of parts that no term couples, together."""
-    solved = [_solve_harmonics(part, tips[..., places], steps, tolerance) for part, places in parts]
-    index = {h: i for i, h in enumerate(dict.fromkeys(h for harmonics, *_ in solved for h in harmonics))}
-    c = np.zeros((*tips.shape[:2], len(index)), dtype=complex)
-    for harmonics, of_part, _ in solved:
-        c[..., [index[h] for h in harmonics]] += of_part
-    return list(index), c, np.max([error for *_, error in solved], axis=0)
-
-
-def _solve_harmonics(
-    system: PeriodicSystem, tips: np.ndarray, steps: int | None, tolerance: float
-) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed solved with as many as it needs."""
-    S, d = tips.shape[:2]
-    if not system.load_harmonics:
-        return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
-    most = _MOST_INTERACTIONS if steps is None else steps
-    levels = generate_harmonics(system.load_harmonics, system.coupling, most + 1)
-    complete, levels = len(levels) <= most + 1, levels[: most + 1]
-    harmonics, sizes = [h for level in levels for h in level], np.cumsum([0, *map(len, levels)])
-    c, error = np.zeros((S, d, sizes[-1]), dtype=complex), np.full(S, np.inf)
-    first, kept = min(3 if steps is None else most + 1, len(levels)), slice(0)
-    for used in range(first - 1, len(levels) + 1):
-        kept, exact = slice(sizes[used]), complete and used == len(levels)
-        unconverged = np.flatnonzero(~(error <= tolerance))
-        for part in _split(unconverged, system.size * sizes[used]):
-            finer = _solve_tip(system[part], tips[part], harmonics[kept])
-            if used >= first:  # the one before is only what this is compared with
-                error[part] = _ROUNDING if exact else _distance(finer, c[part, :, kept])
-            c[part, :, kept] = finer
-        if (error <= tolerance).all():
-            break
-    return harmonics[kept], c[..., kept], error
-
-
-def _split(rows: np.ndarray, unknowns: int) -> list[np.ndarray]:
-    """Split indices of speeds, of so many unknowns each, into parts that fit into the cache."""
-    return [p for p in np.array_split(rows, 1 + len(rows) * unknowns // _MOST_UNKNOWNS) if len(p)]
-
-
-def _solve_tip(system: PeriodicSystem, tips: np.ndarray, harmonics: list[Pair]) -> np.ndarray:
-    """Tip deflections (S, d, H) in some harmonics."""
-    if not harmonics:
-        return np.zeros((*tips.shape[:2], 0), dtype=complex)
-    return np.einsum("shn,sdn->sdh", solve_harmonic_balance(system, harmonics), tips)
-
-
-def _distance(finer: np.ndarray, coarser: np.ndarray) -> np.ndarray:
-    """Sum over the lines of the differences (S,) of two deflections (S, d, H), over that of the finer."""
-    total = _sizes(finer).sum(axis=1)
-    return _sizes(finer - coarser).sum(axis=1) / np.where(total == 0, 1, total)
-
-
-def _sizes(c: np.ndarray) -> np.ndarray:
-    """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi: the longer semi-axes of ellipses."""
-    along, across = _along(c), 1j * _across(c)
-    return (np.abs(along + across) + np.abs(along - across)) / 2  # of circles in either sense
-
-
-def _along(c: np.ndarray) -> np.ndarray:
-    """Component (S, H) of vectors (S, d, H) in the direction of bending."""
-    return c[:, 0]
-
-
-def _across(c: np.ndarray) -> np.ndarray:
-    """Component (S, H) of vectors (S, d, H) in the direction across; 0 where one plane is modelled."""
-    return c[:, 1:].sum(axis=1)
-
-
-def _combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Combine each pair h, -h into the line of positive frequency: harmonics (l, 2), amplitudes (S, d, l)."""
-    kappa = motion.road_multiple or 0.0
-    forward = [i for i, h in enumerate(harmonics) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
-    harmonic = np.array([harmonics[i] for i in forward], dtype=int).reshape(-1, 2)
-    return harmonic, c[..., forward] * np.where(harmonic.any(axis=1), 2.0, 1.0)
-
-
-def _add_static(
-    line: np.ndarray, harmonics: np.ndarray, static: np.ndarray, directions: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Add the deflection in equilibrium (S, d) to the static line; also its size before over that after.
-
-    Of the directions in which the tip vibrates, those of the modelled planes are kept.
-    """
-    total = line[:, :directions].copy()
-    total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]
-    before, after = (_sizes(each).sum(axis=1) for each in (line, total))
-    return total, np.minimum(before / np.where(after == 0, 1.0, after), 1.0)
 
 
 def _largest(line: np.ndarray, harmonics: np.ndarray, stable: np.ndarray) -> np.ndarray:

@@ -9,6 +9,10 @@ from typing import Any
 import numpy as np
 
 REFUSED = "refused"  # status of a design without an answer
+NO_ANSWERS = (
+    *(REFUSED, "failed", "not found", "divergence", "flutter"),
+    *("parametric instability", "past the critical speed", "turns freely about the root"),
+)  # states of numbers that are no answer
 
 
 @dataclass(frozen=True)

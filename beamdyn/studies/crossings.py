@@ -18,6 +18,7 @@ from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
+from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, coarser_stack
@@ -29,6 +30,16 @@ RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not
 _FEW = Ritz(6)  # in which the lines of a scene are found: they do not depend on the functions
 _PROBED = 16  # designs whose lines are looked for, beside the extremes
 _MOST_EXTREMES = 4  # inputs of which all extremes are looked at
+
+
+def line_key(kind: str, line: Line) -> tuple[str, float]:
+    """What tells a line of a kind from others: lines of one multiple are one, whatever rounding adds."""
+    return kind, round(line.multiple, 9)
+
+
+def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
+    """What tells a crossing, found or possible, from others: its line and its mode."""
+    return *line_key(crossing.kind, crossing.line), crossing.mode
 
 
 @dataclass(frozen=True)
@@ -52,12 +63,12 @@ class PossibleCrossing:
     @property
     def label(self) -> str:
         """For tables and pictures."""
-        return f"mode {self.mode}, {self.line.name} ({self.kind})"
+        return label_crossing(self.line, self.kind, self.mode)
 
     @property
     def key(self) -> tuple[str, float, int]:
         """What tells it from others."""
-        return self.kind, round(self.line.multiple, 9), self.mode
+        return crossing_key(self)
 
     @property
     def multiple(self) -> float:
@@ -89,7 +100,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
     found: dict[tuple[str, float], tuple[str, Line]] = {}
     for design in probed:
         for kind, line in lines_of(scene_of(scene, design), top):
-            found.setdefault((kind, round(line.multiple, 9)), (kind, line))
+            found.setdefault(line_key(kind, line), (kind, line))
     if not found:
         bound = "nothing varies in time at steady speed in any design, so that none resonates"
         remedy = "a RollingWheel with a road, or gravity, excites the beam"
@@ -183,9 +194,7 @@ class SimilarCrossings(FieldsOnly):
         return np.array([self._has_line(design) for design in designs])[kind.ravel()]
 
     def _has_line(self, design: Mapping[str, float]) -> np.ndarray:
-        there = {
-            (kind, round(line.multiple, 9)) for kind, line in lines_of(scene_of(self.scene, design), self.top)
-        }
+        there = {line_key(*each) for each in lines_of(scene_of(self.scene, design), self.top)}
         return np.array([resonance.key[:2] in there for resonance in self.resonances])
 
     def _cautions(self, error: np.ndarray, status: np.ndarray) -> Iterator[Caution]:

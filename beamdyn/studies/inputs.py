@@ -11,11 +11,12 @@ from typing import Any
 from beamdyn.common.checks import InvalidValue, positive, real_array
 from beamdyn.common.described import descriptions
 from beamdyn.common.designs import VariedInput
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import PROPERTY_UNITS, Beam, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.profile import as_profile, to_profile
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.listed_numbers import check_listed, unit_of_listed, with_damping, with_points
 
 SPEED = "speed"
 SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
@@ -25,17 +26,6 @@ _OF_RECTANGLE = {
     "youngs_modulus": "Pa",
     "density": "kg/m3",
     "poissons_ratio": "",
-}
-_OF_STIFFNESS = {
-    "mass_per_length": "kg/m",
-    "bending_stiffness": "N m2",
-    "axial_stiffness": "N",
-    "outer_fibre": "m",
-    "second_bending_stiffness": "N m2",
-    "shear_stiffness": "N",
-    "second_shear_stiffness": "N",
-    "rotary_inertia": "kg m",
-    "second_rotary_inertia": "kg m",
 }
 # Powers of the sides of a section in its properties, whatever its form.
 _LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
@@ -51,8 +41,8 @@ SECTION_POWERS = {
 }
 _OF_BEAM = {"length": "m", "twist": "rad"}
 _UNITS: dict[str, str] = {
-    **{f"beam.{name}": unit for name, unit in (_OF_BEAM | _OF_RECTANGLE | _OF_STIFFNESS).items()},
-    **{SCALE + name: "" for name in (*SECTION_POWERS, *_OF_STIFFNESS)},
+    **{f"beam.{name}": unit for name, unit in (_OF_BEAM | _OF_RECTANGLE | PROPERTY_UNITS).items()},
+    **{SCALE + name: "" for name in (*SECTION_POWERS, *PROPERTY_UNITS)},
     **{f"beam.tip.{name}": found.unit for name, found in descriptions(TipMass).items()},
     **{f"mount.{name}": found.unit for name, found in descriptions(Mount).items()},
     "model.damping_ratio": "",
@@ -60,6 +50,17 @@ _UNITS: dict[str, str] = {
     SPEED: "rad/s",
 }
 NAMES = tuple(_UNITS)
+
+
+def unit_of(name: str) -> str:
+    """SI unit of an input."""
+    listed = unit_of_listed(name)
+    return _UNITS[name] if listed is None else listed
+
+
+def is_input(name: str) -> bool:
+    """Whether a name is that of an input, be it one in a list, such as "beam.point_mass[0].mass"."""
+    return name in _UNITS or unit_of_listed(name) is not None
 
 
 def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
@@ -77,13 +78,13 @@ def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
 
 
 def _check_input(name: str, values: Any) -> VariedInput:
-    if name not in _UNITS:
+    if not is_input(name):
         near = difflib.get_close_matches(str(name), NAMES, n=1)
         raise InvalidValue("vary", name, "unknown input", f"give {near[0] if near else ', '.join(NAMES)}")
     array = real_array(name, values)
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
-    return VariedInput(name, _UNITS[name], array)
+    return VariedInput(name, unit_of(name), array)
 
 
 # The scene of a design ----------------------------------------------------------------------------
@@ -105,10 +106,12 @@ def scene_of(scene: Scene, design: Mapping[str, float]) -> Scene:
         If a value is out of its range, or the beam is of no rectangular section where a side or the
         material of one is given.
     """
+    check_listed(scene, design)
     with _naming_inputs(design):
         of_model = _part(design, "model.")
         mount = replace(scene.mount, **_part(design, "mount."))
-        return replace(scene, beam=_beam_of(scene.beam, design), mount=mount, **of_model)
+        changed = replace(scene, beam=_beam_of(scene.beam, design), mount=mount, **of_model)
+        return with_damping(changed, design)
 
 
 @contextmanager
@@ -127,7 +130,7 @@ def _part(design: Mapping[str, float], prefix: str) -> dict[str, Any]:
 
 def _beam_of(beam: Beam, design: Mapping[str, float]) -> Beam:
     """The beam with inputs replaced, and then with what is multiplied."""
-    return _scaled(_replaced(beam, design), _part(design, SCALE))
+    return _scaled(with_points(_replaced(beam, design), design), _part(design, SCALE))
 
 
 def _replaced(beam: Beam, design: Mapping[str, float]) -> Beam:
@@ -138,10 +141,12 @@ def _replaced(beam: Beam, design: Mapping[str, float]) -> Beam:
     if "twist" in given:
         beam = replace(beam, twist=to_profile("twist", given.pop("twist")))
     of_section = {name: v for name, v in given.items() if name in _OF_RECTANGLE}
-    of_stiffness = {name: as_profile(name, v) for name, v in given.items() if name in _OF_STIFFNESS}
+    of_stiffness = {name: as_profile(name, v) for name, v in given.items() if name in PROPERTY_UNITS}
     if of_section and of_stiffness:
-        bound = f"{next(iter(of_stiffness))} does not go together with it"
-        raise InvalidValue(f"beam.{next(iter(of_section))}", next(iter(of_section.values())), bound)
+        side, other = next(iter(of_section)), next(iter(of_stiffness))
+        bound = f"beam.{other} does not go together with it, as it follows from the section"
+        remedy = f"leave one of them out, or give {SCALE}{other}, which multiplies it"
+        raise InvalidValue(f"beam.{side}", of_section[side], bound, remedy)
     length = {"length": given["length"]} if "length" in given else {}
     return _rectangular(beam, length | of_section) if of_section else replace(beam, **length, **of_stiffness)
 
@@ -149,7 +154,7 @@ def _replaced(beam: Beam, design: Mapping[str, float]) -> Beam:
 def _scaled(beam: Beam, factors: Mapping[str, float]) -> Beam:
     """The beam with properties multiplied, or with sections stretched in a direction."""
     for name, factor in factors.items():
-        if name in _OF_STIFFNESS and getattr(beam, name) is None:
+        if name in PROPERTY_UNITS and getattr(beam, name) is None:
             raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
         size = positive(SCALE + name, factor)
         powers = SECTION_POWERS.get(name, {name: 1})

@@ -16,6 +16,7 @@ from beamdyn.spectrum.critical import critical_point
 from beamdyn.spectrum.modes import natural_modes
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
+from beamdyn.studies.crossings import crossing_key
 from beamdyn.studies.inputs import SPEED
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.sweep import sweep
@@ -61,7 +62,7 @@ def _of_critical_speed(question: StudyQuestion, scene: Scene, speed: float) -> L
 def _of_crossings(question: StudyQuestion, scene: Scene, top: float) -> LeftOutEffects:
     """Those of the lowest crossing of each mode with each line."""
     found = resonance_speeds(scene, top, question.modes, discretization=question.discretization)
-    keys = [(c.kind, round(c.line.multiple, 9), c.mode) for c in found]
+    keys = [crossing_key(each) for each in found]
     effects, places = found.left_out_effects, [_index(keys, each.key) for each in question.resonances]
 
     def sorted_by(change: np.ndarray) -> np.ndarray:

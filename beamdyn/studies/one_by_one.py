@@ -14,11 +14,12 @@ from beamdyn.common.pickling import FieldsOnly
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint, critical_point
 from beamdyn.spectrum.modes import natural_modes
+from beamdyn.steady.crossings import label_crossing
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
-from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, lines_of
+from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
 from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
@@ -127,8 +128,8 @@ def _crossings(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> Spe
     found = resonance_speeds(scene, question.speed, question.modes, discretization=question.discretization)
     lowest: dict[Any, Any] = {}
     for crossing in found:  # they ascend in speed
-        lowest.setdefault((crossing.kind, round(crossing.line.multiple, 9), crossing.mode), crossing)
-    there = {(kind, round(line.multiple, 9)) for kind, line in lines_of(scene, question.speed)}
+        lowest.setdefault(crossing_key(crossing), crossing)
+    there = {line_key(*each) for each in lines_of(scene, question.speed)}
     shape = 1, question.numbers
     value, error = np.full(shape, np.nan), np.zeros(shape)
     status = np.full(shape, max(RESONATES, NO_RESONANCE, NO_LINE, key=len))
@@ -138,7 +139,8 @@ def _crossings(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> Spe
         if crossing is not None:
             value[0, i], error[0, i], status[0, i] = crossing.speed, crossing.error, RESONATES
     more = [
-        f"there is also one at {c.speed:.6g} rad/s with {c.line.name} ({c.kind})" for c in lowest.values()
+        f"there is also one at {c.speed:.6g} rad/s: {label_crossing(c.line, c.kind, c.mode, c.second_mode)}"
+        for c in lowest.values()
     ]
     return SpeedAnswer(value, error, status, (*found.warnings, *more))
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.designs import Designs, VariedInput
+from beamdyn.common.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results import Provenance
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.answers import NO_ANSWERS
 from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.left_out_of_designs import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
@@ -58,6 +61,15 @@ class Study(StatesModelError):
         What limits the answer, and of how many designs.
     provenance : Provenance
         How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.study(bd.Scene(strip), {"beam.thickness": [0.0002, 0.0004]}, modes=1)
+    >>> round(float(found.value[1, 0] / found.value[0, 0]), 9)  # proportional to the thickness
+    2.0
+    >>> found.design(1)
+    {'beam.thickness': 0.0004}
     """
 
     what: str
@@ -72,6 +84,15 @@ class Study(StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     question: StudyQuestion = field(repr=False)
+
+    judged_by_solving: ClassVar[bool] = True
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        names = ", ".join(each.name for each in self.inputs)
+        yield f"{self.what} of {counted(self.designs.count, 'design')} over {names}"
+        yield spanned(self.value, self.unit)
+        yield from (error_at_most(self.error), warned(self.warnings))
 
     @property
     def designs(self) -> Designs:
@@ -90,6 +111,15 @@ class Study(StatesModelError):
     def scene_at(self, *place: int) -> Scene:
         """The scene of the design at a place (i1, ..., id), for any other analysis of it."""
         return scene_of(self.scene, self.design(*place))
+
+    @property
+    def answered(self) -> np.ndarray:
+        """Which designs have an answer, shape (n1, ..., nd): also that nothing buckles or resonates.
+
+        A design has none that is refused, or not stable at its speed, or whose critical speed is not found.
+        """
+        there = ~np.isin(self.status, NO_ANSWERS)
+        return np.asarray(there.all(axis=-1)) if self.labels else there
 
     # Model error ------------------------------------------------------------------------------------
 
@@ -146,29 +176,38 @@ class Study(StatesModelError):
     # Pictures ---------------------------------------------------------------------------------------
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the answer over the first input; of further inputs, one curve for each value of the second."""
+        """Draw the answers over the first input; of further inputs, curves for each value of the second.
+
+        Crosses at the bottom stand where there is no number; inputs after the second have their first value.
+        """
         from beamdyn.output.plots_over_inputs import plot_over_input
 
         first, rest = self.inputs[0], self._rest()
-        where = f"{self._words()} [{self.unit}]" + (f" at {', '.join(rest)}" if rest else "")
-        return plot_over_input(first.values, self._curves(), self._labels(), first.label, where, ax)
+        title, words = f"at {', '.join(rest)}" if rest else "", f"{self._words()} [{self.unit}]"
+        states = np.unique(self.status[~np.isfinite(self.value)]).tolist()
+        none = f"none: {', '.join(states)}"
+        return plot_over_input(
+            first.values, self._curves(), self._labels(), first.label, words, ax, title, none
+        )
 
     def _words(self) -> str:
         """The answer that a picture shows."""
         word = self.question.kind.word
-        return f"{word}, {self.labels[0]}" if self.labels and len(self.shape) > 1 else word
+        return f"{word}, {self.labels[0]}" if len(self.labels) == 1 and len(self.shape) > 1 else word
 
     def _curves(self) -> np.ndarray:
         """Answers over the first input, one row a curve."""
         if len(self.shape) == 1:
             return np.atleast_2d(self.value.T)
-        first = self.value[..., 0] if self.labels else self.value
-        return first.reshape(*self.shape[:2], -1)[:, :, 0].T
+        each = self.value if self.labels else self.value[..., None]
+        shown = each.reshape(*self.shape[:2], -1, each.shape[-1])[:, :, 0]
+        return shown.reshape(len(shown), -1).T
 
     def _labels(self) -> list[str]:
         if len(self.shape) > 1:
-            second = self.inputs[1]
-            return [_at(second, value) for value in second.values.tolist()]
+            second = [_at(self.inputs[1], value) for value in self.inputs[1].values.tolist()]
+            several = self.labels if len(self.labels) > 1 else ("",)
+            return [", ".join(filter(None, (at, label))) for at in second for label in several]
         return list(self.labels) or [""]
 
     def _rest(self) -> list[str]:

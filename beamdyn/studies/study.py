@@ -15,9 +15,18 @@ import scipy
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
-from beamdyn.common.checks import InvalidValue, as_floats, count, one_of, positive, real, within
+from beamdyn.common.checks import (
+    InvalidValue,
+    NoModelAnswer,
+    as_floats,
+    count,
+    one_of,
+    positive,
+    real,
+    within,
+)
 from beamdyn.common.designs import Designs, check_designs, rows_of
-from beamdyn.common.parallel.tasks import Task, TaskRunner
+from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, check_discretization
@@ -43,7 +52,6 @@ _KIND = "beamdyn study"
 _BATCHED, _SINGLE = 1024, 16  # answers of a task
 _AT_ONCE = 100_000  # designs whose quantities are compared at once
 _MOST_CORNERS = 10  # inputs of which all combinations of smallest and largest values are checked first
-Progress = Callable[[int, int], object]
 
 
 @announced
@@ -114,6 +122,13 @@ def study(
         If an argument is out of its range, or no design has an answer.
     StudyInterrupted
         If the executor breaks; finished parts are in the store.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> vary = {"beam.thickness": [0.0002, 0.0004], "mount.radius": [0.1, 0.2, 0.3]}
+    >>> bd.study(bd.Scene(strip, bd.Mount(radius=0.2)), vary, "critical_speed").value.shape
+    (2, 3)
     """
     start = perf_counter()
     check_scene(scene)
@@ -123,7 +138,7 @@ def study(
     check_discretization(discretization)
     modes, tolerance = count("modes", modes), _check_tolerance(tolerance)
     run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
-    at = _check_speed(scene, what, speed, SPEED in {each.name for each in designs.inputs})
+    at = speed_of_study(scene, what, speed, SPEED in {each.name for each in designs.inputs})
     question = StudyQuestion(scene, what, at, modes, discretization, tolerance, _check_window(window))
     request = _Request(question, designs)
     request.check()
@@ -155,8 +170,16 @@ def _check_tolerance(tolerance: float | None) -> float | None:
     return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
 
 
-def _check_speed(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
-    """The speed of designs without one of their own [rad/s]."""
+def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
+    """The speed of designs without one of their own [rad/s]; refused where the answer cannot have it.
+
+    Parameters
+    ----------
+    scene, what, speed
+        As for `study`.
+    varied : bool
+        Whether the speed is one of the inputs.
+    """
     if speed is not None:
         at = real("speed", speed, "rad/s")
     else:
@@ -299,7 +322,9 @@ class _Request:
         tasks = self._similar_tasks() if self.is_similar else self._single_tasks()
         run.run(_answer, tasks, found.put)
         if (refused := found.count(REFUSED)) and refused == found.value.size:
-            raise ValueError(f"none of {self.designs.count} designs has an answer; {next(found.warnings())}")
+            raise NoModelAnswer(
+                f"none of {self.designs.count} designs has an answer; {next(found.warnings())}"
+            )
         return found
 
     # Parts ------------------------------------------------------------------------------------------

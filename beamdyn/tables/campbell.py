@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from beamdyn.campbell_diagram.crossings import LineCrossing
     from beamdyn.campbell_diagram.diagram import Campbell
 
-_PER_RAD = {"rad/s": 1.0, "rpm": 30 / np.pi}
+_RPM = 30 / np.pi  # in rad/s
 _DIGITS = 10  # most digits of a speed or frequency
 _NEAR = 1e-3  # relative distance of a frequency from its upper bound, which is close
 
@@ -33,7 +33,7 @@ def campbell_tables(result: Campbell) -> list[Group]:
 
 
 def _crossings_table(result: Campbell) -> Group:
-    factor, several = _PER_RAD[result.unit], len(result.labels) > 1
+    (unit, factor), several = result.display_units.speed_unit(), len(result.labels) > 1
     rows = []
     for c, model_error in zip(result.crossings, _model_errors(result), strict=True):
         speed = supported(factor * c.speed, c.error * factor * c.speed, _DIGITS)
@@ -50,11 +50,11 @@ def _crossings_table(result: Campbell) -> Group:
             )
         )
     number = f"{len(rows) or 'No'} crossing{'s' * (len(rows) != 1)}"
-    top = f"{factor * result.loci[0].speeds[-1]:.6g} {result.unit}"
+    top = f"{factor * result.loci[0].speeds[-1]:.6g} {unit}"
     title = f"{number} up to {top}, by {result.provenance.method}"
     heads = (
         *(["scene"] if several else []),
-        f"speed [{result.unit}]",
+        f"speed [{unit}]",
         "line",
         "mode",
         "frequency [Hz]",
@@ -89,7 +89,7 @@ def _share(result: Campbell, crossing: LineCrossing) -> list[str]:
 
 
 def _margins_table(result: Campbell) -> Group:
-    factor, several = _PER_RAD[result.unit], len(result.labels) > 1
+    (unit, factor), several = result.display_units.speed_unit(), len(result.labels) > 1
     rows = [
         (
             *([m.label] if several else []),
@@ -106,7 +106,7 @@ def _margins_table(result: Campbell) -> Group:
         *(["scene"] if several else []),
         "mode",
         "at",
-        f"speed [{result.unit}]",
+        f"speed [{unit}]",
         "frequency [Hz]",
         "nearest line",
         "margin",
@@ -117,7 +117,7 @@ def _margins_table(result: Campbell) -> Group:
 
 
 def _bounds_table(result: Campbell) -> Group:
-    factor, several = _PER_RAD[result.unit], len(result.labels) > 1
+    (unit, factor), several = result.display_units.speed_unit(), len(result.labels) > 1
     rows = []
     for label, found in result.bounds:
         for low, high, width in zip(found.lower, found.upper, found.width, strict=True):
@@ -125,7 +125,7 @@ def _bounds_table(result: Campbell) -> Group:
             known = [least, f"{high:.10g}", wide] if 0 < low <= high else ["-", f"{high:.10g}", "-"]
             rows.append((*([label] if several else []), name, *known))
     heads = *(["scene"] if several else []), "mode", "at least [Hz]", "at most [Hz]", "relative width"
-    at = f"{factor * result.bounds[0][1].speed:.6g} {result.unit}"
+    at = f"{factor * result.bounds[0][1].speed:.6g} {unit}"
     return table(f"Guaranteed bounds at {at}, of the model", heads, rows, range(len(heads) - 3))
 
 
@@ -151,7 +151,7 @@ def campbell_csv(result: Campbell) -> Iterator[Sequence[object]]:
     frequency = np.concatenate([locus.frequency for locus in result.loci], axis=1)
     confidence = np.concatenate([locus.confidence for locus in result.loci], axis=1)
     for speed, *row in zip(speeds.tolist(), frequency.tolist(), confidence.tolist(), strict=True):
-        yield speed, speed * _PER_RAD["rpm"], *row[0], *row[1]
+        yield speed, speed * _RPM, *row[0], *row[1]
 
 
 def crossings_of_lines_csv(result: Campbell) -> Iterator[Sequence[object]]:
@@ -161,6 +161,6 @@ def crossings_of_lines_csv(result: Campbell) -> Iterator[Sequence[object]]:
         "relative_error", "tracking_confidence", "share_bending", "share_across", "operating",
     )  # fmt: skip
     for c in result.crossings:
-        rpm = c.speed * _PER_RAD["rpm"]
+        rpm = c.speed * _RPM
         row = c.label, c.line.name, c.line.multiple, c.mode, c.name, c.speed, rpm, c.frequency
         yield *row, c.error, c.confidence, *c.plane_share, c.operating

@@ -12,6 +12,7 @@ from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
+    from beamdyn.common.display_units import ShownUnit
     from beamdyn.spectrum.equilibria import Equilibrium, EquilibriumBranch, EquilibriumBranches
 
 _AXES = "b1", "b2", "b3"
@@ -19,17 +20,16 @@ _AXES = "b1", "b2", "b3"
 
 def equilibrium_table(result: Equilibrium) -> Group:
     """Position and slope of the tip, and whether the beam stays there."""
-    length = result.scene.beam.length
-    title = (
-        f"Equilibrium at {result.speed:.10g} rad/s ({result.branch} branch), by {result.provenance.method}"
-    )
+    length, unit = result.scene.beam.length, result.display_units.length_unit()
+    speed = result.display_units.speed_unit().say(result.speed, 10)
+    title = f"Equilibrium at {speed} ({result.branch} branch), by {result.provenance.method}"
     rows = [
-        (f"tip along {axis}", supported(1e3 * x, 1e3 * result.error), f"{x / length:.4f}")
+        (f"tip along {axis}", supported(unit.of(x), unit.of(result.error)), f"{x / length:.4f}")
         for axis, x in zip(_AXES, result.tip.tolist(), strict=True)
     ]
     rows.append(("slope at the tip [deg]", supported(float(np.degrees(result.tip_angle)), 1e-9), ""))
     rows.append(("stable", "yes" if result.stable else f"no: grows at {result.growth_rate:.4g} 1/s", ""))
-    return table(title, ("", "[mm]", "over the length"), rows, (0,))
+    return table(title, ("", f"[{unit.name}]", "over the length"), rows, (0,))
 
 
 def equilibrium_csv(result: Equilibrium) -> Iterator[Sequence[object]]:
@@ -40,17 +40,20 @@ def equilibrium_csv(result: Equilibrium) -> Iterator[Sequence[object]]:
 
 def branches_table(result: EquilibriumBranches) -> Group:
     """From where to where each branch goes, and where it is stable."""
-    title = f"Branches of equilibria up to {result.top_speed:.10g} rad/s, by {result.provenance.method}"
-    rows = [(branch.name, *_describe(branch)) for branch in result.branches]
+    unit = result.display_units.speed_unit()
+    title = f"Branches of equilibria up to {unit.say(result.top_speed, 10)}, by {result.provenance.method}"
+    rows = [(branch.name, *_describe(branch, unit)) for branch in result.branches]
     if np.isfinite(result.critical_speed):
-        rows.append(("straight beam", "", "", f"buckles at {result.critical_speed:.10g} rad/s"))
-    return table(title, ("branch", "speeds [rad/s]", "stable [rad/s]", "turns back at [rad/s]"), rows, (0, 3))
+        rows.append(("straight beam", "", "", f"buckles at {unit.say(result.critical_speed, 10)}"))
+    heads = (f"{what} [{unit.name}]" for what in ("speeds", "stable", "turns back at"))
+    return table(title, ("branch", *heads), rows, (0, 3))
 
 
-def _describe(branch: EquilibriumBranch) -> tuple[str, str, str]:
-    turning = ", ".join(f"{speed:.8g}" for speed in branch.turning_speeds) or "-"
-    stable = _range(branch.speeds[branch.stable]) if branch.stable.any() else "nowhere"
-    return _range(branch.speeds), stable, turning
+def _describe(branch: EquilibriumBranch, unit: ShownUnit) -> tuple[str, str, str]:
+    speeds = unit.of(branch.speeds)
+    turning = ", ".join(f"{speed:.8g}" for speed in unit.of(branch.turning_speeds)) or "-"
+    stable = _range(speeds[branch.stable]) if branch.stable.any() else "nowhere"
+    return _range(speeds), stable, turning
 
 
 def _range(speeds: np.ndarray) -> str:

@@ -13,32 +13,45 @@ from beamdyn.common.edge.tables import table
 from beamdyn.linear_models.frequency_response import FrequencyResponse
 from beamdyn.linear_models.matrices import Matrices
 from beamdyn.linear_models.random_response import RandomResponse
+from beamdyn.linear_models.resonance_peaks import ResonancePeaks
 
 _MOST_PEAKS = 8  # of a table
-_DIGITS = 8  # most digits of a response
+_NO_WIDTH = "-"  # in place of a width that a peak does not have
+_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of its peaks
 
 
 def response_table(result: FrequencyResponse) -> Group:
-    """The largest response, and its other peaks."""
-    size, error = np.abs(result.response), result.error
-    rows = []
-    for k in _peaks(size.max(axis=1)):
-        column = int(size[k].argmax())
-        phase = np.degrees(np.angle(result.response[k, column]))
-        answers = f"{result.response_frequencies[k, column]:.6g}"
-        value = supported(float(size[k, column]), float(error[k, column]), _DIGITS)
-        rows.append((f"{result.frequencies[k]:.6g}", answers, value, f"{phase:.1f}"))
-    title = f"{result.output} by {result.input} at {result.speed:.6g} rad/s, by {result.provenance.method}"
-    heads = "frequency [Hz]", "answers at [Hz]", f"size [{result.unit}]", "phase [deg]"
-    note = f"Largest of {len(result.frequencies)} frequencies, between which it may be larger; --csv has all."
-    return Group(table(title, heads, rows, ()), Text(note))
+    """The resonance peaks, and the largest response at the frequencies given."""
+    at_speed = result.display_units.speed_unit().say(result.speed)
+    title = f"{result.output} by {result.input} at {at_speed}, by {result.provenance.method}"
+    heads = "peak at [Hz]", "answers at [Hz]", f"size [{result.unit}]", "half-power bandwidth [Hz]"
+    peaks, rows = result.peaks, []
+    answers = peaks.frequency + peaks.harmonic * result.speed / (2 * np.pi)
+    for k in sorted(np.argsort(peaks.size)[::-1][:_MOST_PEAKS].tolist()):
+        at = supported(float(peaks.frequency[k]), float(peaks.frequency_error[k]), _DIGITS)
+        size = supported(float(peaks.size[k]), float(peaks.size_error[k]), _DIGITS)
+        rows.append((at, f"{answers[k]:.6g}", size, _width(peaks, k)))
+    f, size = result.frequencies, np.abs(result.response)
+    at = f"{f[0]:.6g} Hz" if len(f) == 1 else f"{f[0]:.6g} to {f[-1]:.6g} Hz"
+    more = f"; the largest {_MOST_PEAKS} of {len(peaks)} are shown" if len(peaks) > _MOST_PEAKS else ""
+    note = f"Peaks from {at}, refined between the {len(f)} frequencies{more}."
+    if any(row[-1] == _NO_WIDTH for row in rows):
+        note += (
+            f" {_NO_WIDTH}: on one side or both the response rises again before it falls to half the power."
+        )
+    i, j = np.unravel_index(int(size.argmax()), size.shape)
+    value = supported(float(size[i, j]), float(result.error[i, j]), _DIGITS)
+    phase = np.degrees(np.angle(result.response[i, j]))
+    where = f"{f[i]:.6g} Hz, phase {phase:.1f} deg"
+    largest = f"Largest at those given: {value} {result.unit} at {where}; --csv has all."
+    shown = [table(title, heads, rows, ()), Text(note)] if rows else [Text(title), Text(f"No peak at {at}.")]
+    return Group(*shown, Text(largest))
 
 
-def _peaks(size: np.ndarray) -> list[int]:
-    """Indices of the largest local maxima, ends included, in order of frequency."""
-    padded = np.concatenate([[-np.inf], size, [-np.inf]])
-    top = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:]))
-    return sorted(top[np.argsort(size[top])[::-1][:_MOST_PEAKS]].tolist())
+def _width(peaks: ResonancePeaks, k: int) -> str:
+    """Half-power bandwidth of a peak [Hz], if it has one."""
+    width, error = float(peaks.bandwidth[k]), float(peaks.bandwidth_error[k])
+    return _NO_WIDTH if np.isnan(width) else supported(width, error, _DIGITS_OF_WIDTH)
 
 
 def response_csv(result: FrequencyResponse) -> Iterator[Sequence[object]]:
@@ -64,7 +77,9 @@ def random_table(result: RandomResponse) -> Group:
         ("stiffness varies by, left out", f"{parametric.stiffness_variation:.2g} (rms), relative"),
         ("which would raise it by some", f"{parametric.rms_change:.2g}, relative"),
     ]
-    title = f"{result.output} by random {result.input} at {result.speed:.6g} rad/s"
+    title = (
+        f"{result.output} by random {result.input} at {result.display_units.speed_unit().say(result.speed)}"
+    )
     note = f"By {result.provenance.method}; --csv has the density over frequency."
     return Group(table(title, ("quantity", "value"), rows, (0,)), Text(note))
 
@@ -92,7 +107,9 @@ def matrices_table(result: Matrices) -> Group:
         (str(k + 1), name, f"{result.mass[k, k]:.6g}", f"{result.stiffness[k, k]:.6g}")
         for k, name in enumerate(result.coordinates)
     ]
-    title = f"Equations at {result.speed:.6g} rad/s, by {result.provenance.method}"
+    title = (
+        f"Equations at {result.display_units.speed_unit().say(result.speed)}, by {result.provenance.method}"
+    )
     heads = "row", "coordinate", "mass, diagonal", "stiffness, diagonal"
     inputs = f"Inputs: {', '.join(result.inputs)}. --json and --csv have the matrices."
     return Group(table(title, heads, rows, (1,)), Text(inputs))

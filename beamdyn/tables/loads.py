@@ -14,21 +14,26 @@ from beamdyn.common.edge.tables import table
 from beamdyn.equations.directions import words_of_directions
 
 if TYPE_CHECKING:
+    from beamdyn.common.display_units import ShownUnit
+    from beamdyn.common.results import Result
     from beamdyn.loads.cycles import LoadCycles
+    from beamdyn.loads.random_loads import RandomLoads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads
     from beamdyn.loads.steady_loads import SteadyLoads
     from beamdyn.loads.transient_loads import TransientLoads
 
 _MOST_DIGITS = 7
+_DIGITS_EXPECTED = 3  # of the largest that are expected: statistics have no more
 _CLASSES = 10  # of ranges of cycles
 _SCALES = {"strain": (1e6, "1e-6"), "stress": (1e-6, "MPa"), "force": (1.0, "N"), "moment": (1.0, "N m")}
 
 
 def static_loads_table(result: StaticLoads) -> Group:
     """Loads along the span at each speed."""
+    unit = result.display_units.speed_unit()
     made = (
-        _table(result, f"Loads in equilibrium at {speed:.10g} rad/s, by {result.provenance.method}", case)
+        _table(result, f"Loads in equilibrium at {unit.say(speed, 10)}, by {result.provenance.method}", case)
         for case, speed in enumerate(result.speeds.tolist())
     )
     return Group(*made, *_largest_lines(result))
@@ -37,7 +42,8 @@ def static_loads_table(result: StaticLoads) -> Group:
 def steady_loads_table(result: SteadyLoads) -> Group:
     """Largest magnitudes along the span at the speed at which they are largest."""
     case = int(np.nanargmax(result.moment.max(axis=(1, 2)))) if result.response.stable.any() else 0
-    at = f"at {result.speeds[case]:.10g} rad/s, where the bending moment is largest"
+    speed = result.display_units.speed_unit().say(result.speeds[case], 10)
+    at = f"at {speed}, where the bending moment is largest"
     title = f"Largest magnitudes in steady response {at}, by {result.provenance.method}"
     lines = _largest_lines(result) if result.response.stable.any() else []
     return Group(_table(result, title, case), *lines)
@@ -59,7 +65,7 @@ def _table(result: SpanLoads, title: str, case: int) -> Group:
 
 def _rows_table(result: SpanLoads, title: str, values: dict[str, np.ndarray], case: int | None) -> Group:
     """Rows of stations: axial and shear forces, moments, and the strain and stress that are largest there."""
-    columns: dict[str, list[str]] = {"position [mm]": _positions(result)}
+    columns: dict[str, list[str]] = {f"position [{_length_unit(result).name}]": _positions(result)}
     for name, (scale, unit) in _SCALES.items():
         error = result.error_of(name) if case is None else result.error_of(name)[case]
         if name in ("strain", "stress"):
@@ -80,14 +86,18 @@ def _heads(result: SpanLoads, quantity: str) -> list[str]:
     return ["axial force", *(f"{word}shear" for word in named)]
 
 
+def _length_unit(result: Result) -> ShownUnit:
+    return result.display_units.length_unit()
+
+
 def _positions(result: SpanLoads) -> list[str]:
-    """Positions [mm]; those with two sides with the side."""
-    x = result.x
+    """Positions; those with two sides with the side."""
+    x, unit = result.x, _length_unit(result)
     twice = np.isin(np.arange(len(x)), np.flatnonzero(np.diff(x) == 0)) | np.isin(
         np.arange(len(x)), 1 + np.flatnonzero(np.diff(x) == 0)
     )
     sides = ["-" if inboard else "+" for inboard in result.inboard]
-    return [f"{1e3 * at:.6g}{side if two else ''}" for at, side, two in zip(x, sides, twice, strict=True)]
+    return [f"{unit.of(at):.6g}{side if two else ''}" for at, side, two in zip(x, sides, twice, strict=True)]
 
 
 def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
@@ -110,9 +120,83 @@ def _largest_lines(result: SpanLoads, window: tuple[float, float] | None = None)
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
     scale, unit = _SCALES[found.quantity]
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
-    what = result.components(found.quantity)[found.component]
     case = f"{found.case:.6g} {result.case.partition('[')[2].rstrip(']')}"
-    return f"Largest {found.quantity} ({what}): {value} {unit}, at {1e3 * found.x:.6g} mm, at {case}."
+    what, place = _say_component(result, found), _length_unit(result).say(found.x)
+    case = result.display_units.in_sentence(case)
+    return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {case}."
+
+
+def _say_component(result: SpanLoads, found: LargestLoad) -> str:
+    """The direction, or the point of the section with its coordinates there."""
+    named = result.components(found.quantity)[found.component]
+    if found.quantity not in ("strain", "stress"):
+        return f"shear, {named}" if found.quantity == "force" and found.component else named
+    y, z = 1e3 * result.points[result.station_of(found), found.component]
+    second = f", {z:.6g} mm along the second" if result.scene.physics.planes == 2 or z else ""
+    return f"{named} of the section, {y:.6g} mm from its centre along the first direction{second}"
+
+
+def random_loads_table(result: RandomLoads) -> Group:
+    """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
+    columns = {f"position\n[{_length_unit(result).name}]": _positions(result)}
+    for name in ("moment", "strain", "stress"):
+        scale, unit = _SCALES[name]
+        for k, head in _columns_of_random(result, name):
+            rms, error = (scale * each(name) for each in (result.rms, result.rms_error))
+            most, most_error = (scale * each(name)[0] for each in (result.values, result.error_of))
+            at = np.arange(len(rms))
+            columns[f"{head}\nrms [{unit}]"] = _cells(rms[at, k], error[at, k])
+            columns[f"{head}\nlargest [{unit}]"] = [
+                _expected(*pair) for pair in zip(most[at, k], most_error[at, k], strict=True)
+            ]
+    title = (
+        f"Largest magnitudes expected in {result.duration:g} s by random {result.input} "
+        f"at {result.speed:.6g} rad/s, by {result.provenance.method}"
+    )
+    title = result.display_units.in_sentence(title)  # the speeds of the modes, too
+    known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
+    lines = [Text(_say_expected(result, result.largest(name))) for name in reversed(known)]
+    rows = [*zip(*columns.values(), strict=True)]
+    return Group(table(title, [*columns], rows, ()), *lines, Text(_ESTIMATE))
+
+
+_ESTIMATE = (
+    "Estimates for a Gaussian input; passages of both signs count as independent, with the root mean square "
+    "at the angle of rotation at which it is largest, and all parts add up: rather high."
+)
+
+
+def _columns_of_random(result: RandomLoads, name: str) -> list[tuple[np.ndarray, str]]:
+    """Component at each station, and head, of each column: of strains the point that is largest there."""
+    values = result.values(name)[0]
+    if not np.isfinite(values).any():
+        return []
+    if name == "moment":
+        return [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
+    return [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
+
+
+def _expected(value: float, error: float = 0.0) -> str:
+    """A number of statistics, with three digits and no positive exponent."""
+    text = supported(value, error, _DIGITS_EXPECTED)
+    return f"{float(text):.0f}" if "e+" in text else text
+
+
+def _say_expected(result: RandomLoads, found: LargestLoad) -> str:
+    """The largest of a quantity, what it is the sum of, and what is passed in one case of a hundred."""
+    name, (scale, unit) = found.quantity, _SCALES[found.quantity]
+    place = result.station_of(found), found.component
+    value = _expected(scale * found.value, scale * found.error)
+    mean, gravity, rms, quantile = (
+        _expected(scale * float(np.abs(each(name)[place])))
+        for each in (result.mean, result.gravity, result.rms, result.quantile)
+    )
+    what, where = _say_component(result, found), _length_unit(result).say(found.x)
+    rate = _expected(float(result.crossings(name)[place]))
+    return (
+        f"Largest {name} expected ({what}): {value} {unit}, at {where}; constant {mean}, gravity {gravity}, "
+        f"rms {rms}, upwards through 0 {rate} times a second; with 99 % probability below {quantile}."
+    )
 
 
 def cycles_table(cycles: LoadCycles) -> Group:
@@ -125,7 +209,8 @@ def cycles_table(cycles: LoadCycles) -> Group:
         (f"{low:.4g} to {high:.4g}", f"{count:g}")
         for low, high, count in zip(edges[:-1], edges[1:], counts, strict=True)
     ]
-    title = f"Cycles of {cycles.quantity} at {1e3 * cycles.x:.6g} mm, {cycles.start:g} to {cycles.end:g} s"
+    place = _length_unit(cycles).say(cycles.x)
+    title = f"Cycles of {cycles.quantity} at {place}, {cycles.start:g} to {cycles.end:g} s"
     return table(title, (f"range [{unit}]", "cycles"), rows[::-1], ())
 
 
@@ -142,12 +227,33 @@ def loads_csv(result: SpanLoads) -> Iterator[Sequence[object]]:
     values = np.concatenate([result.values(name) for name in _CSV_UNITS], axis=-1)
     errors = np.concatenate([result.error_of(name) for name in _CSV_UNITS], axis=-1)
     errors = np.broadcast_to(errors, values.shape)
-    sides = ["inboard" if inboard else "outboard" for inboard in result.inboard]
     for case, of_case, error in zip(result.cases.tolist(), values, errors, strict=True):
-        for x, side, row, more in zip(
-            result.x.tolist(), sides, of_case.tolist(), error.tolist(), strict=True
-        ):
-            yield case, x, side, *row, *more
+        for place, row, more in zip(_csv_places(result), of_case.tolist(), error.tolist(), strict=True):
+            yield case, *place, *row, *more
+
+
+def _csv_places(result: SpanLoads) -> list[tuple[float, str]]:
+    """Position and side of each station."""
+    sides = ["inboard" if inboard else "outboard" for inboard in result.inboard]
+    return [*zip(result.x.tolist(), sides, strict=True)]
+
+
+def random_loads_csv(result: RandomLoads) -> Iterator[Sequence[object]]:
+    """A row a station: the place, and of each component the largest expected and what it is made of."""
+    heads = [head for name in _CSV_UNITS for head in _csv_heads(result, name)]
+    parts = {
+        "largest": lambda name: result.values(name)[0],
+        "error_of_largest": lambda name: result.error_of(name)[0],
+        "rms": result.rms,
+        "error_of_rms": result.rms_error,
+        "mean": result.mean,
+        "gravity": result.gravity,
+        "crossings_per_s": result.crossings,
+    }
+    yield "position_m", "side", *(f"{part}_{head}" for part in parts for head in heads)
+    values = [np.concatenate([of(name) for name in _CSV_UNITS], axis=-1) for of in parts.values()]
+    for place, row in zip(_csv_places(result), np.concatenate(values, axis=-1).tolist(), strict=True):
+        yield *place, *row
 
 
 def _csv_heads(result: SpanLoads, quantity: str) -> list[str]:

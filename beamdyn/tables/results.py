@@ -22,13 +22,15 @@ from beamdyn.equations.directions import (
 from beamdyn.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:
+    from beamdyn.common.display_units import ShownUnit
+    from beamdyn.common.results import Result
     from beamdyn.model_error.left_out_effects import LeftOutEffects
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.critical import CriticalPoint
     from beamdyn.spectrum.locus import Locus
     from beamdyn.spectrum.modes import Modes
     from beamdyn.spectrum.setting_angles import SettingAngleLimits
-    from beamdyn.steady.resonance import Crossing, Crossings
+    from beamdyn.steady.crossings import Crossing, Crossings
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
@@ -54,7 +56,7 @@ def modes_table(result: Modes) -> Group:
         shares = _share_cells(result.scene, result.plane_share[i])
         errors = f"{result.error[i]:.0e}", _model_error_cell(result.left_out_effects, i)
         rows.append((str(i + 1), frequency, *errors, growth, *shares, str(status)))
-    title = f"Natural modes at {result.speed:.10g} rad/s, by {result.provenance.method}"
+    title = f"Natural modes at {_speed_unit(result).say(result.speed, 10)}, by {result.provenance.method}"
     heads = (
         "mode",
         "frequency [Hz]",
@@ -65,12 +67,17 @@ def modes_table(result: Modes) -> Group:
         "status",
     )
     shown = table(title, heads, rows, (len(heads) - 1,))
-    return Group(shown, _model_line(result.left_out_effects.sentence()))
+    return Group(shown, _model_line(result, result.left_out_effects.sentence()))
 
 
-def _model_line(sentence: str) -> Text:
+def _model_line(result: Result, sentence: str) -> Text:
     """The line on the model below a table."""
-    return Text(as_in_files(sentence))
+    return Text(as_in_files(result.display_units.in_sentence(sentence)))
+
+
+def _speed_unit(result: Result) -> ShownUnit:
+    """Unit in which the speeds of a result are shown."""
+    return result.display_units.speed_unit()
 
 
 def _model_error_cell(effects: LeftOutEffects, mode: int) -> str:
@@ -108,7 +115,7 @@ def locus_table(result: Locus) -> Group:
         ]
         for mode in range(result.frequency.shape[1])
     }
-    speeds = {"speed [rad/s]": [f"{result.speeds[s]:.8g}" for s in shown]}
+    speeds = {_speed_head(result): _speed_cells(result, result.speeds[shown])}
     quality = {
         "largest error": [f"{result.error[s].max():.0e}" for s in shown],
         "tracking": [f"{result.confidence[s].min():.2f}" for s in shown],
@@ -141,7 +148,7 @@ def _model_error_cells(result: Locus, indices: np.ndarray) -> list[str]:
 def _left_out_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> Text:
     """The line on the model below a table over speeds, with the place of each effect."""
     effects, speeds = result.left_out_effects, result.left_out_speeds
-    return _model_line(effects.sentence(what, where_worst(effects, speeds), speeds))
+    return _model_line(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
 
 def model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
@@ -217,28 +224,33 @@ def limits_table(result: SettingAngleLimits) -> Group:
         "below it the first frequency falls with speed; above it, it rises from rest",
         "below it the first frequency falls before the top speed; above it, it rises",
     )
-    title = f"Setting-angle limits up to {result.top_speed:.10g} rad/s, by {result.provenance.method}"
+    top = _speed_unit(result).say(result.top_speed, 10)
+    title = f"Setting-angle limits up to {top}, by {result.provenance.method}"
     rows = zip(("first", "second"), degrees, meaning, strict=True)
     return table(title, ("limit", "angle [deg]", ""), rows, (0, 2))
 
 
 def critical_answer(result: CriticalPoint) -> Group:
     """The sentence on the critical speed, or how far it was looked where none was found, and on the model."""
-    return Group(_describe_critical(result), _model_line(result.left_out_effects.sentence("")))
+    return Group(_describe_critical(result), _model_line(result, result.left_out_effects.sentence("")))
 
 
 def _describe_critical(result: CriticalPoint) -> Text:
+    unit = _speed_unit(result)
     if not math.isinf(result.speed):
         if not result.speed:
-            return Text(f"critical speed: 0 rad/s; the beam is unstable at every speed: {result.reason}")
-        value = supported(result.speed, result.error * result.speed, _CRITICAL_DIGITS)
-        shown = set_apart(value, float(result.model_error) * result.speed)
+            return Text(
+                f"critical speed: 0 {unit.name}; the beam is unstable at every speed: {result.reason}"
+            )
+        speed = unit.of(result.speed)
+        value = supported(speed, result.error * speed, _CRITICAL_DIGITS)
+        shown = set_apart(value, float(result.model_error) * speed)
         straight = any(OUTSIDE in warning for warning in result.warnings)
         which = "a straight beam would buckle" if straight else "the beam buckles"
-        return Text.assemble("critical speed: ", shown, f" rad/s; above it {which}: {result.reason}")
+        return Text.assemble("critical speed: ", shown, f" {unit.name}; above it {which}: {result.reason}")
     if math.isinf(result.none_below):
         return Text(f"no critical speed: {as_in_files(result.reason)}")
-    bound = f"{result.none_below:.4g} rad/s"
+    bound = unit.say(result.none_below, 4)
     if not result.error:
         return Text(f"no critical speed below {bound}: {result.reason}")
     return Text(f"no critical speed found; there is certainly none below {bound}")
@@ -263,10 +275,10 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
     ]
     shown = table(
         f"Largest tip deflection in {end:g} s, by {run.provenance.method}",
-        ("", "tip deflection [mm]", "over the length", "at [s]"),
+        ("", f"tip deflection [{_length_unit(run).name}]", "over the length", "at [s]"),
         rows,
     )
-    left_out = _model_line(run.left_out_effects.sentence("", "of the largest deflection"))
+    left_out = _model_line(run, run.left_out_effects.sentence("", "of the largest deflection"))
     return Group(shown, Text(_describe_errors(run)), left_out)
 
 
@@ -292,36 +304,37 @@ def time_of_peak(
 
 
 def _peak_cells(run: Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
-    """Largest tip deflection in a window [mm], over the length, and its time [s]."""
+    """Largest tip deflection in a window, over the length, and its time [s]."""
     size, length = run.peak(start, end, direction), run.scene.beam.length
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error if math.isfinite(run.mode_error) else 0.0
     beyond = float(run.model_error) * size
     deflection, ratio = (
-        set_apart(supported(size * f, error * f, _MODEL_DIGITS), beyond * f) for f in (1e3, 1 / length)
+        set_apart(supported(size * f, error * f, _MODEL_DIGITS), beyond * f)
+        for f in (_length_unit(run).per_si, 1 / length)
     )
     return deflection, ratio, supported(*time_of_peak(run, start, end, direction)) if size else "-"
 
 
 def _describe_errors(run: Transient) -> str:
     """Describe the time-integration error and the modal truncation error in words."""
-    known = math.isfinite(run.mode_error)
-    modes = (
-        f"modal truncation error {1e3 * run.mode_error:.1g} mm" if known else "modal truncation error unknown"
-    )
+    known, unit = math.isfinite(run.mode_error), _length_unit(run)
+    size = unit.say(run.mode_error, 1) if known else "unknown"
+    modes = f"modal truncation error {size}"
     if math.isnan(run.time_error):
         return (
             "The time-integration error is not estimated: this integrator bounds that of single steps only. "
             f"Estimated {modes}."
         )
-    return f"Estimated time-integration error {1e3 * run.time_error:.1g} mm, {modes}."
+    return f"Estimated time-integration error {unit.say(run.time_error, 1)}, {modes}."
 
 
 def crossings_table(result: Crossings) -> Group:
     """Table of resonance speeds, with the plane of each mode where two are modelled."""
+    unit = _speed_unit(result)
     rows = [
         (
-            set_apart(supported(c.speed, c.error * c.speed), beyond * c.speed),
+            set_apart(supported(unit.of(c.speed), c.error * unit.of(c.speed)), beyond * unit.of(c.speed)),
             f"{c.line.name}: {c.line.multiple:.6g} times the speed",
             str(c.mode) if c.second_mode is None else f"{c.mode} and {c.second_mode}",
             *_plane_cells(result, c),
@@ -331,11 +344,13 @@ def crossings_table(result: Crossings) -> Group:
         for c, beyond in zip(result, np.atleast_1d(result.model_error).tolist(), strict=False)
     ]
     number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
-    title = f"{number}, by {result.provenance.method}. {result.extent}"
+    title = f"{number}, by {result.provenance.method}. {result.display_units.in_sentence(result.extent)}"
     plane = [f"{', '.join(words)} [%]"] if (words := words_of_directions(result.scene)) else []
-    heads = ("speed [rad/s]", "line", "mode", *plane, "frequency [Hz]", "kind")
+    heads = (_speed_head(result), "line", "mode", *plane, "frequency [Hz]", "kind")
     shown = table(title, heads, rows, (1, len(heads) - 1))
-    return Group(shown, _model_line(result.left_out_effects.sentence("resonance" if len(rows) > 1 else "")))
+    return Group(
+        shown, _model_line(result, result.left_out_effects.sentence("resonance" if len(rows) > 1 else ""))
+    )
 
 
 def _plane_cells(result: Crossings, crossing: Crossing) -> Iterator[str]:
@@ -354,11 +369,11 @@ def steady_table(result: SteadyResponse) -> Group:
     names, by_direction = words_of_directions(result.scene), largest_by_direction(result)
     sizes = result.amplitude, *by_direction, result.bound
     beyond = between_speeds(result, result.model_error)
-    cells = [_millimetres(values, error, beyond) for values in sizes]
-    columns = [_speed_cells(result.speeds), *cells, _status_cells(result.status, peaks_at)]
+    cells = [_length_cells(result, values, error, beyond) for values in sizes]
+    columns = [_speed_cells(result, result.speeds), *cells, _status_cells(result.status, peaks_at)]
     title = f"Steady response, by harmonic balance with {result.provenance.method}"
-    largest = ("largest tip deflection [mm]", *(f"{name} [mm]" for name in names))
-    heads = ("speed [rad/s]", *largest, "sum of the lines [mm]", "status")
+    sizes = _length_heads(result, ("largest tip deflection", *names, "sum of the lines"))
+    heads = (_speed_head(result), *sizes, "status")
     made = table(
         title + _selection_note(shown, result.speeds), heads, _rows(columns, shown), (len(heads) - 1,)
     )
@@ -376,11 +391,11 @@ def sweep_table(result: Sweep) -> Group:
     shown = _select_response_speeds(np.array(result.status), peaks_at)
     words, drawn = words_of_directions(result.scene), sweep_lines(result)
     beyond = between_speeds(result, result.model_error)
-    sizes = [_millimetres(values, result.time_error, beyond) for values in drawn.values()]
-    columns = [_speed_cells(result.speeds), *sizes, _status_cells(result.status, peaks_at)]
+    sizes = [_length_cells(result, values, result.peak_error, beyond) for values in drawn.values()]
+    columns = [_speed_cells(result, result.speeds), *sizes, _status_cells(result.status, peaks_at)]
     start, end = result.window
     title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
-    heads = ("speed [rad/s]", *(f"{name} [mm]" for name in ("largest tip deflection", *words)), "status")
+    heads = (_speed_head(result), *_length_heads(result, ("largest tip deflection", *words)), "status")
     rows = _rows(columns, shown)
     made = table(title + _selection_note(shown, result.speeds), heads, rows, (len(heads) - 1,))
     return Group(made, _left_out_over_speeds(result))
@@ -398,13 +413,29 @@ def sweep_peaks(result: Sweep) -> np.ndarray:
     return peaks(result.peaks, 0.25 * np.nanmax(result.peaks, initial=0.0))
 
 
-def _speed_cells(speeds: np.ndarray) -> list[str]:
-    return [f"{speed:.8g}" for speed in speeds]
+def _length_unit(result: Result) -> ShownUnit:
+    """Unit in which the deflections of a result are shown."""
+    return result.display_units.length_unit()
 
 
-def _millimetres(values: np.ndarray, error: np.ndarray, model_error: np.ndarray) -> list[Text]:
+def _speed_head(result: Result) -> str:
+    return f"speed [{_speed_unit(result).name}]"
+
+
+def _speed_cells(result: Result, speeds: np.ndarray) -> list[str]:
+    return [f"{speed:.8g}" for speed in _speed_unit(result).of(speeds)]
+
+
+def _length_heads(result: Result, names: Iterable[str]) -> list[str]:
+    return [f"{name} [{_length_unit(result).name}]" for name in names]
+
+
+def _length_cells(
+    result: Result, values: np.ndarray, error: np.ndarray, model_error: np.ndarray
+) -> list[Text]:
     """Deflections [m], digits beyond the model error (relative) dimmed."""
-    each = zip((1e3 * values).tolist(), (1e3 * error).tolist(), model_error.tolist(), strict=True)
+    unit = _length_unit(result)
+    each = zip(unit.of(values).tolist(), unit.of(error).tolist(), model_error.tolist(), strict=True)
     return [set_apart(supported(v, e, _MODEL_DIGITS), beyond * abs(v)) for v, e, beyond in each]
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.spectrum.locus import Locus
     from beamdyn.spectrum.modes import Modes
-    from beamdyn.steady.resonance import Crossings
+    from beamdyn.steady.crossings import Crossings
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
@@ -76,9 +76,10 @@ def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
 def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
     """Largest deflection, where two directions are modelled also in each, and its errors."""
     names = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
-    yield "speed_rad_per_s", "largest_deflection_m", *names, "time_error_m", _WHERE_COMPUTED
+    yield "speed_rad_per_s", "largest_deflection_m", *names, "time_error_m", "mode_error_m", _WHERE_COMPUTED
     each = result.peaks_by_direction.T if names else ()
-    columns = result.speeds, result.peaks, *each, result.time_error, _model_error_of(result)
+    errors = result.time_error, result.peak_error - result.time_error, _model_error_of(result)
+    columns = result.speeds, result.peaks, *each, *errors
     yield from zip(*(column.tolist() for column in columns), strict=True)
 
 

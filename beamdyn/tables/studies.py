@@ -42,7 +42,7 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
     own = own if result.labels else [f"{result.question.kind.word} [{result.unit}]"]
     number = len(value)
     title = f"{number} design{'s' * (number > 1)}, by {result.provenance.method}"
-    made = table(title, (*heads, *own, "error"), rows, ())
+    made = table(title, (*heads, *own, "error"), rows, (), len(heads))
     notes = [f"{len(shown)} of {number} designs are shown; --csv has all."] if len(shown) < number else []
     where = f"at the worst of {len(result.left_out_places)} designs"
     left_out = as_in_files(result.left_out_effects.sentence("number" if len(own) > 1 else "", where))
@@ -52,7 +52,8 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
 def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterator[str]:
     for number, wrong, state in zip(value, error, status, strict=True):
         yield supported(number, wrong * number, _DIGITS) if np.isfinite(number) else str(state)
-    yield f"{error.max():.1g}"
+    known = error[np.isfinite(value)]
+    yield f"{known.max():.1g}" if known.size else "-"
 
 
 def study_csv(result: Study) -> Iterator[Sequence[object]]:
@@ -61,7 +62,8 @@ def study_csv(result: Study) -> Iterator[Sequence[object]]:
     numbers = [f"_{_plain_name(label)}" for label in result.labels] or [""]
     units = {each.name: each.unit for each in result.inputs}
     heads = [_head(name.replace(".", "_"), units[name]) for name in columns]
-    answers = [_head(f"{result.question.kind.word.replace(' ', '_')}{n}", result.unit) for n in numbers]
+    answer = _head(result.question.kind.word.replace(" ", "_"), result.unit)
+    answers = [f"{answer}{n}" for n in numbers]
     yield *heads, *answers, *(f"relative_error{n}" for n in numbers), *(f"status{n}" for n in numbers)
     inputs = np.array([*columns.values()]).T.tolist()
     for row in zip(inputs, value.tolist(), error.tolist(), status.tolist(), strict=True):

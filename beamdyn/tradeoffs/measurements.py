@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from math import inf, isfinite, nan
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.one_line import counted, number
 from beamdyn.common.results import Result
 
 if TYPE_CHECKING:
@@ -137,6 +138,12 @@ class Diagram(Result):
     front: tuple[Measurement, ...]
     per_digit: tuple[Digit, ...]
     skipped: tuple[str, ...]
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield self.title
+        yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in front"
+        yield f"reference to {number(self.resolved)}"
 
     @classmethod
     def make(

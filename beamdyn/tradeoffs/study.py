@@ -14,6 +14,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.announced import OUTSIDE, announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, count, function, positive, real
+from beamdyn.common.one_line import counted, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.ritz import MOST_FUNCTIONS
 from beamdyn.modal.choice import choose_model
@@ -63,6 +64,13 @@ class Tradeoff(Result):
         missing, and why.
     provenance : Provenance
         How the result was computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.tradeoff(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=1, budget=0.5)
+    >>> found.speed
+    50.0
     """
 
     speed: float
@@ -71,6 +79,12 @@ class Tradeoff(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{counted(len(self.diagrams), 'diagram')} at {self.say_speed(self.speed)}"
+        yield counted(sum(len(each.measurements) for each in self.diagrams), "measurement")
+        yield warned(self.warnings)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw all diagrams side by side, in place of the axes."""
@@ -117,6 +131,13 @@ def tradeoff(
     ------
     ValueError
         If an argument is out of its range, or `t_end` is given for a scene without motion.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.tradeoff(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=1, budget=0.5)
+    >>> len(found.diagrams) > 0
+    True
     """
     start = perf_counter()
     check_scene(scene)

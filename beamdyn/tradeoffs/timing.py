@@ -89,7 +89,11 @@ def measure_families(
 def _measure_family(
     family: Family, error: Callable[[Any], float], resolved: float, share: float
 ) -> tuple[list[Measurement], str]:
-    """Measure a family: the measurements, and why the rest was left out."""
+    """Measure a family: the measurements, and why the rest was left out.
+
+    Whether the next setting still fits is told by the processor time of the last one: a moment in which
+    the machine did something else would look like a slow setting, and end the family too early.
+    """
     start, last = perf_counter(), 0.0
     measurements: list[Measurement] = []
     for setting in family.settings:
@@ -97,31 +101,30 @@ def _measure_family(
         if rest < last:
             return measurements, f"left out from {setting.name} on, its {share:.2g} s being used up"
         try:
-            result, last, shortest = _time_runs(setting, rest, _REPEATS * share / len(family.settings))
+            result, last = _time_runs(setting, rest, _REPEATS * share / len(family.settings))
         except TimeoutError as stop:
             return measurements, f"{setting.name} given up after {rest:.2g} s {stop}, and the rest left out"
         except (ArithmeticError, LinAlgError) as failure:
             return measurements, f"{setting.name} failed ({failure}), and the rest left out"
         relative_error = error(result)
         bounded = inf if isnan(relative_error) else max(relative_error, resolved)
-        measurements.append(Measurement(family.name, setting.name, setting.size, bounded, shortest))
+        measurements.append(Measurement(family.name, setting.name, setting.size, bounded, last))
     return measurements, ""
 
 
-def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, float, float]:
-    """Run a setting several times: the result, the first run's wall time, the shortest processor time [s].
+def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, float]:
+    """Run a setting several times: the result, and the shortest processor time [s].
 
     Other programs hardly influence the processor time; all runs are in one thread.
     """
     start = perf_counter()
     times: list[float] = []
-    result, first = None, 0.0
+    result = None
     while not times or (len(times) < RUNS and perf_counter() - start < spare):
         cpu_start = process_time()
         result = setting.run(start + rest)
         times.append(process_time() - cpu_start)
-        first = first or perf_counter() - start
-    return result, first, min(times)
+    return result, min(times)
 
 
 def remaining_budget(budget: float, start: float) -> float:

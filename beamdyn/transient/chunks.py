@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_right
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -13,14 +13,14 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modal.choice import DiscretizationChoice
-from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis
+from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.integration import integrate
 from beamdyn.transient.model_of_basis import choose_for_basis
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import largest_deflection
+from beamdyn.transient.trajectory import Trajectory, largest_in_each, largest_on, magnitude
 from beamdyn.transient.transient import TransientRequest
 
 DONE = "done"
@@ -28,7 +28,12 @@ DONE = "done"
 
 @dataclass(frozen=True)
 class SweepRequest(FieldsOnly):
-    """Checked arguments of `sweep` on which each case depends."""
+    """Checked arguments of `sweep` on which each case depends.
+
+    The basis is that of all cases, of modes at rest or at the slowest and the fastest speed of all.  Where
+    `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case takes the larger
+    one of its neighbours there.
+    """
 
     scene: Scene
     window: tuple[float, float]
@@ -36,33 +41,61 @@ class SweepRequest(FieldsOnly):
     tolerance: float
     discretization: DiscretizationChoice
     basis: ModalBasis = field(default=ModalBasis(FEWEST_MODES))
+    modes_at: tuple[tuple[float, int], ...] = ()
 
-    def transient_request(self, motion: Motion) -> TransientRequest:
-        """Request of the transient of one case."""
-        scene, method, rest = replace(self.scene, motion=motion), "auto", "rest"
+    def transient_request(self, speed: float) -> TransientRequest:
+        """Request of the transient of the case with a final speed [rad/s]."""
+        scene, method, rest = replace(self.scene, motion=self.motion(speed)), "auto", "rest"
+        basis = self.basis_at(speed)
         return TransientRequest(
-            scene, self.t_end, self.tolerance, method, self.discretization, rest, None, {}, self.basis
+            scene, self.t_end, self.tolerance, method, self.discretization, rest, None, {}, basis
         )
+
+    def basis_at(self, speed: float) -> ModalBasis:
+        """Modal basis of one case: as many modes as it needs, at its own slowest and fastest speed."""
+        basis = replace(self.basis, modes=self._modes_near(speed)) if self.modes_at else self.basis
+        at_rest = basis.is_at_rest
+        return basis if at_rest else replace(basis, speeds=find_speed_range(self.motion(speed), self.t_end))
+
+    def _modes_near(self, speed: float) -> int:
+        speeds, modes = zip(*self.modes_at, strict=True)
+        after = bisect_right(speeds, speed)
+        return max(modes[max(after - 1, 0) : after + 1])
 
     @property
     def directions(self) -> int:
         """Number of directions in which the beam bends."""
         return self.scene.physics.planes
 
-    def motions(self, speeds: Sequence[float]) -> list[Motion]:
-        """Motion at each final speed [rad/s]."""
+    def motion(self, speed: float) -> Motion:
+        """Motion at a final speed [rad/s]."""
         assert self.scene.motion is not None
-        return [self.scene.motion.with_speed(v) for v in speeds]
+        return self.scene.motion.with_speed(speed)
 
     @cached_property
     def model(self) -> Model:
         """The discretized scene, chosen for the modal basis and the tolerance."""
         return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
 
+    @property
+    def basis_name(self) -> str:
+        """The modal bases of all cases, in words."""
+        if self.basis.is_at_rest:
+            return str(self.basis)
+        fewest = min((modes for _, modes in self.modes_at), default=self.basis.modes)
+        modes = f"{self.basis.modes}" if fewest == self.basis.modes else f"{fewest} to {self.basis.modes}"
+        speeds = " to ".join(f"{speed:.4g}" for speed in self.basis.speeds)
+        return f"{modes} modes at the slowest and at the fastest speed of each case ({speeds} rad/s)"
+
     @cached_property
-    def modal_equations(self) -> Equations:
-        """The equations of motion in the modal basis."""
+    def _shared_equations(self) -> Equations:
+        """The equations of motion in the basis of all cases."""
         return self.model.modal_equations(self.basis)
+
+    def modal_equations(self, speed: float) -> Equations:
+        """The equations of motion of one case in its modal basis."""
+        basis = self.basis_at(speed)
+        return self._shared_equations if basis == self.basis else self.model.modal_equations(basis)
 
 
 class CaseResult(NamedTuple):
@@ -79,31 +112,35 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
     """Solve the cases of one chunk, each with its own steps."""
     solve = _solve_transient if request.scene.physics.large_deflection else _solve
     with one_blas_thread(), np.errstate(all="ignore"):
-        return [solve(request, motion) for motion in request.motions(speeds)]
+        return [solve(request, speed) for speed in speeds]
 
 
-def _solve(request: SweepRequest, motion: Motion) -> CaseResult:
+def _solve(request: SweepRequest, speed: float) -> CaseResult:
     """Solve one case by its equations as `simulate` does; of its motion only peaks of the tip are kept."""
-    system = ModalSystem.from_rest(request.modal_equations, motion, request.t_end)
+    equations, motion = request.modal_equations(speed), request.motion(speed)
+    system = ModalSystem.from_rest(equations, motion, request.t_end)
     try:
         path, error, _ = integrate(system, np.zeros(2 * system.size), request.t_end, request.tolerance)
     except (ArithmeticError, np.linalg.LinAlgError) as reason:
         return _failed(request, str(reason))
-    tip = path.projected(system.tips)
-    outputs = np.eye(len(system.tips))
-    peak, largest = (largest_deflection(outputs, tip, *w) for w in (request.window, (tip.start, tip.end)))
+    tip, outputs = path.projected(system.tips), np.eye(len(system.tips))
+    windows = [request.window, (tip.start, tip.end)]
+    peak, largest = largest_in_each(lambda q: magnitude(q, outputs), tip, windows)
     if not np.isfinite(largest):
         return _failed(request, "not finite")
-    each = (
-        [largest_deflection(o[None], tip, *request.window) for o in outputs] if len(outputs) > 1 else [peak]
-    )
+    each = [peak] if len(outputs) == 1 else [_peak_of(output, tip, request.window) for output in outputs]
     return CaseResult(peak, max(peak, largest), error, DONE, tuple(each))
 
 
-def _solve_transient(request: SweepRequest, motion: Motion) -> CaseResult:
+def _peak_of(output: np.ndarray, path: Trajectory, window: tuple[float, float]) -> float:
+    """Largest magnitude in a window of one linear function of the coordinates, (n,) per unit of each."""
+    return largest_on(lambda q: magnitude(q, output[None]), path, *window)
+
+
+def _solve_transient(request: SweepRequest, speed: float) -> CaseResult:
     """Solve one case of large deflection."""
     try:
-        run = request.transient_request(motion).run()
+        run = request.transient_request(speed).run()
         peak = run.peak(*request.window)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return _failed(request, str(error))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from beamdyn.common.checks import NoModelAnswer
 from beamdyn.modal.modal_basis import SPEED_SAMPLES
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Motion
@@ -13,7 +14,7 @@ _LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as un
 
 
 def check_motion(motion: Motion, t_end: float, model: Model) -> None:
-    """Raise a ValueError for a motion that ends early or passes the critical speed, before any long work.
+    """Raise a NoModelAnswer for a motion that passes the critical speed, before any long work.
 
     With large deflection the critical speed is no limit.
     """
@@ -25,7 +26,7 @@ def check_motion(motion: Motion, t_end: float, model: Model) -> None:
     past = (speed >= critical) & (speed > 0)
     if past.any():
         k = int(past.argmax())
-        raise ValueError(
+        raise NoModelAnswer(
             f"the motion reaches {speed[k]:.6g} rad/s at t = {t[k]:.4g} s, past the critical speed "
             f"{critical:.6g} rad/s: the beam buckles there, and linear theory does not hold; lower the speed"
         )

@@ -20,7 +20,7 @@ from beamdyn.transient.time_error import (
 )
 from beamdyn.transient.trajectory import magnitude
 
-_PIECES_CHECKED = 512  # in the steps that are checked, if these are not too few
+_PIECES_CHECKED = 128  # in the steps that are checked, if these are not too few
 _FEWEST_CHECKED = 48
 _POINTS = np.arange(10) / 10  # fractions of a piece at which the error between ends is sought
 _MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides those spread over the run
@@ -48,12 +48,15 @@ def estimate_record_error(system: ModalSystem, segment: RecordSegment, outputs: 
     TimeError
     """
     count, total, interpolation = len(segment.steps), np.zeros(system.size), 0.0
-    unresolved = np.zeros(system.size, dtype=bool)
+    unresolved, across = np.zeros(system.size, dtype=bool), count < len(segment.steps.piece_start)
     most = max(_FEWEST_CHECKED, _PIECES_CHECKED // int(segment.steps.counts.mean()))
     spread, worst = choose_checked_steps(count, most), _find_worst(system, segment.steps)
     for chosen, represented in ((spread, count), (worst, len(worst))):
         local, delta, between = _check(system, segment, chosen, outputs)
-        total += total_of_local_errors(local, delta, represented)
+        added = total_of_local_errors(local, delta, represented)
+        if across:  # what samples inside a step change in its load adds up by chance
+            added = np.maximum(added, np.sqrt(represented) * local)
+        total += added
         unresolved |= delta > UNRESOLVED_PHASE
         interpolation = max(interpolation, between)
     modes = total * size_per_coordinate(outputs)

@@ -33,12 +33,15 @@ from beamdyn.transient.gauss import (
     tableau,
 )
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.weakly_modulated import propagate_modulated
 
 _STRETCHES = 16  # of a run, each with steps as long as the motion in it allows
 _FEWEST_PIECES = 16  # between samples: fewer are integrated one after the other
 _MOST_STEPS_IN_PIECE = 16  # on average: with more, the pieces are better integrated one after the other
 _PIECES_AT_ONCE = 4096  # in the steps of a block, whose matrices fit into memory
 _SLACK = 1e-6  # of a step, by which rounding may exceed it
+_EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128  # most and fewest steps that are expanded about one mean motion
+_SAME_LENGTH = 1e-6  # of a step, by which lengths and ends of equal steps may differ
 _MANY_PIECES, _IN_EACH = 4, 5  # in a step, and nodes or stages in each, with which a quarter is as exact
 
 
@@ -86,12 +89,11 @@ class RecordSteps:
     @classmethod
     def choose(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> RecordSteps:
         """Choose steps about as long as the step size allows, which end at samples or divide a piece."""
-        stretches = np.linspace(0.0, t_end, _STRETCHES + 1)
-        counts = [step_size.count_steps(system, a, b) for a, b in pairwise(stretches)]
-        wanted = np.concatenate([[0], np.cumsum(counts)])  # number of steps up to a time
+        wanted = _WantedSteps.of(system, t_end, step_size)
         ends = smooth_piece_ends(system.motion, t_end)
-        pieces = _divide(ends, np.ceil(np.diff(np.interp(ends, stretches, wanted)) - _SLACK))
-        first = _group(np.interp(pieces, stretches, wanted).tolist())
+        pieces = _divide(ends, np.ceil(np.diff(wanted.before(ends)) - _SLACK))
+        few = wanted.counts[-1] * _MANY_PIECES > len(pieces) - 1 and _are_same(np.diff(pieces)).all()
+        first = [*range(len(pieces) - 1)] if few else _group(wanted.before(pieces).tolist())
         return cls(
             pieces[first], np.diff(pieces[[*first, -1]]), pieces[:-1], np.diff(pieces), np.array(first)
         )
@@ -103,6 +105,22 @@ class RecordSteps:
     def counts(self) -> np.ndarray:
         """Number of pieces of each step, shape (N,)."""
         return np.diff([*self.first, len(self.piece_start)])
+
+    @cached_property
+    def blocks(self) -> list[slice]:
+        """Blocks of steps: equal ones, each in one piece, as many as are integrated at once; and others."""
+        single = self.counts == 1
+        cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
+        runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
+        ends = sorted({0, len(self), *(end for a, b in runs for end in (*range(a, b, _EQUAL_STEPS), b))})
+        return [slice(a, b) for a, b in pairwise(ends)]
+
+    def are_equal(self, block: slice) -> bool:
+        """Whether the steps of a block are each in one piece and end where as many equal steps do."""
+        ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
+        grid = np.linspace(ends[0], ends[-1], len(ends))
+        off = np.abs(ends - grid).max()  # lengths that drift are the next one's each, and yet not equal
+        return bool(off <= _SAME_LENGTH * (grid[1] - grid[0]) and (self.counts[block] == 1).all())
 
     def select(self, which: np.ndarray) -> RecordSteps:
         """Some of the steps, by their indices."""
@@ -139,6 +157,35 @@ class RecordSteps:
         inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
         at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
         return share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)
+
+
+@dataclass(frozen=True)
+class _WantedSteps:
+    """How many steps a step size wants up to each of some times [s], both shape (k,)."""
+
+    times: np.ndarray
+    counts: np.ndarray
+
+    @classmethod
+    def of(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> _WantedSteps:
+        times = np.linspace(0.0, t_end, _STRETCHES + 1)
+        counts = [step_size.count_steps(system, a, b) for a, b in pairwise(times)]
+        return cls(times, np.concatenate([[0], np.cumsum(counts)]))
+
+    def before(self, t: np.ndarray) -> np.ndarray:
+        """Steps before times t [s], of any shape."""
+        return np.interp(t, self.times, self.counts)
+
+
+def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounter) -> float:
+    """Number of steps that the step size wants between two samples, where it wants the most."""
+    ends = smooth_piece_ends(system.motion, t_end)
+    return float(np.diff(_WantedSteps.of(system, t_end, step_size).before(ends)).max())
+
+
+def _are_same(lengths: np.ndarray) -> np.ndarray:
+    """Whether each length (N,) is that of the next: shape (N - 1,)."""
+    return np.abs(np.diff(lengths)) <= _SAME_LENGTH * lengths[:-1]
 
 
 def _divide(ends: np.ndarray, parts: np.ndarray) -> np.ndarray:
@@ -221,16 +268,54 @@ class RecordSegment:
 
 
 def propagate_record(
-    system: ModalSystem, steps: RecordSteps, q0: np.ndarray, v0: np.ndarray, stages: int
+    system: ModalSystem, steps: RecordSteps, q0: np.ndarray, v0: np.ndarray, stages: int, accuracy: float
 ) -> RecordSegment:
-    """Integrate over unequal steps by Gauss collocation, from coordinates q0 and velocities v0."""
+    """Integrate over unequal steps by Gauss collocation, from coordinates q0 and velocities v0.
+
+    Many equal steps, each between two samples, take maps that are expanded about the mean motion of a block
+    of them; `accuracy` is the relative error that the truncated series may cause in all.
+    """
     N, n = len(steps), system.size
     state, acceleration = np.empty((N + 1, 2 * n + 1)), np.empty((N, stages, n))
     state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    size = max(1, min(BLOCK, _PIECES_AT_ONCE // int(steps.counts.max())))
-    for first in range(0, N, size):
-        block = np.arange(first, min(first + size, N))
-        maps = maps_of_record(system, steps.select(block), stages)
-        advance(maps.step, state[first : block[-1] + 2])
-        acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
+    for block in steps.blocks:
+        ends = slice(block.start, block.stop + 1)
+        if not _expand(system, steps, block, state[ends], acceleration[block], accuracy):
+            _solve(system, steps, block, state[ends], acceleration[block])
     return RecordSegment(steps, state, acceleration)
+
+
+def _expand(
+    system: ModalSystem,
+    steps: RecordSteps,
+    block: slice,
+    state: np.ndarray,
+    acceleration: np.ndarray,
+    accuracy: float,
+) -> bool:
+    """Fill in a block of equal steps by expanded maps, if it is one and its motion varies little enough."""
+    count, n = block.stop - block.start, system.size
+    if count < _FEWEST_EQUAL or not steps.are_equal(block):
+        return False
+    start, end = float(steps.start[block.start]), float(steps.start[block.stop - 1] + steps.h[block.stop - 1])
+    modulated, share = system.about_mean(start, end), accuracy * count / len(steps)
+    if modulated is None:
+        return False
+    q, v = state[0, 1 : n + 1], state[0, n + 1 :]
+    found = propagate_modulated(modulated, start, end, count, q, v, acceleration.shape[1], share)
+    if found is None:
+        return False
+    state[:], acceleration[:] = found.state, found.acceleration
+    return True
+
+
+def _solve(
+    system: ModalSystem, steps: RecordSteps, block: slice, state: np.ndarray, acceleration: np.ndarray
+) -> None:
+    """Fill in a block of steps, each solved by itself."""
+    size = max(1, min(BLOCK, _PIECES_AT_ONCE // int(steps.counts[block].max())))
+    for first in range(0, len(acceleration), size):
+        part = np.arange(first, min(first + size, len(acceleration)))
+        maps = maps_of_record(system, steps.select(block.start + part), acceleration.shape[1])
+        advance(maps.step, state[first : part[-1] + 2])
+        acceleration[part] = (maps.acceleration @ state[part, None, :, None])[..., 0]

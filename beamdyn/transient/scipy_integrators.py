@@ -11,7 +11,7 @@ from scipy.integrate import OdeSolver, solve_ivp
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.transient.elastica_system import ElasticaSystem
-from beamdyn.transient.gauss import GaussCollocation
+from beamdyn.transient.gauss_solver import GaussCollocation
 from beamdyn.transient.integration import integrate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import SAMPLES

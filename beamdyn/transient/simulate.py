@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.integrate import OdeSolver
 
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, ascending, positive, within
@@ -16,9 +15,12 @@ from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range, given_basis
 from beamdyn.model_error.choice import bend_for_peak, choose_for_motion
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.transient.scipy_integrators import check_method
+from beamdyn.transient.smallest_basis import run_smallest_basis
 from beamdyn.transient.step_size import TOLERANCES
 from beamdyn.transient.transient import Transient, TransientRequest
+
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolver
 
 
 @announced
@@ -78,9 +80,19 @@ def simulate(
         If there are options without a method of `solve_ivp` that takes them.
     ArithmeticError
         If the motion grows without bound.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=1.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> run = bd.simulate(bd.Scene(strip, bd.Mount(radius=0.215), wheel), t_end=2.0, modes=2)
+    >>> round(1e3 * run.peak(1.0, 2.0), 1)  # mm
+    0.8
     """
     check_scene(scene)
     if not (isinstance(method, str) and method == "auto"):
+        from beamdyn.transient.scipy_integrators import check_method
+
         check_method(method)
     t_end, tolerance = positive("t_end", t_end, "s"), within("tolerance", tolerance, *TOLERANCES)
     if scene.motion is None:
@@ -100,11 +112,11 @@ def simulate(
     request = TransientRequest(
         scene, t_end, tolerance, method, discretization, initial, times, options, smallest
     )
-    run = request.run() if basis else request.run_smallest_basis()
+    run = request.run() if basis else run_smallest_basis(request)
     if (bent := bend_for_peak(scene, run.largest)) is None:
         return run
     request = replace(request, scene=bent)
-    return request.run() if basis else request.run_smallest_basis()
+    return request.run() if basis else run_smallest_basis(request)
 
 
 def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:

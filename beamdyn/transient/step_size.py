@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,7 +13,13 @@ from beamdyn.scene.motion import Motion
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.record_error import estimate_record_error
-from beamdyn.transient.record_steps import RecordSteps, is_record, propagate_record, smooth_piece_ends
+from beamdyn.transient.record_steps import (
+    RecordSteps,
+    is_record,
+    most_steps_in_piece,
+    propagate_record,
+    smooth_piece_ends,
+)
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import (
     ERROR_ORDER,
@@ -37,6 +43,8 @@ _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: round
 ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
 _SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
 _ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
+_FEW_STEPS = 4  # samples in a step, from which on it is one over many
+_CEILED = 1.02  # by which whole numbers of steps exceed those wanted, of hundreds
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
 
 
@@ -138,7 +146,10 @@ def integrate(
         if error.total <= tolerance * largest or stalled or finest:
             steps = sum(len(s.acceleration) for s in path.segments)
             return path, error.total, f"Gauss collocation of order {ERROR_ORDER}, {steps} steps"
-        step_size, last = step_size.refine(error, tolerance * largest, order), error.total
+        finer, last = step_size.refine(error, tolerance * largest, order), error.total
+        if attempt is _attempt_record:
+            finer = _between_samples(system, t_end, finer, step_size, order)
+        step_size = finer
 
 
 def _attempt(
@@ -181,9 +192,27 @@ def _attempt_record(
     """Integrate a motion given by samples: path, error, and the order of the error."""
     steps, n = RecordSteps.choose(system, t_end, step_size), system.size
     check_number_of_steps(len(steps), n, t_end)
-    segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES)
+    segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES, _SERIES_SHARE * tolerance)
     order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
     return Trajectory((segment,)), estimate_record_error(system, segment, system.tips), order
+
+
+def _between_samples(
+    system: ModalSystem, t_end: float, wanted: StepSize, before: StepSize, order: int
+) -> StepSize:
+    """Step size of a record after another one, `before`, whose error had an order.
+
+    Loads without kinks are integrated so much better than those across samples that one step between two
+    samples comes after steps over many.  Later it is at least one more: so many steps have been tried.
+    """
+    most, last = (most_steps_in_piece(system, t_end, size) for size in (wanted, before))
+    if order == ERROR_ORDER:
+        steps = max(np.ceil(most), np.ceil(last) + 1)
+    elif most > 1 > _FEW_STEPS * last:
+        steps = 1
+    else:
+        return wanted
+    return replace(wanted, phase=wanted.phase * _CEILED * most / steps)
 
 
 def follow_steps(

@@ -3,21 +3,35 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from os import PathLike
+from functools import cached_property, partial
+from itertools import takewhile
 from pathlib import Path
+from threading import Event
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+import scipy
 
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced, unannounced
-from beamdyn.common.checks import InvalidValue, as_floats, ascending, count, function, positive, real, within
-from beamdyn.common.parallel.store import Store
+from beamdyn.common.checks import (
+    InvalidValue,
+    NoModelAnswer,
+    as_floats,
+    ascending,
+    count,
+    positive,
+    real,
+    within,
+)
+from beamdyn.common.digits import supported
+from beamdyn.common.one_line import counted, error_at_most, states, warned
+from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import modelled_directions
@@ -35,18 +49,33 @@ from beamdyn.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_left_out, warn_of_road
-from beamdyn.transient.chunk_collector import ChunkCollector, Progress
-from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest
+from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import simulate
+from beamdyn.transient.smallest_basis import run_smallest_basis
 from beamdyn.transient.step_size import TOLERANCES
-from beamdyn.transient.transient import Transient, TransientRequest
+from beamdyn.transient.transient import Transient
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_DIGITS = 4  # most of the headline
 _KIND = "beamdyn sweep"
+_VERSIONS = (__version__, np.__version__, scipy.__version__)  # on which the stored bits depend
+
+
+class SweepInterrupted(RunInterrupted):
+    """Raised when the executor breaks before all cases are done.
+
+    Examples
+    --------
+    >>> stopped = bd.SweepInterrupted(done=3, total=10, stored=True)
+    >>> stopped.done, stopped.total
+    (3, 10)
+    """
+
+    parts = "cases"
 
 
 @dataclass(frozen=True)
@@ -67,7 +96,7 @@ class Sweep(StatesModelError):
         Largest |tip deflection| in the window [m] in the direction of bending at the root and, where two
         planes are modelled, in that across; `peaks` and `largest` then are magnitudes of a vector.
     mode_error : float
-        Estimated modal truncation error, relative to the largest deflection: the largest of three sampled
+        Estimated modal truncation error, relative to the largest deflection: the largest of five sampled
         speeds.  It is an error of `peaks` and `largest` too.
     status : tuple of str, length S
         "done", or "failed: " and the reason.
@@ -79,6 +108,14 @@ class Sweep(StatesModelError):
         Limitations of the result.
     provenance : Provenance
         How the result was computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=1.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> found = bd.sweep(bd.Scene(strip, bd.Mount(0.215), wheel), [40.0, 50.0], window=(1.0, 1.5), modes=2)
+    >>> found.status
+    ('done', 'done')
     """
 
     speeds: np.ndarray
@@ -93,6 +130,26 @@ class Sweep(StatesModelError):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+
+    judged_by_solving: ClassVar[bool] = True
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}"
+        if np.isfinite(self.peaks).any():
+            at = int(np.nanargmax(self.peaks))
+            peak, error, unit = self.peaks[at], self.peak_error[at], self.display_units.length_unit()
+            shown = supported(unit.of(peak), unit.of(error), _DIGITS)
+            yield f"peak {shown} {unit.name} at {self.say_speed(self.speeds[at])}"
+            yield error_at_most(error / peak) if peak else ""
+        yield from (states(self.status, ("done",)), warned(self.warnings))
+
+    @property
+    def peak_error(self) -> np.ndarray:
+        """Estimated error of `peaks` and `largest` [m]: of time integration and modal truncation, (S,)."""
+        with np.errstate(invalid="ignore"):
+            of_modes = np.where(self.largest == 0, 0.0, self.mode_error * self.largest)
+        return self.time_error + of_modes
 
     @property
     def left_out_speeds(self) -> np.ndarray:
@@ -116,9 +173,9 @@ class Sweep(StatesModelError):
 
         names = modelled_directions(self.scene)
         if len(names) == 1:
-            return plot_sweep(self.speeds, self.peaks, ax)
+            return plot_sweep(self.speeds, self.peaks, ax, units=self.display_units)
         rows = np.vstack([self.peaks, self.peaks_by_direction.T])
-        return plot_sweep(self.speeds, rows, ax, ("magnitude", *names))
+        return plot_sweep(self.speeds, rows, ax, ("magnitude", *names), self.display_units)
 
 
 @announced
@@ -141,8 +198,8 @@ def sweep(
     Each case takes steps of its own, so that its result is the same to the bit for any workers, executor,
     order, resumption and size of the chunks.
 
-    With ``modes="auto"`` all cases share a modal basis, which is chosen at the slowest and the fastest speed.
-    So the result of a case depends within `time_error` and `mode_error` on which other speeds are asked for.
+    With ``modes="auto"`` a case takes as many modes as the samples next to it need.  So the result of a case
+    depends within `time_error` and `mode_error` on which other speeds are asked for.
 
     Parameters
     ----------
@@ -156,7 +213,7 @@ def sweep(
         End of each run [s]; the window's end if not given.
     modes : int or "auto"
         Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
-        speed: the smallest modal basis whose truncation error meets the tolerance at three of the speeds.
+        speed of each case: as few as meet the tolerance by their truncation error at five of the speeds.
     tolerance : float
         Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
         relative to the largest deflection of a case.
@@ -167,7 +224,8 @@ def sweep(
     store : str or Path, optional
         Directory in which finished chunks are saved; chunks found there are not computed again.
     progress : callable, optional
-        Called with the number of finished cases and of all, at the start and after each chunk.
+        Called with the number of finished cases and of all, at the start and after each chunk, computed or
+        found in the store.
     discretization : {"ritz", "fem"} or Discretization
         Discretization from which the modes are computed.
     chunk : int
@@ -184,35 +242,69 @@ def sweep(
         store is foreign or cannot be written, or the motion cannot be stored or sent to workers.
     SweepInterrupted
         If the executor breaks; finished chunks are in the store.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=1.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), wheel)
+    >>> bd.sweep(scene, [40.0, 50.0], window=(1.0, 1.5), modes=2).peaks.shape
+    (2,)
     """
     start = perf_counter()
     check_scene(scene)
     cases = tuple(ascending("speeds", speeds).tolist())
     request = _check_request(scene, window, t_end, tolerance, discretization)
-    workers, chunk = count("workers", workers), count("chunk", chunk)
-    _check_means(workers, executor, store, progress)
+    chunk = count("chunk", chunk)
+    runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, _end_speeds(request, cases), basis and basis.modes, request.tolerance)
     request = replace(request, scene=replace(scene, physics_choice=None))  # whose times no key may hold
     _check_speeds(request := replace(request, basis=basis or _smallest_basis(request, cases)), cases)
-    if store is not None or executor is not None or workers > 1:
-        _check_sendable(request, importable=workers > 1)
-    chunk_store = None if store is None else Store(store, _KIND)
-    samples = _run_samples(request, cases, TransientRequest.run) if basis else _choose_basis(request, cases)
-    largest = max((run.request.basis for run in samples), key=lambda basis: basis.modes or 0)
-    request = replace(request, basis=largest)
-    collector = ChunkCollector(request, _split(cases, chunk), chunk_store, progress)
-    collector.collect(executor, workers)
-    method = f"Gauss collocation, {request.basis} of {request.model.discretization}"
+    if store is not None or executor is not None or runner.workers > 1:
+        _check_sendable(request, importable=runner.workers > 1)
+    runner.open_store()
+    with runner.prepared(_solve, -(-len(cases) // chunk)):
+        samples = None if basis else _choose_basis(request, cases)
+        if samples is not None:
+            request = _request_with_basis(request, cases, samples)
+        if executor is None and runner.workers == 1:
+            mode_error = _find_mode_error(request, cases, samples, Event())
+            found = _solve_cases(request, cases, chunk, runner)
+        else:
+            with _beside(_find_mode_error, request, cases, samples) as beside:
+                found = _solve_cases(request, cases, chunk, runner)
+            mode_error = beside.result()
+    method = f"Gauss collocation, {request.basis_name} of {request.model.discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
     request = replace(request, scene=scene)
-    result = _assemble_result(request, np.array(cases), collector.cases(), _mode_error(samples), provenance)
-    missed = () if basis else warn_of_missed_modes(result.mode_error, request.tolerance, str(request.basis))
-    return replace(result, warnings=(*result.warnings, *missed, *collector.warnings))
+    result = _assemble_result(request, np.array(cases), found, mode_error, provenance)
+    missed = () if basis else warn_of_missed_modes(result.mode_error, request.tolerance, request.basis_name)
+    return replace(result, warnings=(*result.warnings, *missed, *runner.warnings))
 
 
-def _split(speeds: tuple[float, ...], size: int) -> list[tuple[float, ...]]:
-    return [speeds[k : k + size] for k in range(0, len(speeds), size)]
+@dataclass(frozen=True)
+class _Chunk:
+    """Cases that a worker takes and the store keeps at once, by their speeds [rad/s]."""
+
+    request: SweepRequest
+    speeds: tuple[float, ...]
+
+
+def _solve(chunk: _Chunk) -> list[CaseResult]:
+    """What workers and executors run."""
+    return solve_chunk(chunk.request, chunk.speeds)
+
+
+def _solve_cases(
+    request: SweepRequest, speeds: tuple[float, ...], size: int, runner: TaskRunner
+) -> list[CaseResult]:
+    """Results of all cases, the fastest solved first: they take longest."""
+    found: dict[int, list[CaseResult]] = {}
+    parts = [speeds[k : k + size] for k in range(0, len(speeds), size)]
+    tasks = [Task(partial(_Chunk, request, part), len(part), k) for k, part in enumerate(parts)]
+    runner.run(_solve, tasks[::-1], found.__setitem__)
+    return [case for k in range(len(parts)) for case in found[k]]
 
 
 # Requests -----------------------------------------------------------------------------------------
@@ -246,28 +338,14 @@ def _check_request(
     )
 
 
-def _check_means(
-    workers: int, executor: Executor | None, store: str | Path | None, progress: Progress | None
-) -> None:
-    """Check how the cases are to be computed and kept."""
-    if executor is not None and not hasattr(executor, "submit"):
-        raise InvalidValue("executor", executor, "give an Executor, as in concurrent.futures")
-    if executor is not None and workers > 1:
-        raise InvalidValue("workers", workers, "an executor is given too", "give one of them")
-    if store is not None and not isinstance(store, str | PathLike):
-        raise InvalidValue("store", store, "give the name of a folder")
-    if progress is not None:
-        function("progress", progress, "it takes the numbers of finished speeds and of all")
-
-
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     """Raise a ValueError for a case that passes the critical speed, or a motion that ends early."""
     model, t = request.model, np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = np.inf if request.scene.physics.large_deflection else model.solver.critical_speed
-    fastest = np.array([np.abs(motion.at(t).speed).max() for motion in request.motions(speeds)])
+    fastest = np.array([np.abs(motion.at(t).speed).max() for motion in map(request.motion, speeds)])
     if (fastest >= critical).any():
         past = np.array(speeds)[fastest >= critical]
-        raise ValueError(
+        raise NoModelAnswer(
             f"speeds: {len(past)} of {len(speeds)} ({list_range(past)}) pass the critical speed "
             f"{critical:.6g} rad/s, where the beam buckles and linear theory does not hold; leave them out"
         )
@@ -280,33 +358,105 @@ def _smallest_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBa
 
 def _end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
     """The slowest and the fastest speed of all cases [rad/s], one where they are the same."""
-    ends = [find_speed_range(motion, request.t_end) for motion in request.motions((speeds[0], speeds[-1]))]
+    ends = [
+        find_speed_range(motion, request.t_end) for motion in map(request.motion, (speeds[0], speeds[-1]))
+    ]
     return np.unique([ends[0][0], ends[1][-1]])
 
 
+@contextmanager
+def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
+    """Call a function in a thread of its own, with an event that is set if its result is wanted no more.
+
+    An error meanwhile, such as an interrupt, sets it and does not wait for the end of the function.
+    """
+    thread, unwanted = ThreadPoolExecutor(1), Event()
+    try:
+        yield thread.submit(function, *given, unwanted)
+    except BaseException:
+        unwanted.set()
+        raise
+    finally:
+        thread.shutdown(wait=False, cancel_futures=True)
+
+
+def _list_samples(speeds: tuple[float, ...]) -> list[float]:
+    """Speeds [rad/s] at which `mode_error` is estimated: the slowest that moves, the fastest, and between."""
+    slowest = min(1, len(speeds) - 1) if speeds[0] == 0 else 0
+    return sorted({speeds[max(slowest, k * (len(speeds) - 1) // 4)] for k in range(5)})
+
+
 @one_blas_thread()
-def _run_samples(
-    request: SweepRequest, speeds: tuple[float, ...], run: Callable[[TransientRequest], Transient]
-) -> list[Transient]:
-    """Run the transients at the fastest, the middle and the speed between, to estimate `mode_error`."""
-    some = sorted({speeds[k * (len(speeds) - 1) // 4] for k in (2, 3, 4)})
-    return [run(request.transient_request(motion)) for motion in request.motions(some)]
-
-
 def _choose_basis(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Run the samples in the smallest basis of each, or in the best if these are of different speeds."""
-    samples = _run_samples(request, speeds, TransientRequest.run_smallest_basis)
-    families = {run.request.basis.speeds for run in samples}
-    if len(families) == 1:
+    """Run the samples in bases that suffice, each beginning with one mode fewer than the one before needed.
+
+    If some take modes at their speeds and others at rest, all run in one basis: at rest if that keeps the
+    tolerance, as this takes fewer coordinates; else at their speeds if that does, or else in the better.
+    """
+    samples, basis = [], request.basis
+    for speed in _list_samples(speeds):
+        samples.append(run_smallest_basis(replace(request, basis=basis).transient_request(speed)))
+        needed = samples[-1].request.basis
+        if needed.is_at_rest == basis.is_at_rest:
+            basis = replace(basis, modes=max(FEWEST_MODES, (needed.modes or 0) - 1))
+    if len({run.request.basis.is_at_rest for run in samples}) == 1:
         return samples
-    most = max(run.request.basis.modes or 0 for run in samples)
-    candidates = (replace(request, basis=ModalBasis(most, family)) for family in sorted(families))
-    return min((_run_samples(each, speeds, TransientRequest.run) for each in candidates), key=_mode_error)
+    most, tried = _most_modes(samples), []
+    for each in (ModalBasis(most), replace(request.basis, modes=most)):
+        tried.append(_run_in_basis(replace(request, basis=each), speeds, samples))
+        if _mode_error(tried[-1]) <= request.tolerance:
+            break
+    return min(tried, key=_mode_error)
 
 
-def _mode_error(runs: Sequence[Transient]) -> float:
+@one_blas_thread()
+def _run_in_basis(
+    request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient]
+) -> list[Transient]:
+    """Run the samples again in the basis of the request, but for those that were."""
+    runs = []
+    for speed, run in zip(_list_samples(speeds), samples, strict=True):
+        basis = request.basis_at(speed)
+        same = (run.request.basis, run.request.tolerance) == (basis, request.tolerance)
+        runs.append(run if same else replace(run.request, basis=basis, tolerance=request.tolerance).run())
+    return runs
+
+
+def _request_with_basis(
+    request: SweepRequest, speeds: tuple[float, ...], runs: list[Transient]
+) -> SweepRequest:
+    """The request with the modal bases of its samples."""
+    at_rest = runs[0].request.basis.is_at_rest
+    basis = ModalBasis(_most_modes(runs), (0.0,) if at_rest else request.basis.speeds)
+    modes = [run.request.basis.modes or 0 for run in runs]
+    return replace(request, basis=basis, modes_at=tuple(zip(_list_samples(speeds), modes, strict=True)))
+
+
+def _most_modes(runs: Sequence[Transient]) -> int:
+    """Largest number of modes of some runs."""
+    return max(run.request.basis.modes or 0 for run in runs)
+
+
+def _mode_error(runs: Iterable[Transient]) -> float:
     """Largest modal truncation error of the runs, relative to the largest deflection of each."""
     return max((run.relative_mode_error for run in runs), default=0.0)
+
+
+@one_blas_thread()
+def _find_mode_error(
+    request: SweepRequest,
+    speeds: tuple[float, ...],
+    samples: Sequence[Transient] | None,
+    unwanted: Event,
+) -> float:
+    """Modal truncation error of the samples, which are run unless they are given, as long as it is wanted."""
+
+    def is_wanted(_: object) -> bool:
+        return not unwanted.is_set()
+
+    wanted = takewhile(is_wanted, _list_samples(speeds))
+    runs = samples or (request.transient_request(speed).run() for speed in wanted)
+    return _mode_error(takewhile(is_wanted, runs))
 
 
 def _check_sendable(request: SweepRequest, importable: bool) -> None:

@@ -115,6 +115,40 @@ class ModalSystem:
             lines=abs(speed) * np.array([1.0, *(line.multiple for line in self.motion.lines)]),
         )
 
+    def about_mean(self, start: float, end: float) -> ModulatedSystem | None:
+        """Split the equations from start to end [s] into those of the mean motion, and what varies about it.
+
+        None if damping or gyroscopic terms vary.
+        """
+        stiffness, damping, _ = self.equations.matrices
+        if not set(damping) <= {"unity"}:
+            return None
+        sampled = self.root(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
+        mean = RootMotion(*(getattr(sampled, f.name).mean() for f in fields(RootMotion)))
+        C, K, _ = self.assemble(mean)
+        varying: list[Quantity] = [name for name in stiffness if np.ptp(getattr(sampled, name))]
+        loads = self.equations.vectors
+
+        def slow(t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
+            each = (None if A is None else np.broadcast_to(A, (*t.shape, *A.shape)) for A in (C, K))
+            damped, stiff = each
+            assert stiff is not None
+            return damped, stiff
+
+        def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            now = self.root(t)
+            e = [getattr(now, name) - getattr(mean, name) for name in varying]
+            return _stack(e, t.shape), _stack([getattr(now, name) for name in loads], t.shape)
+
+        return ModulatedSystem(
+            slow=slow,
+            steady=True,
+            G=np.array([stiffness[name] for name in varying]).reshape(-1, self.size, self.size),
+            P=np.array([*loads.values()]).reshape(-1, self.size),
+            scalars=scalars,
+            lines=np.empty(0),
+        )
+
     def _about_fixed_centre(self, sample: MotionSample) -> RootMotion:
         """Motion of the root about a fixed centre without gravity, which follows the speed."""
         still = MotionSample(np.zeros(()), sample.speed, sample.acceleration, np.zeros(3))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, TypeAlias
@@ -121,13 +121,13 @@ def magnitude(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
     return np.hypot.reduce([np.abs(q @ output) for output in outputs])
 
 
-def largest_deflection(tips: np.ndarray, path: Path, start: float, end: float) -> float:
-    """Find the largest magnitude of a tip deflection (d, n) per unit of each coordinate: `largest_on`."""
-    return largest_on(lambda q: magnitude(q, tips), path, start, end)
-
-
 def largest_on(size_of: Size, path: Path, start: float, end: float) -> float:
-    """Find the largest magnitude of the tip's deflection on a path in a time window, also between samples.
+    """Find the largest magnitude of the tip's deflection in one time window: see `largest_in_each`."""
+    return largest_in_each(size_of, path, [(start, end)])[0]
+
+
+def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, float]]) -> list[float]:
+    """Find the largest magnitude of the tip's deflection on a path in time windows, also between samples.
 
     Parameters
     ----------
@@ -135,26 +135,34 @@ def largest_on(size_of: Size, path: Path, start: float, end: float) -> float:
         Magnitude (k,) of the deflection [m] at coordinates (k, n).
     path : Path
         The coordinates over time.
-    start, end : float
-        Beginning and end of the window [s].
+    windows : sequence of tuple of float
+        Beginning and end of each window [s].
 
     Returns
     -------
-    float
-        Largest magnitude [m], from refining the highest maxima of the samples.
+    list of float
+        Largest magnitude in each window [m], from refining the highest maxima of the samples.
     """
     times, q, _ = path.samples
-    inside = (times >= start) & (times <= end)
-    size = size_of(q[inside])
-    ends = np.array([start, end])
-    t = np.concatenate([times[inside][_find_highest_maxima(size)], ends])
-    half_width = np.diff(times).max()
+    size = size_of(q)
+    t = np.array([_candidates(times, size, *window) for window in windows])
+    start, end = np.array(windows).T[:, :, None, None]
+    half_width, found = np.diff(times).max(), np.empty(0)
     for _ in range(_REFINEMENTS):
-        near = np.clip(t[:, None] + np.linspace(-half_width, half_width, 35), start, end)
-        size = size_of(path.at(near.ravel())[0]).reshape(near.shape)
-        highest = np.argsort(size.max(axis=1))[-_REFINED:]  # the first refinement tells them from the others
-        t, half_width = near[highest, size[highest].argmax(axis=1)], half_width / 17
-    return float(size.max())
+        near = np.clip(t[:, :, None] + np.linspace(-half_width, half_width, 35), start, end)
+        found = size_of(path.at(near.ravel())[0]).reshape(near.shape)
+        highest = np.argsort(found.max(axis=2))[:, -_REFINED:]  # the first refinement tells which these are
+        best = np.take_along_axis(found.argmax(axis=2), highest, axis=1)
+        near = np.take_along_axis(near, highest[:, :, None], axis=1)
+        t, half_width = np.take_along_axis(near, best[:, :, None], axis=2)[:, :, 0], half_width / 17
+    return found.max(axis=(1, 2)).tolist()
+
+
+def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Times of the highest samples in a window and its ends, some perhaps twice: shape (_CANDIDATES + 2,)."""
+    first, last = np.searchsorted(times, start), np.searchsorted(times, end, side="right")
+    highest = times[first + _find_highest_maxima(size[first:last])]
+    return np.concatenate([highest, np.full(_CANDIDATES - len(highest), start), [start, end]])
 
 
 def _find_highest_maxima(size: np.ndarray) -> np.ndarray:

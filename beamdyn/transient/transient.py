@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from scipy.integrate import OdeSolver
 
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, real, real_array
+from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import check_direction, modelled_directions
@@ -25,30 +26,29 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelErro
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
+from beamdyn.transient.along_path import distance_along_path
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.initial_state import initial_state
 from beamdyn.transient.integration import integrate
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.limits import check_growth, check_motion
-from beamdyn.transient.missed_tolerance import warn_of_missed_modes, warn_of_missed_steps
+from beamdyn.transient.missed_tolerance import warn_of_missed_steps
 from beamdyn.transient.model_of_basis import choose_for_basis
 from beamdyn.transient.root_strain import RootStrain
-from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
 from beamdyn.transient.step_size import TooManySteps, follow_steps
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import SAMPLES, Path, Size, Trajectory, largest_on
+from beamdyn.transient.tip_deflection import in_direction, magnitude_of, sample_tip
+from beamdyn.transient.trajectory import Path, Size, Trajectory, largest_on
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from scipy.integrate import OdeSolver
 
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
 _STRAIN_MARGIN = 3.0  # error of the root strain over its distance from the refined run
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
-_COMPUTED = "refined", "with_more_modes", "mode_error"  # what a copy with further warnings keeps
-_MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
-_SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
-_FAST = 4.0
-_TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried as well
+_MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
+_COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"  # what a copy with further warnings keeps
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,14 @@ class Transient(StatesModelError):
     Notes
     -----
     The modal truncation error is `mode_error`, which takes a second motion at its first use.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=1.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> run = bd.simulate(bd.Scene(strip, bd.Mount(radius=0.215), wheel), t_end=2.0, modes=2)
+    >>> run.time_error < 1e-5 * run.largest, run.t.shape == run.tip.shape
+    (True, True)
     """
 
     t: np.ndarray
@@ -94,10 +102,23 @@ class Transient(StatesModelError):
     path: Path = field(repr=False)
     request: TransientRequest = field(repr=False)
 
+    judged_by_solving: ClassVar[bool] = True
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        error = f"time {error_at_most(self.time_error / (self.largest or 1.0))}"
+        yield from (f"{number(self.path.end, 's')}: up to {self.say_length(self.largest)}", error)
+        yield warned(self.warnings)
+
     @property
     def scene(self) -> Scene:
         """Scene."""
         return self.request.scene
+
+    def without_waiting(self) -> Transient:
+        """The same; its modal truncation error, too, is left out if it was not asked for."""
+        vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
+        return shown
 
     @cached_property
     def refined(self) -> Transient | None:
@@ -119,16 +140,28 @@ class Transient(StatesModelError):
     def mode_error(self) -> float:
         """Estimated modal truncation error of the tip deflection [m]: twice its distance from `refined`.
 
-        Unless `refined` has been computed, its modes are integrated in the steps of this run if they do.
+        Unless `refined` has been computed, the distance is found along the path of this run, or else its
+        modes are integrated in the steps of this run, where these ways do.
 
         The factor of two covers the error of `refined` itself: on random runs it was less than half of the
         distance (benchmark of the coverage of transients).  Infinite if there is no larger model that fits
         into memory, or if the distance is so large that the error of `refined` is unknown.
         """
-        if self.with_more_modes is None:
-            return np.inf
-        difference = self._distance(*self.with_more_modes)
+        difference = self._distance_along_path()
+        if difference is None:
+            if self.with_more_modes is None:
+                return np.inf
+            difference = self.distance_from_path(*self.with_more_modes)
         return np.inf if difference > _LIMIT_DIFFERENCE * self.largest else 2 * difference
+
+    def _distance_along_path(self) -> float | None:
+        """Distance from `refined` [m], found along the path; None where that takes a motion of its own."""
+        system, path = self.system, self.path
+        if not (isinstance(system, ModalSystem) and isinstance(path, Trajectory)) or self.time_error == 0:
+            return None
+        if not _MOTIONS_WITH_MORE_MODES.isdisjoint(self.__dict__):
+            return None
+        return self.request.distance_with_more_modes(path, system)
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
@@ -149,15 +182,17 @@ class Transient(StatesModelError):
 
     def distance_from(self, other: Transient) -> float:
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
-        return self._distance(other.system, other.path)
+        return self.distance_from_path(other.system, other.path)
 
-    def _distance(self, system: ModalSystem | ElasticaSystem, path: Path) -> float:
+    def distance_from_path(self, system: ModalSystem | ElasticaSystem, path: Path) -> float:
         """Largest difference of the tip deflection from that of another motion of the same scene [m]."""
-        (t, q, _), (other_t, other_q, _) = self.path.samples, path.samples
+        t, q, _ = self.path.samples
+        own = self.system.deflections(q)
+        other_t, other = sample_tip(system, path)
         if not np.array_equal(t, other_t):
             some = slice(None, None, 1 + len(t) // _TIMES_COMPARED)
-            q, other_q = q[some], path.at(t[some])[0]
-        return float(magnitude_of(self.system.deflections(q) - system.deflections(other_q)).max())
+            own, other = own[some], system.deflections(path.at(t[some])[0])
+        return float(magnitude_of(own - other).max())
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, `mode_error` included."""
@@ -266,7 +301,8 @@ class Transient(StatesModelError):
         from beamdyn.output.plots import plot_transient
 
         names = modelled_directions(self.scene)
-        return plot_transient(self.t, np.array([self.tip, self.tip_across][: len(names)]), ax, names)
+        tips = np.array([self.tip, self.tip_across][: len(names)])
+        return plot_transient(self.t, tips, ax, names, self.display_units)
 
     def export(
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
@@ -278,18 +314,6 @@ class Transient(StatesModelError):
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)
         write_series(path, x, t, self.shape(x, t), force=force, across=self.shape(x, t, 1))
-
-
-def magnitude_of(deflections: np.ndarray) -> np.ndarray:
-    """Magnitude (...) of deflections in each direction (..., 1 or 2)."""
-    return np.hypot.reduce(np.abs(np.moveaxis(deflections, -1, 0)))
-
-
-def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
-    """Deflection (...) in a direction, from those in each (..., 1 or 2); 0 where that is not modelled."""
-    if direction >= deflections.shape[-1]:
-        return np.zeros(deflections.shape[:-1])
-    return deflections[..., direction]
 
 
 def _check_window(start: float, end: float, path: Path) -> None:
@@ -363,7 +387,15 @@ class TransientRequest(FieldsOnly):
 
     def run_refined(self) -> Transient | None:
         """Integrate by Gauss collocation with more modes; None if there is no larger model or no solution."""
-        request = self._refined()
+        return self._run_or_none(self._refined())
+
+    def run_with_one_more(self) -> Transient | None:
+        """Integrate with one more mode; None if there is no larger model or no solution."""
+        basis = None if self.basis.modes is None else self.basis.with_one_more()
+        return self._run_or_none(basis and self._with_basis(basis))
+
+    @staticmethod
+    def _run_or_none(request: TransientRequest | None) -> Transient | None:
         try:
             return request and request.run()
         except (ArithmeticError, TooManySteps):  # it grows without bound, or is too long, with more modes
@@ -375,7 +407,7 @@ class TransientRequest(FieldsOnly):
         Two runs in the same steps differ by the modes of one of them; neither needs an error of its own.
         Where the steps are too long for what the further modes do, those of `run_refined` are taken.
         """
-        request = self._refined()
+        request = self._refined_of_same_functions()
         if request is None:
             return None
         system = request._system(request.model)
@@ -384,43 +416,44 @@ class TransientRequest(FieldsOnly):
             finer, error = follow_steps(path, system, initial_state(request.initial, system), self.tolerance)
         except (ArithmeticError, TooManySteps):
             return None
-        largest = float(magnitude_of(system.deflections(finer.samples[1])).max())
+        largest = float(magnitude_of(sample_tip(system, finer)[1]).max())
         if not error <= self.tolerance * largest < np.inf:
             run = self.run_refined()
             return run and (run.system, run.path)
         return system, finer
+
+    def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
+        """Distance of the tip from that with the modes of `run_refined` [m], found along a path; or None."""
+        request = self._refined_of_same_functions()
+        if request is None:
+            return None
+        system = request._system(request.model)
+        assert isinstance(system, ModalSystem)
+        states = (initial_state(each.initial, s) for each, s in ((self, own), (request, system)))
+        return distance_along_path(path, own, system, *states)
+
+    def _refined_of_same_functions(self) -> TransientRequest | None:
+        """As `_refined`, of the functions of this request if these suffice: no choice takes time."""
+        request = self._refined()
+        if request is None or request.basis.modes is None:
+            return request
+        own = self.model.discretization
+        same = ensure_size(self.scene, own, request.basis.modes) is own
+        return replace(request, discretization=own) if same else request
 
     def _refined(self) -> TransientRequest | None:
         """Request with more modes, or a finer discretization where the basis has all modes; None if none."""
         base = replace(self, method="auto", t_eval=None)
         return base._with_finer_discretization() if self.basis.modes is None else base._with_more_modes()
 
-    def run_smallest_basis(self) -> Transient:
-        """Integrate with the smallest basis that meets the tolerance, else with the best that is known."""
-        run = replace(self, method="auto", t_eval=None)._search()
-        if run.relative_mode_error > self.tolerance and self.tolerance < _TIGHT:
-            # Accurate steps leave less work for modes: with coarser ones the whole error may be smaller.
-            coarse = replace(self, method="auto", t_eval=None, tolerance=_TIGHT)._search()
-            run = min(run, coarse, key=lambda run: run.time_error + run.mode_error)
-        missed = tuple(warn_of_missed_modes(run.relative_mode_error, self.tolerance, str(run.request.basis)))
-        as_requested = self.method == "auto" and self.t_eval is None
-        run = run if as_requested else replace(self, basis=run.request.basis).run()
-        return run.with_warnings(missed) if missed else run
-
-    def _search(self) -> Transient:
-        """Add modes until the truncation error meets the tolerance, or takes too much work."""
-        run = self.run()
-        if run.mode_error > self.tolerance * run.largest and run.refined is not None:
-            # A sudden motion excites many modes: as many modes at rest may then be the better basis.
-            at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
-            run = at_rest if at_rest.distance_from(run.refined) < run.distance_from(run.refined) else run
-        return _add_modes(run, self.tolerance)
-
     def _with_more_modes(self) -> TransientRequest | None:
         """Request with more modes, by "ritz" if the discretization has too few functions; or None."""
         basis = self.basis.refined()
-        if basis is None or basis.modes is None or self.basis.modes is None:
-            return None
+        return basis and self._with_basis(basis)
+
+    def _with_basis(self, basis: ModalBasis) -> TransientRequest:
+        """Request with a larger basis, by "ritz" if the discretization has too few functions."""
+        assert basis.modes is not None and self.basis.modes is not None
         initial = self._pad_initial(self.basis.modes, basis.modes)
         discretization = ensure_size(self.scene, self.discretization, basis.modes)
         return replace(self, basis=basis, discretization=discretization, initial=initial)
@@ -445,6 +478,8 @@ class TransientRequest(FieldsOnly):
         """Integrate: the path, its time-integration error [m], and the integrator's name."""
         if self.method == "auto":
             return integrate(system, y0, self.t_end, self.tolerance)
+        from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
+
         name = self.method if isinstance(self.method, str) else self.method.__name__
         path = integrate_by_solve_ivp(system, y0, self.t_end, self.method, self.tolerance, self.options)
         return path, np.nan, name
@@ -455,22 +490,6 @@ class TransientRequest(FieldsOnly):
             return self.initial
         parts = np.reshape(self.initial, (-1, modes))
         return np.hstack([parts, np.zeros((len(parts), more - modes))]).ravel()
-
-
-def _add_modes(run: Transient, tolerance: float) -> Transient:
-    """Refine a run until its truncation error meets the tolerance, while that is known and takes seconds."""
-    before = np.inf
-    while run.mode_error > tolerance * run.largest and (finer := run.refined) is not None:
-        most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
-        if _work(finer) > most or finer.with_more_modes is None:
-            break
-        run, before = finer, run.mode_error
-    return run
-
-
-def _work(run: Transient) -> float:
-    """Steps times squared number of coordinates, to which the time of a run is roughly proportional."""
-    return len(run.path.samples[0]) / SAMPLES * run.system.size**2
 
 
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:

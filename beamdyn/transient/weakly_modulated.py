@@ -34,7 +34,9 @@ _SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closel
 _SAMPLES = 257  # of e, for its largest value
 _NEGLIGIBLE = 1e-3  # share of an accuracy
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
+_SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # steps solved as one batch
+_SAMPLED = 16 * _STEPS  # steps at whose nodes e and g are evaluated at once: calls cost more than numbers
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ class _StepMapSeries:
         P, s, n = len(self.Y), len(self.table.c), self.size
         ends = increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
         W = self.R - self.Z @ self.X0[:, None]
-        return np.moveaxis(ends, 2, 1), W.reshape(P, len(self.Z), s, n, -1)
+        return np.moveaxis(ends, 2, 1), W.reshape(P, len(self.Z), s, n, W.shape[-1])
 
     def first(self) -> np.ndarray:
         """Factors of e_k, k = (m, node), in the maps to the end of a step: shape (P, m s, 2 n, :)."""
@@ -224,6 +226,8 @@ class _Expansion:
         parts = zip((*self.maps, self.X0, self.Y), self.sizes, self.allowed, strict=True)
         fewer = (_localize(values, size, allowed, start, end) for values, size, allowed in parts)
         *maps, X0, Y = fewer
+        if self.sizes[2].sum() * _SINGLE_ROUNDING <= self.allowed[2]:
+            maps[2] = maps[2].astype(np.float32)
         return _Block(tuple(maps), X0, Y, self.point)
 
 
@@ -242,16 +246,22 @@ class _Block:
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
-        orders = zip(_monomials_by_order(e), self.maps, strict=True)
-        factors = [_products(T, monomials, values) for monomials, values in orders]
-        shape = self.maps[0].shape[2:]
-        flat = [values.reshape(-1, shape[0] * shape[1]) for values in self.maps]
-        return (np.concatenate(factors, axis=1) @ np.concatenate(flat)).reshape(len(e), *shape)
+        *monomials, squares = _monomials_by_order(e)
+        *maps, second = (values.reshape(-1, *values.shape[2:]) for values in self.maps)
+        factors = [_products(T, each, values) for each, values in zip(monomials, self.maps, strict=False)]
+        shape = second.shape[1:]
+        found = np.concatenate(factors, axis=1) @ np.concatenate(maps).reshape(-1, shape[0] * shape[1])
+        kind = second.dtype  # of single precision where that suffices
+        factor = _products(T.astype(kind), squares.astype(kind), self.maps[2])
+        found += factor @ second.reshape(-1, shape[0] * shape[1])
+        return found.reshape(len(e), *shape)
 
     def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Accelerations at the nodes, (N, s n), as `steps`, for z (N, 2 n + s l)."""
         R, Z, n = self.point.R, self.point.Z, self.point.size
-        factor = np.repeat(e.reshape(len(e), len(Z), -1).swapaxes(0, 1), n, axis=2)  # (m, N, s n)
+        factor = np.repeat(
+            e.reshape(len(e), len(Z), len(self.point.table.c)).swapaxes(0, 1), n, axis=2
+        )  # (m, N, s n)
         total = _evaluate(self.X0, T, z)
         more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
         first = _evaluate(self.Y, T, more)
@@ -367,10 +377,15 @@ def propagate_modulated(
         return None
     state, acceleration = np.empty((steps + 1, 2 * n + 1)), np.empty((steps, stages, n))
     state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    all_e = all_g = np.empty(0)
     for first in range(0, steps, _STEPS):
         block = slice(first, min(first + _STEPS, steps))
         k = np.arange(block.start, block.stop)
-        e, g = system.scalars(t0 + h * (k[:, None] + table.c))
+        if first % _SAMPLED == 0:
+            sampled = np.arange(first, min(first + _SAMPLED, steps))
+            all_e, all_g = system.scalars(t0 + h * (sampled[:, None] + table.c))
+        here = slice(first % _SAMPLED, first % _SAMPLED + len(k))
+        e, g = all_e[here], all_g[here]
         if steps * (expansion.ratio * np.abs(e).max(axis=(0, 1))).sum() ** 3 > accuracy:
             return None
         start, end = (2 * x / max(steps - 1, 1) - 1 for x in (int(k[0]), int(k[-1])))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
 from typing import Any, ClassVar, Generic, TypeVar
@@ -14,8 +15,10 @@ from pydantic import BaseModel
 from rich.console import RenderableType
 
 from beamdyn._version import __version__
-from beamdyn.common.app.screens import Handle, Slider
+from beamdyn.common.app.screens import Handle, KeyResult, Slider
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
+from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import parse, read, validated
 from beamdyn.common.edge.input_sweep import (
     MOST_AT_ONCE,
@@ -34,8 +37,10 @@ from beamdyn.common.edge.input_sweep import (
 )
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.one_line import counted, error_at_most
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results import Provenance, Result, plain
+from brakes.answers.tables import format_number
 from brakes.config.sweeps import numeric_inputs, with_arrays
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
@@ -55,6 +60,13 @@ class Answer(Result, ABC):
 
     design: BaseModel
     provenance: Provenance | None = field(default=None, kw_only=True)
+
+    def headline(self) -> Iterator[str]:
+        """What its parts say in one line, and its error; see `Result.headline`."""
+        parts = (getattr(self, each.name) for each in fields(self))
+        said = (line for part in parts if isinstance(part, Result) for line in part.headline())
+        yield from dict.fromkeys((*said, error_at_most(self.error)))
+        yield counted(len(self.refusals), "refusal") if self.refusals else ""
 
     @property
     @abstractmethod
@@ -103,8 +115,16 @@ class Answer(Result, ABC):
             Place of the screen's slider; if not given, the picture of the command and the HTML report.
         """
 
+    def drawings(self, place: float) -> Rows:
+        """Drawings of the machine, row by row, with the slider at a place; none if it is not drawn."""
+        return ()
+
+    def curves(self, place: float) -> Figure | None:
+        """What the figure shows beside its drawings, with the slider at a place."""
+        return None
+
     def handles(self, place: float) -> Sequence[Handle]:
-        """Points of the figure's first axes that can be moved there, with the slider at a place."""
+        """Points of the first drawing that can be moved there, with the slider at a place."""
         return ()
 
 
@@ -163,7 +183,7 @@ class BrakeType(ABC, Generic[FileModel]):
        `section_of` makes the table of the file, or `Quantity` in a `Section` where there is no such class.
        ``brakes/config/name.py`` has the `Section` with a field for each table.  The form, the inputs that
        can be swept and the messages about mistakes follow from it; `keep_checked` checks the core's fields.
-    3. ``brakes/drawings/name.py`` draws the result.
+    3. ``brakes/drawings/name.py`` draws the result: the machine as a `Drawing`, curves by matplotlib.
     4. ``brakes/answers/name.py`` derives from `Answer` and from `BrakeType`, sets the attributes below and
        writes `solve` and `outputs`; the answer's `values` go into JSON, with inputs, `error` and provenance.
        Where the mechanics takes arrays derive from `ArrayBrakeType`, which sweeps all cases at once, else
@@ -202,6 +222,8 @@ class BrakeType(ABC, Generic[FileModel]):
         Further drawings: answer in, figure out.
     most_cases : int
         Cases of a sweep that are solved.
+    key_results : tuple of (words, name)
+        The outputs that stand first on its screen, and what they are called there.
     """
 
     name: ClassVar[str]
@@ -216,10 +238,25 @@ class BrakeType(ABC, Generic[FileModel]):
     slider: Slider | None = None
     more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
     most_cases: int = MOST_ONE_BY_ONE
+    key_results: tuple[tuple[str, str], ...] = ()
+
+    def headline(self, answer: Answer) -> Iterator[KeyResult]:
+        """The results that stand first on the screen; without key results the first outputs."""
+        outputs = {output.name: output for output in self.outputs(answer.design)}  # type: ignore[arg-type]
+        first = tuple((output.words, name) for name, output in [*outputs.items()][:2])
+        for words, name in self.key_results or first:
+            value = float(outputs[name].shown(answer))
+            if not math.isnan(value):
+                unit = outputs[name].unit if math.isfinite(value) else ""
+                yield KeyResult(words, f"{format_number(value)} {unit}".rstrip())
 
     @abstractmethod
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
         """Design that tables describe; raises `ConfigError` with all mistakes."""
+
+    def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Tables of a design that is drawn the same and solved sooner."""
+        return tables
 
     @abstractmethod
     def solve(self, design: FileModel) -> Answer:
@@ -310,7 +347,7 @@ class BrakeType(ABC, Generic[FileModel]):
         axes = [parse_axis(inputs, text, options[0]) for text in texts]
         check_designs(designs_of(axes, combine), self.most_cases, options[0])
         asked = SweepRequest(design, tables, axes, combine, run)
-        made, warnings = self.sweep_cases(asked, [*wanted, _ERROR])
+        made, warnings = self.sweep_cases(asked, [*wanted, ERROR])
         return self._without_error(made, plain(design.model_dump()), start), warnings
 
     def _without_error(self, made: InputSweep, design: dict[str, Any], start: float) -> BrakeSweep:
@@ -321,7 +358,7 @@ class BrakeType(ABC, Generic[FileModel]):
         return BrakeSweep(**given | shown | more)
 
 
-_ERROR = Output("error", "relative error", lambda answer: answer.error)
+ERROR = Output("error", "relative error", lambda answer: answer.error)
 
 
 class ArrayBrakeType(BrakeType[FileModel]):
@@ -352,9 +389,30 @@ class ArrayBrakeType(BrakeType[FileModel]):
         """Results from one answer whose numbers are arrays."""
         designs = designs_of(asked.axes, asked.combine)
         in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
-        answer = self.solve(with_arrays(asked.design, in_si.columns()))
-        values = [output.shown(answer) for output in outputs]
-        return swept(designs, outputs, values, answer.refusals), (*answer.warnings, *answer.refusals)
+        answer, rows, refused = self._solve_accepted(asked.design, in_si)
+        values = np.full((len(outputs), designs.count), np.nan)
+        if answer is not None:
+            values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
+        more = () if answer is None else answer.refusals
+        made = swept(designs, outputs, [*values], more, refused)
+        return made, (*(() if answer is None else answer.warnings), *made.warnings)
+
+    def _solve_accepted(
+        self, design: FileModel, designs: Designs
+    ) -> tuple[Answer | None, np.ndarray, dict[int, str]]:
+        """Answer to the designs that are not refused, their rows (M,), and why others are, by row."""
+        columns, rows, refused = designs.columns(), np.arange(designs.count), dict[int, str]()
+        while rows.size:
+            try:
+                given = {name: values[rows] for name, values in columns.items()}
+                return self.solve(with_arrays(design, given)), rows, refused
+            except InvalidValue as error:
+                bad = error.by_case()
+                if error.cases is None or error.cases.bad.shape != rows.shape:
+                    raise  # it is no matter of the designs
+                refused.update((int(rows[i]), str(each)) for i, each in bad.items())
+                rows = rows[~error.cases.bad]
+        return None, rows, refused
 
 
 class TableBrakeType(BrakeType[FileModel]):
@@ -368,7 +426,7 @@ class TableBrakeType(BrakeType[FileModel]):
     def solve_task(self, task: CaseTask) -> SolvedCases:
         """Solve the cases of a task, here or in a worker."""
         outputs = self.outputs(self.read(task.tables, self.name))
-        return solve_cases(task, [*outputs, _ERROR], self._solve_determined)
+        return solve_cases(task, [*outputs, ERROR], self._solve_determined)
 
     def _solve_determined(self, tables: Mapping[str, Any]) -> Answer:
         answer = self.solve(self.read(tables, self.name))

@@ -15,6 +15,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Slider
 from beamdyn.common.described import descriptions
+from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
 from beamdyn.common.edge.input_sweep import Output, numbers
 from beamdyn.common.edge.inputs import Input
@@ -36,11 +37,12 @@ from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFrictio
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
-from brakes.drawings.caliper import caliper_figure
-from brakes.planar import AssemblyError, Mechanism, OutOfReachError, solve
+from brakes.drawings.caliper import caliper_drawing, caliper_figure, curves_figure, title_of
+from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.diagnosis import join_names
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
+_AT_STOPS = 11  # positions of a stroke at which the slider stops
 _STROKE_HEADS = (
     *("cable", "finger", "right pad", "left pad"),
     *("right force", "left force", "both", "left/right"),
@@ -113,7 +115,7 @@ class CaliperAnswer(PlanarAnswer):
         rubs = given.friction or caliper.free.friction
         return cls(
             design,
-            caliper.equilibrium(end, given.finger),
+            caliper.equilibrium_after(run),
             run.motion,
             caliper,
             run,
@@ -235,13 +237,30 @@ class CaliperAnswer(PlanarAnswer):
 
     def figure(self, place: float | None = None) -> Figure:
         """Open, and at a part of the stroke from 0 to 1 with forces; curves over the stroke."""
+        cable, closed = self._closed_at(1.0 if place is None else place)
+        return caliper_figure(self.caliper, self.run, closed, cable, self._caption(cable))
+
+    def drawings(self, place: float) -> Rows:
+        """Open, and at a part of the stroke from 0 to 1 with forces."""
+        cable, closed = self._closed_at(place)
+        title = "\n".join(filter(None, (title_of(self.caliper, self.run, cable), self._caption(cable))))
+        return ((caliper_drawing(self.caliper, closed, title),),)
+
+    def curves(self, place: float) -> Figure:
+        """Advantage, ratio of the pads and reactions over the stroke."""
+        return curves_figure(self.caliper, self.run, self._closed_at(place)[0])
+
+    def _closed_at(self, place: float) -> tuple[float, Equilibrium]:
+        """Travel of the cable [m] at a part of the stroke from 0 to 1, and the equilibrium there."""
         run = self.run
-        if place is None or place >= 1:
-            caption = self._tensions(self.friction) if self.friction else ""
-            return caliper_figure(self.caliper, run, self.equilibrium, caption=caption)
+        if place >= 1:
+            return float(run.cable[-1]), self.equilibrium
         cable = float(np.interp(place, (0.0, 1.0), run.cable[[0, -1]]))
-        closed = self.caliper.equilibrium(cable, run.finger_force)
-        return caliper_figure(self.caliper, run, closed, cable)
+        return cable, self.caliper.equilibrium(cable, run.finger_force)
+
+    def _caption(self, cable: float) -> str:
+        """What friction does at the end of the stroke."""
+        return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 
 # From file to answer ------------------------------------------------------------------------------------
@@ -280,6 +299,14 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         if texts:
             raise ConfigError(source, [f"{part}: {_explain_list(tables[part])}" for part in texts], texts)
         return mechanism_from_dict(tables, source)
+
+    def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Fewer positions of the stroke, those at which the slider stops; no worn pads."""
+        run = dict(tables.get("run", {}))
+        points = run.get("points", _AT_STOPS)
+        run["points"] = min(points, _AT_STOPS) if isinstance(points, int) else points
+        run.pop("wear", None)
+        return {**tables, "run": run}
 
     def solve(self, design: CaliperInput | MechanismInput) -> PlanarAnswer:
         """Forces of a caliper over its stroke, or of a mechanism as drawn and over its stroke.
@@ -321,10 +348,22 @@ class CaliperType(MechanismType):
     title = "Caliper"
     purpose = "A bicycle's caliper over its stroke: travels, forces, and the reaction of every joint."
     sections = ("", "run", "dimensions", "stop")
+    key_results = (
+        ("both pads over finger", "total_advantage"),
+        ("travel of the finger", "finger_travel"),
+        ("left pad over right, velocity", "travel_symmetry"),
+        ("stopping distance", "stopping_distance"),
+    )
     needs = ("caliper", "title", "dimensions", "run", "stop")
     example_sweep = "dimensions.clearance=1:2:21 mm"
     sweep_results = "finger_travel"
     slider = Slider("stroke", ("open", "closed"), step=0.1)
+
+    def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Both ends of the stroke, of which the drawing asks no more; neither friction nor worn pads."""
+        run = {key: value for key, value in dict(tables.get("run", {})).items() if key != "wear"}
+        friction = {"friction": 0.0} if "friction" in run else {}
+        return {**tables, "run": {**run, "points": 2, **friction}}
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
         """Caliper that tables describe; without a name the message says which names there are."""

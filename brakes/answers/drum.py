@@ -11,12 +11,13 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Handle
+from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput
-from brakes.drawings.drum import brake_figure
+from brakes.drawings.drum import brake_figure, curves_figure, free_body
 from brakes.drum import BrakeResult
 
 _MM, _MPA = 1e-3, 1e6
@@ -103,6 +104,14 @@ class DrumAnswer(Answer):
         """Free bodies, pressures and factors."""
         return brake_figure(self.result)
 
+    def drawings(self, place: float) -> Rows:
+        """Free bodies; none of a locked brake."""
+        return () if self.refusals else ((free_body(self.result),),)
+
+    def curves(self, place: float) -> Figure:
+        """Pressures and factors."""
+        return curves_figure(self.result)
+
     def handles(self, place: float) -> Sequence[Handle]:
         """Lining, pin, force and drum of the first shoe; none of a locked brake, which is not drawn."""
         if self.refusals:
@@ -151,6 +160,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
     error_from = "residual moment of a shoe about the drum's centre, over force times arm"
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load")
+    key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
     example_sweep = "brake.friction=0.1:0.6:26"
     sweep_results = "torque,c_star,peak_pressure"
 

@@ -14,6 +14,9 @@ from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Handle, Slider
 from beamdyn.common.array_checks import Numbers
+from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.shapes import Drawing
+from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
@@ -22,8 +25,8 @@ from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.forklift import ForkliftInput, StageName
-from brakes.drawings.duo_servo import duo_servo, free_bodies
-from brakes.drawings.forklift import answer_figure, truck
+from brakes.drawings.duo_servo import duo_servo
+from brakes.drawings.forklift import answer_drawings
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
 _MM, _KN, _DEG = 1e-3, 1e3, pi / 180
@@ -169,13 +172,19 @@ class ForkliftAnswer(Answer):
 
     def figure(self, place: float | None = None) -> Figure:
         """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
-        if self.stages == ("vehicle",) and self.stop is not None:
-            return _draw_stop(self.stop)
-        if self.stages == ("kinematics",) and self.motion is not None and place is not None:
-            return _draw_motion(self.motion, place)
-        if self.stages == ("forces",) and self.forces is not None:
-            return _draw_forces(self.forces, self.kinematics)
-        return answer_figure(self.stop, self.kinematics, self.forces)
+        if self.stages == ("forces",) and self.forces is not None and self.forces.status != "equilibrium":
+            return _say(self.forces.message)
+        return figure_of(self.drawings(place) if place is not None else self._all_drawings())
+
+    def drawings(self, place: float) -> Rows:
+        """The same; of the kinematics alone the brake at a place of its two stages, from 0 to 2."""
+        if self.stages == ("kinematics",) and self.motion is not None:
+            return ((_motion_drawing(self.motion, place),),)
+        return self._all_drawings()
+
+    def _all_drawings(self) -> Rows:
+        shown = None if self.stages == ("forces",) else self.kinematics
+        return answer_drawings(self.stop, shown, self.forces, self.kinematics)
 
     def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
@@ -224,30 +233,18 @@ def _forces_table(forces: InternalForces, torque_from: str) -> RenderableType:
 # Drawings of one stage ----------------------------------------------------------------------------------
 
 
-def _draw_stop(stop: Stop) -> Figure:
-    """The truck on its slope."""
-    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
-    truck(figure.subplots(), stop)
-    return figure
-
-
-def _draw_motion(motion: ShoeMotion, progress: float) -> Figure:
+def _motion_drawing(motion: ShoeMotion, progress: float) -> Drawing:
     """The brake at a place of its two stages, from 0 to 2."""
-    figure = Figure(figsize=(7.0, 6.2), layout="constrained")
-    ax = duo_servo(figure.subplots(), motion.geometry, motion, progress)
     seated, turned = min(progress, 1.0), max(progress - 1.0, 0.0)
     shoes, drum = np.degrees((seated * float(motion.seating_turn), turned * float(motion.drum_turn)))
-    ax.set_title(f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg", fontsize=11)
-    return figure
+    title = f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg"
+    return duo_servo(motion.geometry, motion, progress, title)
 
 
-def _draw_forces(forces: InternalForces, followed: Kinematics | None) -> Figure:
-    """Both shoes as free bodies; of a brake without equilibrium the reason."""
-    figure = Figure(figsize=(10.0, 5.4), layout="constrained")
-    if forces.status == "equilibrium":
-        free_bodies(figure, forces, followed)
-    else:
-        figure.text(0.5, 0.5, forces.message, ha="center", va="center", wrap=True)
+def _say(message: str) -> Figure:
+    """Why a brake without equilibrium is not drawn."""
+    figure = Figure(figsize=(10.0, 5.4))
+    figure.text(0.5, 0.5, message, ha="center", va="center", wrap=True)
     return figure
 
 
@@ -354,6 +351,11 @@ class VehicleType(ForkliftType):
     sections = needs = ("truck", "stop")
     example_sweep = "stop.speed=10:30:21 km/h"
     sweep_results = "distance,torque_per_brake"
+    key_results = (
+        ("stopping distance", "distance"),
+        ("time to rest", "time"),
+        ("torque of each brake", "torque_per_brake"),
+    )
     stages = ("vehicle",)
 
 
@@ -367,6 +369,11 @@ class KinematicsType(ForkliftType):
     sections = needs = ("brake",)
     example_sweep = "brake.clearance=8:11:16 mm"
     sweep_results = "drum_turn,left_travel,lining_penetration"
+    key_results = (
+        ("the drum turns", "drum_turn"),
+        ("right piston travels", "right_travel"),
+        ("left piston travels", "left_travel"),
+    )
     slider = Slider("stage", ("at rest", "linings on the drum", "piston at its bottom"))
     stages = ("kinematics",)
 
@@ -382,6 +389,11 @@ class ForcesType(ForkliftType):
     needs = ("truck", "stop", "brake", "levers", "forces")
     example_sweep = "forces.piston_force=9:13:17 kN"
     sweep_results = "A,B,Q,P_L,lining_friction"
+    key_results = (
+        ("torque of the brake", "torque"),
+        ("brake factor C*", "c_star"),
+        ("margin to self-locking", "margin"),
+    )
     stages = ("forces",)
 
 

@@ -11,6 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
+from beamdyn.common.drawing.shapes import Drawing
+from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
@@ -29,7 +31,8 @@ from brakes.answers.planar_tables import (
 )
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
-from brakes.drawings.mechanism_stroke import StrokeChart, mechanism_figure
+from brakes.drawings.mechanism import open_and_closed, with_points
+from brakes.drawings.mechanism_stroke import StrokeChart, chart_figure, mechanism_figure
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
 from brakes.planar.diagnosis import join_names
 
@@ -220,13 +223,40 @@ class MechanismAnswer(PlanarAnswer):
         return told | drawn | more | {"friction": self.friction and self.friction.to_dict()}
 
     def figure(self, place: float | None = None) -> Figure:
-        """The mechanism as drawn and at a part of its stroke, from 0 to 1, and what the loads do over it."""
-        index = 0 if self.motion is None else _index(self.motion, 1.0 if place is None else place)
+        """The mechanism with its forces, and what the loads do over the stroke.
+
+        As drawn, as the table of forces has it; or at a part of the stroke from 0 to 1.
+        """
+        index = self._index_at(0.0 if place is None else place)
+        return mechanism_figure(self._drawing(index), self._chart(index))
+
+    def drawings(self, place: float) -> Rows:
+        """The mechanism as drawn and at a part of its stroke, from 0 to 1."""
+        return ((self._drawing(self._index_at(place)),),)
+
+    def curves(self, place: float) -> Figure | None:
+        """What the loads do over the stroke, if there is one."""
+        chart = self._chart(self._index_at(place))
+        return None if chart is None else chart_figure(chart)
+
+    def _index_at(self, place: float) -> int:
+        return 0 if self.motion is None else _index(self.motion, place)
+
+    def _drawing(self, index: int) -> Drawing:
         caption = self.friction.caption(index) if self.friction else ""
-        heading = "\n".join((self.design.title, *caption.split("; "))) if caption else self.design.title
-        return mechanism_figure(
-            self.equilibrium.position, self._equilibrium_at(index), heading, self._chart(index)
-        )
+        title = "\n".join(filter(None, (self._heading(index), *caption.split("; "))))
+        drawn = open_and_closed(self.equilibrium.position, self._equilibrium_at(index), title)
+        points = getattr(self.design, "points", {})  # of a file; a named caliper has dimensions
+        return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
+
+    def _heading(self, index: int) -> str:
+        """Title and position."""
+        if self.motion is None:
+            return self.design.title
+        driver = self.motion.driver
+        factor, unit, _ = units_of(self._mechanism.load(driver))
+        moved = f"{factor * self.motion.values[index]:.3g} {unit} of {driver}; grey: as drawn"
+        return f"{self.design.title}: {moved if index else 'as drawn'}"
 
     def _chart(self, index: int) -> StrokeChart | None:
         """Forces and moments over the stroke, if there is one."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,6 +39,11 @@ class PlanarAnswer(Answer):
     design: CaliperInput | MechanismInput
     equilibrium: Equilibrium
     motion: Stroke | None
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line, its status first; see `Result.headline`."""
+        yield self.status
+        yield from (part for part in super().headline() if part != self.status)
 
     @property
     @abstractmethod

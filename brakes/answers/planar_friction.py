@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from rich.console import RenderableType
 
 from beamdyn.common.edge.tables import table
+from beamdyn.common.one_line import error_at_most
 from beamdyn.common.results import Result, plain
 from brakes.answers.planar_tables import format_force, format_size, largest_error
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Stroke, solve_with_friction
@@ -37,6 +38,13 @@ class MechanismFriction(Result):
     driver: str
     drawn: FrictionalEquilibrium
     over: FrictionalEquilibrium | None
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"driven by {self.driver}"
+        yield error_at_most(self.error)
+        ways = {"squeezing": self.last.squeeze, "releasing": self.last.release}
+        yield from (f"{name}: {way.status}" for name, way in ways.items())
 
     @classmethod
     def of(cls, drawn: Equilibrium, driver: str, motion: Stroke | None) -> MechanismFriction:

@@ -56,8 +56,13 @@ def sweep_table(sweep: InputSweep) -> Group:
     shown = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), _SHOWN)).round().astype(int))
     part = "" if len(shown) == len(rows) else f" ({len(shown)} of {len(rows)} rows; CSV and JSON have all)"
     heads = [f"{n} [{u}]" if u else n for n, u in columns(sweep)]
-    cells = ([format_number(value) for value in rows[i]] for i in shown)
-    return table(f"{', '.join(sweep.results)} over {' and '.join(sweep.inputs)}{part}", heads, cells, ())
+    cells = [[format_number(value) for value in rows[i]] for i in shown]
+    title = f"{', '.join(sweep.results)} over {' and '.join(sweep.inputs)}{part}"
+    if not sweep.refused:
+        return table(title, heads, cells, (), len(sweep.inputs))
+    why = dict(sweep.refused)
+    said = ([*row, why.get(int(i), "")] for i, row in zip(shown, cells, strict=True))
+    return table(title, [*heads, "no answer, because"], said, (len(heads),), len(sweep.inputs))
 
 
 def format_number(value: Any) -> str:

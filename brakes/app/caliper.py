@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import show
 from brakes.answers import caliper
-from brakes.app.screens import make_document
+from brakes.app.mechanism_lists import LISTS
+from brakes.app.screens import make_document, make_screen
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput, parse_mechanism
 
@@ -37,4 +40,6 @@ def check_mechanism(text: str, source: str) -> MechanismInput:
 
 
 CALIPER = make_document(caliper.CALIPER, check=check_caliper)
-MECHANISM = make_document(caliper.MECHANISM, check=check_mechanism)
+MECHANISM = make_document(
+    caliper.MECHANISM, (replace(make_screen(caliper.MECHANISM), lists=LISTS),), check=check_mechanism
+)

@@ -13,6 +13,14 @@ from beamdyn.common.edge.input_sweep import InputSweep
 from brakes.answers.base import BrakeType
 from brakes.app.bases import base
 
+HEADINGS = {
+    "": "What it is",
+    "stop": "Road and stop",
+    "levers": "Levers, without a geometry",
+    "run": "Stroke and hand",
+    "caliper": "Cable and pads",
+}
+
 
 def make_document(
     brake: BrakeType[Any],
@@ -41,6 +49,7 @@ def make_document(
         lambda entries: brake.inputs(_nest(entries)),
         check or accept,
         screens or (make_screen(brake),),
+        headings=HEADINGS,
     )
 
 
@@ -72,6 +81,11 @@ def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]
         sweeps=make_sweeps(brake),
         more=(*brake.more, *more),
         handles=lambda answer, place: answer.handles(place),
+        drawings=lambda answer, place: answer.drawings(place),
+        curves=lambda answer, place: answer.curves(place),
+        coarser=brake.coarser,
+        headline=lambda answer: [*brake.headline(answer)],
+        effort="It takes longer with more positions of the stroke, and with friction in more joints.",
     )
 
 

@@ -21,14 +21,14 @@ from brakes.planar import (
     solve_with_friction,
     stroke,
 )
+from brakes.planar.diagnosis import OppositeTravelError
 from brakes.planar.inputs import check_inputs
-from brakes.planar.kinematics import MOST_POSITIONS
+from brakes.planar.kinematics import MOST_POSITIONS, driver_at_travel
 from brakes.planar.part import OneWay
 from brakes.planar.statics import combine, find_wrong_way, one_way_parts, tolerance
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # N, a firm squeeze
-_CLOSED = 1e-12  # Newton's last step, over the travel
 _PAD = OneWay(
     "pad",
     "pull",
@@ -80,6 +80,12 @@ class Caliper:
         Radius of the pivots [m].
     name : str
         For titles.
+
+    Examples
+    --------
+    >>> caliper = calipers.VBrake().build()
+    >>> caliper.equilibrium(finger=40.0).has_answer
+    True
     """
 
     mechanism: Mechanism
@@ -120,20 +126,13 @@ class Caliper:
         OutOfReachError
             If the caliper does not close so far.
         """
-        travel, step = 0.0, np.inf
-        for _ in range(30):
-            motion = stroke(self.free, self.cable, [travel])
-            travelled, ratio = self._pads(motion.travel).mean(), self._pads(motion.ratio).mean()
-            if ratio <= 0:
-                raise ValueError(
-                    f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
-                    f"{self.pads[1]!r} away from the rim, or the cable"
-                )
-            step = (self.clearance - travelled) / ratio
-            travel += step
-            if abs(step) <= _CLOSED * travel:
-                break
-        return float(travel)
+        try:
+            return driver_at_travel(self.free, self.cable, dict.fromkeys(self.pads, -0.5), self.clearance)
+        except OppositeTravelError:
+            raise ValueError(
+                f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
+                f"{self.pads[1]!r} away from the rim, or the cable"
+            ) from None
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
         """Travel of the pads (S, 2) towards the rim, against their forces."""
@@ -200,11 +199,18 @@ class Caliper:
         """All forces at one travel of the cable [m], where the pads touch if not given; for free bodies."""
         position = stroke(self.free, self.cable, [self.contact if travel is None else travel]).position
         tension = self.lever_ratio * positive("finger", finger, "N")
-        right = None
-        if not self.centring:  # then the split gives one of the two forces
-            force = float(self._forces(position, tension).pads[0, 0])
-            right = None if np.isnan(force) else force
-        return solve(self._with(tension, right, None), position[0])
+        # without centring joints the split gives one of the two forces
+        force = np.nan if self.centring else float(self._forces(position, tension).pads[0, 0])
+        return self._at(position[0], tension, force)
+
+    def equilibrium_after(self, run: CaliperStroke) -> Equilibrium:
+        """All forces at the last position of a stroke of this caliper; for free bodies."""
+        force = np.nan if self.centring else float(run.pad_force[-1, 0])
+        return self._at(run.motion.position[-1], run.tension, force)
+
+    def _at(self, position: Position, tension: float, right: float) -> Equilibrium:
+        """Equilibrium at a position; the force of the right pad [N] is unknown if it is nan."""
+        return solve(self._with(tension, None if np.isnan(right) else right, None), position)
 
     def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
         return _with_magnitudes(

@@ -45,6 +45,13 @@ class Design:
         Mean gap between pad and rim, open [m].
     pivot_radius : float
         Radius of the pivots [m]; it matters with friction only.
+
+    Examples
+    --------
+    >>> sorted(calipers.NAMED)
+    ['cantilever', 'centre-pull', 'dual-pivot', 'eebrake', 'single-pivot', 'v-brake']
+    >>> issubclass(calipers.VBrake, calipers.Design)
+    True
     """
 
     label: ClassVar[str]
@@ -91,6 +98,12 @@ class EeBrake(Design):
     split : {"equal force", "equal work"}
         How the rim shares the load between the pads, which statics alone does not say: "equal work" is the
         reading T = 2 delta_R under which the paper's X = 0.875 comes out.
+
+    Examples
+    --------
+    >>> run = calipers.EeBrake().build().stroke(finger=40.0)  # N
+    >>> round(float(run.advantage[-1, 0]), 2)
+    5.98
     """
 
     label = "eeBrake (reconstructed)"
@@ -140,6 +153,11 @@ class SinglePivot(Design):
         The mount bolt, on which both arms turn, and the right pad [m].
     clamp, housing : tuple of 2 floats
         Cable clamp on the arm of the right pad, housing's stop on the arm of the left pad [m].
+
+    Examples
+    --------
+    >>> round(float(calipers.SinglePivot().build().stroke(finger=40.0).advantage[-1, 0]), 2)
+    3.46
     """
 
     label = "single-pivot side-pull"
@@ -173,6 +191,12 @@ class DualPivot(Design):
         The right pad [m].
     clamp, housing : tuple of 2 floats
         Cable clamp on the arm of the right pad, housing's stop on the arm of the left pad [m].
+
+    Examples
+    --------
+    >>> run = calipers.DualPivot(clearance=0.001).build().stroke(finger=40.0)
+    >>> round(float(run.pad_travel[-1, 0]), 5)  # m: the clearance
+    0.001
     """
 
     label = "dual-pivot side-pull"
@@ -206,6 +230,11 @@ class CentrePull(Design):
         Pivot and pad of the right arm, and its end of the straddle cable, beyond the middle [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
+
+    Examples
+    --------
+    >>> round(float(calipers.CentrePull().build().stroke(finger=40.0).advantage[-1, 0]), 2)
+    3.06
     """
 
     label = "centre-pull"
@@ -231,6 +260,11 @@ class Cantilever(Design):
         Boss and pad of the right arm, and its end of the straddle cable [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
+
+    Examples
+    --------
+    >>> round(float(calipers.Cantilever().build().stroke(finger=40.0).advantage[-1, 0]), 2)
+    4.94
     """
 
     label = "cantilever"
@@ -254,6 +288,11 @@ class VBrake(Design):
     ----------
     pivot, pad, clamp : tuple of 2 floats
         Boss and pad of the right arm, and the cable clamp at its top; the left arm's noodle mirrors it [m].
+
+    Examples
+    --------
+    >>> round(float(calipers.VBrake().build().stroke(finger=40.0).advantage[-1, 0]), 2)
+    9.77
     """
 
     label = "V-brake"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from beamdyn.common.one_line import counted, error_at_most, number, spanned, warned
 from beamdyn.common.results import Result, plain
 from brakes.planar import Position, Stroke
 from brakes.planar.statics import is_answer
@@ -51,6 +53,12 @@ class CaliperStroke(Result):
         Largest force or moment left over on a body, over the largest force.
     motion : Stroke
         Positions of the bodies.
+
+    Examples
+    --------
+    >>> run = calipers.VBrake().build().stroke(finger=40.0)
+    >>> float(abs(run.virtual_work).max()) < 1e-9  # what the finger does, the pads do
+    True
     """
 
     caliper: str
@@ -71,6 +79,14 @@ class CaliperStroke(Result):
     virtual_work: np.ndarray
     residual: np.ndarray
     motion: Stroke = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{self.caliper}, {counted(len(self.cable), 'position')}"
+        yield f"cable to {number(1e3 * self.cable[-1], 'mm')}"
+        yield f"advantage {number(self.total_advantage[-1])}"
+        yield error_at_most(np.fmax(self.virtual_work, self.residual))
+        yield from (self.status, warned(self.warnings))
 
     @property
     def position(self) -> Position:
@@ -122,6 +138,12 @@ class PivotFriction(Result):
         While it is let go: tension with friction over that without; 0 where friction holds the brake closed.
     status, message : str
         "determined"; "self-locking", "contact opens" or "cable slackens", and in which direction.
+
+    Examples
+    --------
+    >>> found = calipers.VBrake().build().friction(0.15)
+    >>> 0 < found.squeeze < 1  # part of the force that arrives
+    True
     """
 
     coefficient: float
@@ -133,6 +155,12 @@ class PivotFriction(Result):
     release: float
     status: str
     message: str
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"coefficient {number(self.coefficient)}"
+        yield f"efficiency {number(self.squeeze)} squeezing, {number(self.release)} releasing"
+        yield self.status
 
     @property
     def has_answer(self) -> bool:
@@ -152,9 +180,20 @@ class PadWear(Result):
         Travel at which the pads touch [m].
     advantage : ndarray, shape (W, 2)
         Force of the right and left pad over that of the finger there.
+
+    Examples
+    --------
+    >>> worn = calipers.VBrake().build().wear([0.0, 0.001])  # m of the pad
+    >>> worn.lost.shape
+    (2,)
     """
 
     lost: np.ndarray
     cable: np.ndarray
     finger: np.ndarray
     advantage: np.ndarray
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{spanned(1e3 * self.lost, 'mm')} lost"
+        yield f"finger to {spanned(1e3 * self.finger, 'mm')}, advantage {spanned(self.advantage.sum(axis=1))}"

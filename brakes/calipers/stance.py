@@ -47,6 +47,12 @@ class Stance:
     ------
     ValueError
         If a value is out of its bounds, or one is given without those it needs.
+
+    Examples
+    --------
+    >>> stance = calipers.Stance(cg_height=1.1, cg_behind_front=0.6)
+    >>> round(stance.pitch_limit(lift=1.0), 2)  # m/s2, g 0.6/1.1
+    5.35
     """
 
     braked_wheel: Annotated[Literal["front", "rear"], Described(meaning="wheel with the brake")] = "front"

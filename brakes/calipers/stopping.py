@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.checks import kind, not_negative, positive
+from beamdyn.common.one_line import number
 from beamdyn.common.results import Result
 from brakes.calipers.stance import GRAVITY, Stance
 
@@ -39,6 +40,12 @@ class StoppingDistance(Result):
         Whether it stops.
     message : str
         The status as a sentence, with what limits the stop and which limits were not given.
+
+    Examples
+    --------
+    >>> found = calipers.stop(mass=80.0, speed=30 / 3.6, pad_force=224.0, friction=0.4)
+    >>> found.status, round(found.energy)  # J
+    ('stops', 2778)
     """
 
     distance: float
@@ -50,6 +57,12 @@ class StoppingDistance(Result):
     limited_by: str
     status: str
     message: str
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{number(self.distance, 'm')} at {number(self.deceleration, 'm/s2')}"
+        yield f"limited by {self.limited_by}"
+        yield self.status
 
 
 def stop(
@@ -96,6 +109,12 @@ def stop(
     ------
     ValueError
         If a value is out of its bounds, or the tyre's radius is missing.
+
+    Examples
+    --------
+    >>> found = calipers.stop(mass=80.0, speed=30 / 3.6, pad_force=224.0, friction=0.4)
+    >>> round(found.distance, 2)  # m: M v^2 / (4 mu F)
+    15.5
     """
     kind("stance", stance, Stance)
     mass, speed = positive("mass", mass, "kg"), not_negative("speed", speed, "m/s")

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
-from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.program import NoAnswer, examples
+from beamdyn.common.edge.spread_options import NO_SPREAD, OPTION, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from brakes.cli.program import warn
 
@@ -36,13 +37,15 @@ def add_command(app: App, name: str, help: str) -> None:
     help : str
         What it shows.
     """
+    plain = f"brakes {name} examples/{name}.toml"
 
-    @app.command(name=name, help=help)
+    @app.command(name=name, help=help, help_epilogue=examples(plain, f"{plain} --plot {name}.png"))
     def answer_file(
         file: BrakeFile,
         /,
         *,
         varying: VaryOptions = NOTHING_VARIED,
+        spreading: SpreadOptions = NO_SPREAD,
         what: What = None,
         outputs: Outputs = NO_FILES,
     ) -> None:
@@ -54,14 +57,16 @@ def add_command(app: App, name: str, help: str) -> None:
             The TOML file that describes the brake.
         varying
             Inputs that are varied, e.g. --vary "friction=0.1:0.6:11" --vary "shoe.lining_end=50:120:15 deg".
+        spreading
+            Inputs that have a tolerance, e.g. --spread "friction=+-10%": ranges of results.
         what
-            Results with --vary, separated by commas, such as "torque,pin_1"; the file of --csv without it
-            lists all names.
+            Results with --vary or --spread, separated by commas, such as "torque,pin_1"; the file of --csv
+            without them lists all names.
         outputs
             Files to write.
         """
         brake = import_module(f"brakes.answers.{name}").BRAKE
-        run_command(brake, name, str(file), varying, what, outputs)
+        run_command(brake, name, str(file), varying, spreading, what, outputs)
 
 
 def run_command(
@@ -69,6 +74,7 @@ def run_command(
     command: str,
     file: str,
     varying: VaryOptions,
+    spreading: SpreadOptions,
     what: str | None,
     outputs: Outputs,
     further: Files | None = None,
@@ -86,6 +92,8 @@ def run_command(
         The file.
     varying : VaryOptions
         Inputs that are varied.
+    spreading : SpreadOptions
+        Inputs that have a tolerance.
     what : str, optional
         Names of the results of these.
     outputs : Outputs
@@ -108,13 +116,18 @@ def run_command(
     written = {option: path for option, (path, _) in (further or {}).items()}
     outputs.check(file, **written)
     tables, text = brake.open(file)
-    question = Question.of(f"brakes {command}", file, text, **options, **varying.options, what=what)
+    given = varying.options | spreading.options
+    question = Question.of(f"brakes {command}", file, text, **options, **given, what=what)
+    spreading.check(varying)
+    if spreading.spread:
+        _answer_spread(brake, tables, question, (file, varying, spreading, what), outputs)
+        return
     varying.check()
     if varying.vary:
         _answer_many(brake, tables, question, (file, varying, what), outputs)
         return
     if what is not None:
-        raise ValueError("--what goes with --vary: without it, all results are shown")
+        raise ValueError(f"--what goes with --vary or {OPTION}: without them, all results are shown")
     answer = brake.answer(tables, file)
     shown = answer.tables()
     more = [(title, partial(draw, answer)) for title, draw in brake.more]
@@ -142,11 +155,12 @@ def _answer_many(
     from beamdyn.common.curves import sweep_figure
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.input_sweep import sweep_csv
-    from beamdyn.common.edge.tables import progress_bar, show
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.common.edge.tables import show
     from brakes.answers.tables import sweep_table
 
     file, varying, what = request
-    with progress_bar("designs") as progress:
+    with at_work("designs") as progress:
         run = varying.runner("brakes study", (__version__, np.__version__), progress)
         made, warnings = brake.sweep(tables, file, varying.vary, what, combine=varying.combine, run=run)
     shown = [sweep_table(made)]
@@ -154,3 +168,36 @@ def _answer_many(
     write(made, outputs, sweep_csv(made), lambda: sweep_figure(made), report)
     show(shown)
     warn(warnings)
+    if not any(np.isfinite(values).any() for values in made.found):
+        raise NoAnswer(f"at none of {made.designs.count} values is there an answer")
+
+
+def _answer_spread(
+    brake: BrakeType[Any],
+    tables: Mapping[str, Any],
+    question: Question,
+    request: tuple[str, VaryOptions, SpreadOptions, str | None],
+    outputs: Outputs,
+) -> None:
+    import numpy as np
+
+    from beamdyn._version import __version__
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.common.edge.spread_tables import spread_csv, spread_table
+    from beamdyn.common.edge.tables import show
+    from beamdyn.common.spreading.pictures import spread_figure
+    from brakes.answers.spread import spread_of_brake
+
+    file, varying, spreading, what = request
+    with at_work("designs") as progress:
+        run = varying.runner("brakes study", (__version__, np.__version__), progress)
+        how = spreading.samples, spreading.seed, run
+        made = spread_of_brake(brake, tables, file, spreading.spread, what, *how)
+    shown = [spread_table(made)]
+    report = Report(question, shown, made.warnings)
+    write(made, outputs, spread_csv(made), lambda: spread_figure(made), report)
+    show(shown)
+    warn(made.warnings)
+    if (made.scatter.no_answer == 1).all():
+        raise NoAnswer(f"none of {made.designs} random designs has an answer")

@@ -8,12 +8,21 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
+from beamdyn.common.edge.program import examples
+from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from brakes.cli.answering import What, run_command
 from brakes.cli.program import app
 
 
-@app.command(usage="Usage: brakes caliper [OPTIONS] MECHANISM")
+@app.command(
+    usage="Usage: brakes caliper [OPTIONS] MECHANISM",
+    help_epilogue=examples(
+        "brakes caliper v-brake --plot v_brake.png",
+        'brakes caliper dual-pivot --vary "dimensions.side_pivot.x=22:32:3 mm"',
+        "brakes caliper examples/calipers/toggle-clamp.toml --free-bodies bodies.png",
+    ),
+)
 def caliper(
     mechanism: Annotated[str, Parameter(name="MECHANISM", show_default=False)] = "",
     /,
@@ -21,6 +30,7 @@ def caliper(
     free_bodies: Path | None = None,
     animation: Path | None = None,
     varying: VaryOptions = NOTHING_VARIED,
+    spreading: SpreadOptions = NO_SPREAD,
     what: What = None,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
@@ -41,9 +51,11 @@ def caliper(
         Write an animation of the stroke: .gif.
     varying
         Inputs that are varied, e.g. --vary "clearance=1:2:11 mm" --vary "dimensions.pad.y=-55:-45:11 mm".
+    spreading
+        Inputs that have a tolerance, e.g. --spread "clearance=+-0.1 mm": ranges of results.
     what
-        Results with --vary, separated by commas, such as "finger_travel,right_advantage"; a wrong
-        name lists all.
+        Results with --vary or --spread, separated by commas, such as "finger_travel,right_advantage"; a
+        wrong name lists all.
     list_
         List the named calipers and their dimensions; needs no MECHANISM.
     outputs
@@ -61,4 +73,4 @@ def caliper(
         "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
         "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
     }
-    run_command(MECHANISM, "caliper", mechanism, varying, what, outputs, further)
+    run_command(MECHANISM, "caliper", mechanism, varying, spreading, what, outputs, further)

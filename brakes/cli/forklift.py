@@ -8,6 +8,8 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
+from beamdyn.common.edge.program import examples
+from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from brakes.cli.answering import What, run_command
 from brakes.cli.program import app
@@ -16,13 +18,19 @@ ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
 StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
 
 
-@app.command
+@app.command(
+    help_epilogue=examples(
+        "brakes forklift examples/forklift.toml --plot forklift.png",
+        'brakes forklift examples/forklift.toml --vary "stop.speed=10:30:3 km/h"',
+    )
+)
 def forklift(
     file: ForkliftFile,
     /,
     *,
     stage: StageChoice = "all",
     varying: VaryOptions = NOTHING_VARIED,
+    spreading: SpreadOptions = NO_SPREAD,
     what: What = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -36,13 +44,15 @@ def forklift(
         What to show; what comes before it is computed where it is needed.
     varying
         Inputs that are varied, e.g. --vary "stop.speed=10:30:9 km/h".
+    spreading
+        Inputs that have a tolerance, e.g. --spread "stop.friction=+-10%": ranges of results.
     what
-        Results with --vary, separated by commas, such as "distance,A"; the file of --csv without it lists
-        all names.
+        Results with --vary or --spread, separated by commas, such as "distance,A"; the file of --csv
+        without them lists all names.
     outputs
         Files to write.
     """
     from brakes.answers.forklift import FORKLIFT, TYPES
 
     brake = FORKLIFT if stage == "all" else TYPES[stage]
-    run_command(brake, "forklift", str(file), varying, what, outputs, stage=stage)
+    run_command(brake, "forklift", str(file), varying, spreading, what, outputs, stage=stage)

@@ -5,24 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 from beamdyn.common.edge.outputs import check_folder
-from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.program import NoAnswer, examples
 from brakes.cli.program import app
 
 
-@app.command
+@app.command(help_epilogue=examples("brakes reproduce --output pictures"))
 def reproduce(*, output: Path = Path("brakes-reproduce")) -> None:
     """Published numbers of brakes beside ours, what the papers' errors cost, and the pictures.
 
     Parameters
     ----------
     output
-        Folder for the pictures; it is made if needed, and its pictures are replaced.
+        Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
     """
     from beamdyn.common.edge.tables import console
     from brakes.reproduce import compare_all
 
     check_folder("output", output)
     screen = console()
+    screen.print(f"Pictures go into the folder {output} (--output names another).\n")
     checked = compare_all(screen, output)
     unexpected = sum(not verdict.as_expected for verdict in checked)
     if unexpected:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import create_model, model_validator
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
-from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.wording import of_file
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
+from brakes.forklift.vehicle import SlopeAngle
 
 __all__ = [
     "STAGES",
@@ -93,7 +94,7 @@ if TYPE_CHECKING:
     _LeversInput = LeversInput
 else:
     _TruckInput = section_of(Truck)
-    _StopInput = section_of(StopConditions)
+    _StopInput = section_of(StopConditions, tables={SlopeAngle: SlopeQuantity})
     _geometry = section_of(DuoServo, base=DuoServoInput)
     _DuoServoInput = create_model("_Brake", __base__=_geometry, **fields_of(DuoServo.move_shoes))
     _LeversInput = section_of(Levers, base=LeversInput)

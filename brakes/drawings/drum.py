@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, Circle
 
 from beamdyn.common.array_checks import Numbers
 from beamdyn.common.curves import grid
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
 from beamdyn.common.pictures import COLOURS
-from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
+from brakes.drawings.arrows import ForceArrows
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 
-_P, _N, _T, _R = COLOURS[6], COLOURS[0], COLOURS[1], COLOURS[2]
 _FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
 
 
@@ -26,38 +25,49 @@ def brake_figure(result: BrakeResult) -> Figure:
         A result of one case.
     """
     if result.locked:
-        figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-        factors(figure.subplots(), result.brake, float(result.friction), result.reverse)
-        return figure
-    figure = Figure(figsize=(11.0, 7.0), layout="constrained")
-    spaces = figure.add_gridspec(2, 2, width_ratios=(1.35, 1))
-    free_body(figure.add_subplot(spaces[:, 0]), result)
-    pressures(figure.add_subplot(spaces[0, 1]), result)
-    factors(figure.add_subplot(spaces[1, 1]), result.brake, float(result.friction), result.reverse)
+        return curves_figure(result)
+    from beamdyn.common.drawing.on_axes import draw_in
+
+    figure = Figure(figsize=(11.5, 7.0))
+    draw_in(figure, (0.005, 0.01, 0.55, 0.98), free_body(result))
+    _plot_curves(figure, result, left=0.62)
     return figure
 
 
-def free_body(ax: Axes, result: BrakeResult) -> Axes:
-    """Draw the shoes in the drum with their forces to one scale; of one case.
+def curves_figure(result: BrakeResult) -> Figure:
+    """Draw pressure and shoe factors; of a locked brake the factors alone."""
+    if result.locked:
+        figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+        factors(figure.subplots(), result.brake, float(result.friction), result.reverse)
+        return figure
+    figure = Figure(figsize=(7.0, 7.0))
+    _plot_curves(figure, result, left=0.1)
+    return figure
+
+
+def _plot_curves(figure: Figure, result: BrakeResult, left: float) -> None:
+    """Plot pressure and shoe factors below one another, from a part of the figure's width on."""
+    cells = figure.add_gridspec(2, 1, left=left, right=0.985, bottom=0.075, top=0.955, hspace=0.3)
+    pressures(figure.add_subplot(cells[0, 0]), result)
+    factors(figure.add_subplot(cells[1, 0]), result.brake, float(result.friction), result.reverse)
+
+
+def free_body(result: BrakeResult) -> Drawing:
+    """The shoes in the drum with their forces to one scale; of one case, in m.
 
     The resultants N of the pressure and T of the friction act where their lines of action cross, which is
     outside the drum, at the effective arm from its centre.
     """
     r = float(result.shoes[0].shoe.drum_radius)
     largest = max(float(np.hypot(*v)) for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
-    largest = max(largest, float(result.force))
-    arrows = ForceArrows(ax, 0.75 * r / largest)
-    ax.add_patch(Circle((0, 0), r, fill=False, color="0.55", linewidth=1.4))
-    ax.plot(0, 0, "+", color="0.4", markersize=9)
+    arrows = ForceArrows(0.75 * r / max(largest, float(result.force)))
+    arrows.shapes += [Disc((0, 0), r, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0)]
     for i, shoe in enumerate(result.shoes):
         _draw_shoe(arrows, shoe, _placement(result, i), f"{i + 1}")
-    _draw_rotation(ax, r, result.reverse)
-    ax.update_datalim([(-1.05 * r, -1.05 * r), (1.05 * r, 1.05 * r)])
-    finish_drawing(
-        ax, f"Forces on the shoes at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
-    )
-    arrows.add_scale_bar(largest)
-    return ax
+    _draw_rotation(arrows, r, result.reverse)
+    title = f"Forces on the shoes at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    key = {"load": "actuating force P", "normal": "pressure N", "friction": "friction T", "reaction": "pin R"}
+    return arrows.drawing(title, "A drum brake: its shoes with the forces on them", key)
 
 
 def _placement(result: BrakeResult, i: int) -> np.ndarray:
@@ -69,39 +79,42 @@ def _placement(result: BrakeResult, i: int) -> np.ndarray:
 
 
 def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str) -> None:
-    ax, shoe = arrows.ax, s.shoe
+    shoe = s.shoe
     a1, a2 = shoe.lining
     alpha = np.linspace(a1, a2, 80)
-    rim = float(shoe.drum_radius) * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1) @ placed
-    ax.plot(*rim.T, color="0.35", linewidth=7, solid_capstyle="butt", zorder=3)
+    r = float(shoe.drum_radius)
+    rim = r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1) @ placed
     pin = np.array(shoe.pivot, dtype=float) @ placed
-    lever = np.array([0.55 * float(shoe.drum_radius), float(shoe.force_arm)]) @ placed
-    inner = 0.86 * rim
-    ax.plot(*np.vstack([pin, inner, lever]).T, color="0.75", linewidth=5, zorder=1, solid_joinstyle="round")
-    ax.plot(*pin, "o", color="white", markeredgecolor=_R, markersize=8, markeredgewidth=1.8, zorder=5)
+    lever = np.array([0.55 * r, float(shoe.force_arm)]) @ placed
+    arrows.shapes += [
+        Outline(np.vstack([pin, 0.86 * rim, lever]), "body", 5.0),
+        Outline(rim, "support", 7.0),
+        *(Symbol("dot", at, "support", 3.0) for at in (rim[0], rim[-1])),
+    ]
     centre = -float(s.effective_arm) * s.normal / np.hypot(*s.normal) @ placed
-    ax.plot(*np.vstack([(0, 0), centre]).T, color=_N, linewidth=0.9, linestyle=":", zorder=2)
-    P = np.array([float(s.force), 0.0]) @ placed
-    arrows.draw(lever, P, f"$P_{name}$", _P, ends_here=True)
-    acting = (centre, s.normal, "N", _N), (centre, s.tangential, "T", _T), (pin, s.pin_reaction, "R", _R)
-    for at, vector, symbol, colour in acting:
-        outward = ("left" if centre[0] > 0 else "right") if symbol == "T" else ""
-        arrows.draw(at, vector @ placed, force_label(f"{symbol}_{name}", vector), colour, ha=outward)
+    arrows.shapes.append(Outline(np.vstack([(0, 0), centre]), "normal", 0.9, (1.0, 2.0)))
+    arrows.add(lever, np.array([float(s.force), 0.0]) @ placed, f"P_{name}", "load", ends_here=True)
+    acting = (
+        (centre, s.normal, "N", "normal"),
+        (centre, s.tangential, "T", "friction"),
+        (pin, s.pin_reaction, "R", "reaction"),
+    )
+    for at, vector, symbol, role in acting:
+        arrows.add(at, vector @ placed, f"{symbol}_{name}", role)
+    arrows.shapes += [Symbol("pin", pin, "reaction", 8.0), Symbol("dot", lever, "load", 3.0)]
     word = "leading" if s.leading else "trailing"
-    middle = float(shoe.drum_radius) * np.array([0.42, 0.36]) @ placed
+    middle = r * np.array([0.36, 0.3]) @ placed
     text = f"{name}: {word}\n{float(s.torque):.4g} N m\nC* {float(s.c_star):.3g}"
-    ax.text(middle[0], middle[1], text, ha="center", va="center", fontsize=9)
+    arrows.labels.append(Label(text, middle))
 
 
-def _draw_rotation(ax: Axes, r: float, reverse: bool) -> None:
-    """Draw the sense of rotation at the top of the drum: clockwise when forward."""
-    ax.add_patch(Arc((0, 0), 2.16 * r, 2.16 * r, theta1=70, theta2=110, color="0.4", linewidth=1.5))
-    end, sense = (np.radians(110.0), 1) if reverse else (np.radians(70.0), -1)
-    at = 1.08 * r * np.array([np.cos(end), np.sin(end)])
-    along = 0.02 * r * sense * np.array([-np.sin(end), np.cos(end)])
-    head = {"arrowstyle": "-|>", "color": "0.4", "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", xy=tuple(at + along), xytext=tuple(at), arrowprops=head)
-    ax.text(0, 1.12 * r, "drum", ha="center", va="bottom", color="0.4", fontsize=9)
+def _draw_rotation(arrows: ForceArrows, r: float, reverse: bool) -> None:
+    """Add the sense of rotation at the top of the drum: clockwise when forward."""
+    start, end = np.radians((70.0, 110.0) if reverse else (110.0, 70.0))
+    way = arc((0, 0), 1.08 * r, start, end)
+    arrows.shapes += [Outline(way[:-4], "neutral", 1.5), Arrow(way[-6], way[-1], "neutral", width=1.5)]
+    arrows.shapes.append(Symbol("dot", (0.0, r), "neutral", 3.0))
+    arrows.labels.append(Label("drum", (0.0, 1.08 * r), "neutral", (0.0, 1.0)))
 
 
 def pressures(ax: Axes, result: BrakeResult) -> Axes:

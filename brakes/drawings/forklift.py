@@ -8,38 +8,53 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon
 
 from beamdyn.common.array_checks import Numbers
 from beamdyn.common.curves import curves
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
 from beamdyn.common.pictures import COLOURS
-from brakes.drawings.arrows import ForceArrows, finish_drawing, force_label
+from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop
-
-_WEIGHT, _NORMAL, _FRICTION = COLOURS[6], COLOURS[0], COLOURS[1]
 
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
     """Draw the truck, the brake's two stages and the free bodies of its shoes, as far as they are given."""
-    held = forces is not None and forces.status == "equilibrium"
-    heights = [4.2] * (stop is not None) + [3.6] * (followed is not None) + [5.2] * held
-    figure = Figure(figsize=(10.0, max(4.0, sum(heights))), layout="constrained")
-    parts: Any = iter(
-        figure.subfigures(max(1, len(heights)), 1, height_ratios=heights or [1], squeeze=False).flat
-    )
-    if stop is not None:
-        truck(next(parts).subplots(), stop)
+    from beamdyn.common.drawing.on_axes import figure_of
+
+    rows = answer_drawings(stop, followed, forces, followed)
+    return figure_of(rows) if rows else Figure(figsize=(10.0, 4.0))
+
+
+def answer_drawings(
+    stop: Stop | None,
+    followed: Kinematics | None,
+    forces: InternalForces | None,
+    outlines: Kinematics | None,
+) -> list[list[Drawing]]:
+    """Rows of drawings, as far as they are given.
+
+    Parameters
+    ----------
+    stop : Stop, optional
+        The truck.
+    followed : Kinematics, optional
+        The brake's two stages.
+    forces : InternalForces, optional
+        Free bodies of its shoes.
+    outlines : Kinematics, optional
+        The motion that gives these their outlines.
+    """
+    rows = [] if stop is None else [[truck(stop)]]
     if followed is not None:
-        positions(next(parts), followed)
-    if held:
-        assert forces is not None
-        free_bodies(next(parts), forces, followed)
-    return figure
+        rows.append(positions(followed))
+    if forces is not None and forces.status == "equilibrium":
+        rows.append(free_bodies(forces, outlines))
+    return rows
 
 
-def truck(ax: Axes, stop: Stop) -> Axes:
-    """Draw the truck on its slope with weight, axle loads and tyre friction to one scale; of one case."""
+def truck(stop: Stop) -> Drawing:
+    """The truck on its slope with weight, axle loads and tyre friction to one scale; of one case, in m."""
     t, beta = stop.truck, float(stop.conditions.slope)
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array(
@@ -47,24 +62,30 @@ def truck(ax: Axes, stop: Stop) -> Axes:
     )  # row vectors; downhill to +x
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.conditions.friction) * float(stop.front_load)
-    arrows = ForceArrows(ax, 1.1 * L / weight)
-    _draw_chassis(ax, stop, turn)
+    arrows = ForceArrows(1.1 * L / weight)
+    _draw_chassis(arrows, stop, turn)
     cg = np.array([float(t.cg[0]), float(t.cg[1]) + r1])
     places = {
-        "M g": (cg, np.array([np.sin(beta), -np.cos(beta)]) * weight, _WEIGHT),
-        "N_A": (np.zeros(2), np.array([0.0, float(stop.front_load)]), _NORMAL),
-        "N_B": (np.array([L, 0.0]), np.array([0.0, float(stop.rear_load)]), _NORMAL),
-        "R_A": (np.zeros(2), np.array([-friction, 0.0]), _FRICTION),
+        "N_A": (np.zeros(2), np.array([0.0, float(stop.front_load)]), "normal"),
+        "N_B": (np.array([L, 0.0]), np.array([0.0, float(stop.rear_load)]), "normal"),
+        "R_A": (np.zeros(2), np.array([-friction, 0.0]), "friction"),
+        "Mg": (cg, np.array([np.sin(beta), -np.cos(beta)]) * weight, "weight"),
     }
-    aside = {"N_A": "right", "N_B": "left", "M g": "left" if float(t.cg[0]) < L / 2 else "right"}
-    for name, (at, vector, colour) in places.items():
-        pushes, ha = name.startswith("N"), aside.get(name, "")
-        label = force_label(name, vector)
-        arrows.draw(at @ turn, vector @ turn, label, colour, ends_here=pushes, ha=ha)
-    ax.plot(*(cg @ turn), "o", color=_WEIGHT, markersize=7, zorder=7)
-    finish_drawing(ax, _title(stop))
-    arrows.add_scale_bar(weight, (0.78, 0.88))
-    return ax
+    for name, (at, vector, role) in places.items():
+        arrows.add(at @ turn, vector @ turn, name, role, ends_here=name.startswith("N"))
+    arrows.shapes.append(Symbol("dot", cg @ turn, "weight", 7.0))
+    if not stop.stops:
+        _mark_moving_on(arrows, cg + np.array([0.0, 1.2 * r1]), L, turn)
+    key = {"weight": "weight", "normal": "axle loads", "friction": "friction of the tyres"}
+    return arrows.drawing(_title(stop), "A forklift on a slope with the forces on it", key)
+
+
+def _mark_moving_on(arrows: ForceArrows, at: np.ndarray, length: float, turn: np.ndarray) -> None:
+    """An arrow down the slope, of this length [m], that says that the truck does not stop."""
+    foot, tip = at @ turn, (at + np.array([length, 0.0])) @ turn
+    arrows.shapes.append(Arrow(foot, tip, "compression", "does not stop", 4.0))
+    places = np.stack([(foot + tip) / 2, tip])
+    arrows.labels.append(Label("does not stop", places, "compression", (0.0, 1.0), priority=4))
 
 
 def _title(stop: Stop) -> str:
@@ -74,13 +95,13 @@ def _title(stop: Stop) -> str:
     return f"{where}: {how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
 
 
-def _draw_chassis(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
-    """Draw ground, wheels, body, mast and load; x down the slope, y up from the ground."""
+def _draw_chassis(arrows: ForceArrows, stop: Stop, turn: np.ndarray) -> None:
+    """Add ground, wheels, body, mast and load; x down the slope, y up from the ground."""
     t = stop.truck
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     r2 = 0.75 * r1
     ground = np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn
-    ax.plot(*ground.T, color="0.4", linewidth=2.0, zorder=2)
+    arrows.shapes.append(Outline(ground, "ground", 2.0))
     body = [
         (0.1 * L, r1),
         (0.1 * L, 2.6 * r1),
@@ -91,14 +112,15 @@ def _draw_chassis(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
     ]
     cab = [(0.25 * L, 2.6 * r1), (0.3 * L, 4.9 * r1), (0.85 * L, 4.9 * r1), (0.95 * L, 2.5 * r1)]
     mast = [(-0.2 * L, 0.3 * r1), (-0.2 * L, 5.6 * r1), (-0.12 * L, 5.6 * r1), (-0.12 * L, 0.3 * r1)]
-    for shape, shade in ((cab, "0.97"), (body, "0.9"), (mast, "0.85")):
-        ax.add_patch(Polygon(np.array(shape) @ turn, facecolor=shade, edgecolor="0.55", zorder=1))
+    for shape, role in ((cab, "second"), (body, "body"), (mast, "body")):
+        arrows.shapes.append(Outline(np.array(shape) @ turn, role, 1.0, closed=True, filled=True))
+    _draw_load(arrows, stop, turn)
     for x, r in ((0.0, r1), (L, r2)):
-        ax.add_patch(Circle(tuple(np.array([x, r]) @ turn), r, facecolor="0.75", edgecolor="0.35", zorder=3))
-    _draw_load(ax, stop, turn)
+        hub = np.array([x, r]) @ turn
+        arrows.shapes += [Disc(hub, r, "wheel", 1.2, filled=True), Symbol("cross", hub, "axis", 6.0)]
 
 
-def _draw_load(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
+def _draw_load(arrows: ForceArrows, stop: Stop, turn: np.ndarray) -> None:
     t = stop.truck
     if not float(t.load_mass) or float(t.load_cg[0]) >= 0:
         return
@@ -108,22 +130,15 @@ def _draw_load(ax: Axes, stop: Stop, turn: np.ndarray) -> None:
         float(t.front_wheel_radius),
     )
     half = min(abs(x) - 0.2 * float(t.wheelbase), y - 0.3 * r1)
-    box = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
-    box = box + np.array([x, y])
-    ax.add_patch(Polygon(box @ turn, facecolor="0.93", edgecolor="0.55", zorder=1))
+    box = np.array([(-half, -half), (half, -half), (half, half), (-half, half)]) + np.array([x, y])
     fork = np.array([(-0.16 * float(t.wheelbase), y - half), (x - half, y - half)])
-    ax.plot(*(fork @ turn).T, color="0.4", linewidth=3, zorder=1)
     at = np.array([x, y]) @ turn
-    ax.text(
-        at[0],
-        at[1],
-        f"load\n{float(t.load_mass):.5g} kg",
-        ha="center",
-        va="center",
-        fontsize=9,
-        color="0.3",
-        zorder=7,
-    )
+    arrows.shapes += [
+        Outline(box @ turn, "second", 1.0, closed=True, filled=True),
+        Outline(fork @ turn, "neutral", 3.0),
+        Symbol("dot", at, "neutral", 3.0),
+    ]
+    arrows.labels.append(Label(f"load\n{float(t.load_mass):.5g} kg", at, "neutral", (0.0, 1.0)))
 
 
 def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) -> Axes:

@@ -3,223 +3,221 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.pictures import COLOURS, save_animation
+from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
+from beamdyn.common.pictures import save_animation
 from brakes.drawings import mechanism_parts as parts
 from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-TENSION, COMPRESSION = COLOURS[0], COLOURS[1]
-LOAD, REACTION, BODY = "#000000", COLOURS[2], "#8a8f98"
+_KEY = {"tension": "tension", "compression": "compression", "load": "load", "reaction": "reaction"}
 _MM = 1e3
 _LONGEST = 0.28  # longest arrow, over the size of the mechanism
 _SHORTEST = 1e-6  # shorter arrows are not drawn [mm]
 _ASIDE = 0.17  # distance from the middle, over the size, past which arrows may point inwards
-_FAINT = 0.35
+_ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # where on a member its label may stand
+_CABLE = (5.0, 3.0)
+_SPRING = (1.5, 2.0)
+_BODIES, _MEMBERS, _FORCES = 1, 2, 3  # priorities of labels
+_PANEL = 320.0  # width and height of a free body's panel [pt]
+_ROOM = 45.0  # around a mechanism that moves [pt]
+_COUPLE = 1e-12  # couples below are rounding [N m]
 
 
-def draw_mechanism(
-    position: Position,
-    ax: Axes,
-    equilibrium: Equilibrium | None = None,
-    faint: bool = False,
-    labels: bool = True,
-) -> Axes:
-    """Draw a mechanism at one position: bodies, pins, members, cables, faces.
+@dataclass(eq=False)
+class _Sketch:
+    """Shapes and labels as they come."""
+
+    shapes: list[DrawnShape] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+
+    def drawing(self, **more: Any) -> Drawing:
+        return Drawing(tuple(self.shapes), tuple(self.labels), unit="mm", key=_KEY, **more)
+
+
+# Bodies and members -------------------------------------------------------------------------------
+
+
+def mechanism_drawing(position: Position, equilibrium: Equilibrium | None = None, title: str = "") -> Drawing:
+    """A mechanism at one position: bodies, pins, members, cables, faces; in mm.
 
     Parameters
     ----------
     position : Position
         One position.
-    ax : Axes
-        Where to draw; in mm.
     equilibrium : Equilibrium, optional
         Its forces: members in tension are blue, in compression vermilion.
-    faint : bool
-        Draw it pale and without labels, as a shadow.
-    labels : bool
-        Write the names of the bodies.
+    title : str
+        Title.
     """
-    alpha, labels = (_FAINT, False) if faint else (1.0, labels)
+    sketch = _Sketch()
+    _add_mechanism(sketch, position, equilibrium)
+    return sketch.drawing(title=title, words="A mechanism: its bodies, joints and loads")
+
+
+def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium | None) -> None:
     straight = parts.two_force_bodies(position.mechanism)
-    for body in position.mechanism.bodies:
-        if body not in straight:
-            _draw_body(ax, parts.outline(position, body) * _MM, alpha)
-            if labels:
-                _write(ax, body, parts.label_place(position, body) * _MM, "0.25")
+    outlines = {body: parts.outline(position, body) for body in position.mechanism.bodies}
+    for body, corners in outlines.items():
+        if body not in straight and len(corners):  # else nothing acts on it yet
+            sketch.shapes.append(_body(corners * _MM))
+            places = np.vstack([parts.label_place(outlines, body), corners.mean(axis=0)]) * _MM
+            sketch.labels.append(Label(body, places, priority=_BODIES))
     for cable in parts.cables(position, equilibrium):
-        _draw_member(ax, cable, alpha, labels, linestyle="--", linewidth=1.4, zorder=3)
+        _add_member(sketch, cable, 1.4, _CABLE)
     for _, _, points in parts.shapes(position, "spring"):
-        ax.plot(*(points * _MM).T, ":", color="0.25", linewidth=1.4, alpha=alpha, zorder=3)
+        sketch.shapes.append(Outline(points * _MM, "spring", 1.4, _SPRING))
     for member in parts.members(position, equilibrium):
-        _draw_member(ax, member, alpha, labels, linewidth=4, solid_capstyle="round", zorder=4)
+        _add_member(sketch, member, 4.0)
     for _, shape, points in parts.shapes(position, "pin"):
-        _draw_pin(ax, points[0] * _MM, GROUND in dict(shape.ends), alpha)
-    _draw_faces(ax, position, alpha)
-    ax.set_aspect("equal")
-    ax.set(xlabel="x [mm]", ylabel="y [mm]")
-    return ax
+        sketch.shapes += _pin(points[0] * _MM, GROUND in dict(shape.ends))
+    sketch.shapes += [Outline(face, "contact", 1.6) for face in _faces(position)]
 
 
-def _draw_body(ax: Axes, corners: np.ndarray, alpha: float) -> None:
-    if len(corners) > 2:
-        ax.fill(*corners.T, facecolor=BODY, alpha=0.22 * alpha, zorder=1)
-    closed = np.vstack((corners, corners[:1]))
-    ax.plot(*closed.T, color=BODY, linewidth=2, alpha=alpha, solid_joinstyle="round", zorder=2)
+def _shadow(position: Position) -> list[DrawnShape]:
+    """The same without names and forces, in one pale colour."""
+    straight = parts.two_force_bodies(position.mechanism)
+    bodies = [body for body in position.mechanism.bodies if body not in straight]
+    outlines = [parts.outline(position, body) * _MM for body in bodies]
+    members = [(member.ends * _MM, 3.0, ()) for member in parts.members(position)]
+    members += [(cable.ends * _MM, 1.4, _CABLE) for cable in parts.cables(position)]
+    pins = [points[0] * _MM for _, _, points in parts.shapes(position, "pin")]
+    return [
+        *(Outline(corners, "ghost", closed=True) for corners in outlines),
+        *(Outline(ends, "ghost", width, dash) for ends, width, dash in members),
+        *(Symbol("dot", at, "ghost", 4.0) for at in pins),
+    ]
 
 
-def _write(ax: Axes, text: str, at: Any, colour: str, **how: Any) -> None:
-    box = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.5}
-    how = {"ha": "center", "va": "center", "textcoords": "offset points", "xytext": (0, 0)} | how
-    ax.annotate(text, (at[0], at[1]), fontsize="small", color=colour, zorder=10, bbox=box, **how)
+def _body(corners: np.ndarray) -> Outline:
+    return Outline(corners, "body", 2.0, closed=True, filled=len(corners) > 2)
 
 
-def _colour(member: parts.Member) -> str:
-    return "0.35" if not np.isfinite(member.force) else TENSION if member.force >= 0 else COMPRESSION
-
-
-def _draw_member(ax: Axes, member: parts.Member, alpha: float, label: bool, **line: Any) -> None:
-    ax.plot(*(member.ends * _MM).T, color=_colour(member), alpha=alpha, **line)
-    if label:
-        _write_along(ax, member)
-
-
-def _write_along(ax: Axes, member: parts.Member) -> None:
-    """Write name and force beside the last segment of a member, parallel to it."""
+def _add_member(sketch: _Sketch, member: parts.Member, width: float, dash: tuple[float, ...] = ()) -> None:
+    """Add a bar or cable, its name and force beside its last segment."""
+    role = "neutral" if not np.isfinite(member.force) else "tension" if member.force >= 0 else "compression"
+    sketch.shapes.append(Outline(member.ends * _MM, role, width, dash))
     size = f" {abs(member.force):.4g} N" if np.isfinite(member.force) else ""
     first, last = member.ends[-2:] * _MM
-    turn = float(np.degrees(np.arctan2(last[1] - first[1], last[0] - first[0])))
-    turn = turn - 180 if turn > 90 else turn + 180 if turn <= -90 else turn
-    side = np.radians(turn + 90)
-    beside = (8 * np.cos(side), 8 * np.sin(side))
-    _write(
-        ax,
-        member.name + size,
-        first + 0.55 * (last - first),
-        _colour(member),
-        xytext=beside,
-        rotation=turn,
-        rotation_mode="anchor",
-    )
+    way = last - first
+    aside = (-way[1], way[0]) if way[0] >= 0 else (way[1], -way[0])
+    places = first + _ALONG[:, None] * way
+    sketch.labels.append(Label(member.name + size, places, role, aside, priority=_MEMBERS))
 
 
-def _draw_pin(ax: Axes, at: np.ndarray, grounded: bool, alpha: float) -> None:
-    if grounded:
-        ax.plot(*at, "^", color="0.35", markersize=13, alpha=alpha, zorder=5)
-    ax.plot(*at, "o", color="white", markeredgecolor="0.1", markersize=6, alpha=alpha, zorder=6)
+def _pin(at: np.ndarray, grounded: bool) -> list[DrawnShape]:
+    support: list[DrawnShape] = [Symbol("ground", at, "ground", 14.0)] if grounded else []
+    return [*support, Symbol("pin", at, "pin")]
 
 
-def _draw_faces(ax: Axes, position: Position, alpha: float) -> None:
-    """Draw short lines along slots and contact faces."""
-    low, high = parts.extent(position)
-    half = 0.06 * float(np.linalg.norm(high - low)) * _MM
+def _faces(position: Position) -> Iterator[np.ndarray]:
+    """Short lines (2, 2) along slots and contact faces."""
+    half = 0.06 * _size(position) * _MM
     for _, shape, points in parts.shapes(position, "face"):
         x, y = shape.along
         angle = float(position.angle(shape.frame)) + np.arctan2(y, x)
         along, at = half * np.array((np.cos(angle), np.sin(angle))), points[0] * _MM
-        ax.plot(*np.stack((at - along, at + along)).T, color="0.1", linewidth=1.6, alpha=alpha, zorder=5)
+        yield np.stack((at - along, at + along))
+
+
+def _size(position: Position) -> float:
+    low, high = parts.extent(position)
+    return float(np.linalg.norm(high - low))
 
 
 # Forces -------------------------------------------------------------------------------------------
 
 
-def force_scale(*equilibria: Equilibrium) -> float:
-    """Arrow length per newton [m/N] that makes the longest arrow a fixed part of the mechanism."""
-    largest, size = 0.0, 0.0
-    for equilibrium in equilibria:
-        low, high = parts.extent(equilibrium.position)
-        size = max(size, float(np.linalg.norm(high - low)))
-        forces = [np.linalg.norm(arrow.force) for arrow in parts.outer_forces(equilibrium)]
-        largest = max(largest, float(np.nanmax(forces, initial=0.0)))
+def force_scale(forces: Sequence[parts.OuterForce], size: float) -> float:
+    """Arrow length per newton [m/N] that makes the longest of some arrows a fixed part of a size [m]."""
+    known = np.array([np.linalg.norm(outer.force) for outer in forces])
+    largest = float(known[np.isfinite(known)].max(initial=0.0))
     return _LONGEST * size / largest if largest else 0.0
 
 
-def draw_rim(pads: np.ndarray, ax: Axes) -> Axes:
-    """Draw the rim between the faces (2, 2) of two pads that touch it [m]."""
-    low, high = np.sort(pads[:, 0]) * _MM
-    height, middle = 0.3 * (high - low), float(pads[:, 1].mean()) * _MM
-    x, y = (low, high, high, low), middle + height * np.array((-1, -1, 1, 1))
-    ax.fill(x, y, facecolor="#f1ead2", edgecolor="0.6", zorder=0)
-    _write(ax, "rim", np.array(((low + high) / 2, middle)), "0.35")
-    return ax
+def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: Any = None) -> Drawing:
+    """The open mechanism as a shadow under the closed one with its forces.
 
-
-def draw_forces(equilibrium: Equilibrium, ax: Axes, scale: float | None = None, key: bool = True) -> Axes:
-    """Draw loads (black) and reactions of the ground (green) as arrows, all at one scale.
+    Loads (black) and reactions of the ground (green) are arrows to one scale.
 
     Parameters
     ----------
-    equilibrium : Equilibrium
+    open_ : Position
+        The shadow.
+    closed : Equilibrium
         At one position.
-    ax : Axes
-        Where the mechanism is drawn; in mm.
-    scale : float, optional
-        Length of 1 N [m/N].
-    key : bool
-        Draw the key of colours and scale.
+    title : str
+        Title.
+    rim : ndarray, shape (2, 2), optional
+        Faces of two pads that touch a rim [m].
     """
-    scale = force_scale(equilibrium) if scale is None else scale
-    low, high = parts.extent(equilibrium.position)
-    for arrow in parts.outer_forces(equilibrium):
-        aside = arrow.at[0] - (low[0] + high[0]) / 2  # from outside, where it would cross the middle
-        inwards = arrow.reaction and abs(aside) > _ASIDE * math.dist(low, high) and arrow.force[0] * aside < 0
-        _draw_arrow(ax, arrow.at, arrow.force, scale, REACTION if arrow.reaction else LOAD, "", inwards)
-    colours = {"tension": TENSION, "compression": COMPRESSION, "load": LOAD, "reaction": REACTION}
-    if key:
-        _draw_key(ax, colours, scale)
-    return ax
+    sketch, forces = _Sketch(), parts.outer_forces(closed)
+    low, high = parts.extent(closed.position)
+    scale = force_scale(forces, math.dist(low, high))
+    if rim is not None:
+        _add_rim(sketch, np.asarray(rim))
+    if not np.array_equal(open_.coordinates, closed.position.coordinates):
+        sketch.shapes += _shadow(open_)
+    _add_mechanism(sketch, closed.position, closed)
+    _add_forces(sketch, forces, scale, (low, high))
+    words = "A mechanism with its forces as arrows to one scale: loads, and reactions of the ground"
+    return sketch.drawing(title=title, words=words, newton=scale * _MM)
 
 
-def _draw_arrow(
-    ax: Axes, at: np.ndarray, force: np.ndarray, scale: float, colour: str, name: str, inwards: bool = False
+def with_points(drawing: Drawing, points: Mapping[str, tuple[float, float]]) -> Drawing:
+    """A drawing of a mechanism with the names of points [m] as drawn; a cross where nothing acts at one."""
+    there = np.vstack([np.empty((0, 2)), *map(points_of_shape, drawing.shapes)])
+    places = {name: np.multiply(_MM, at) for name, at in points.items()}
+    free = [at for at in places.values() if not np.isclose(there, at, rtol=0, atol=1e-6).all(axis=1).any()]
+    return replace(
+        drawing,
+        shapes=(*drawing.shapes, *(Symbol("cross", at, "dimension", 9.0) for at in free)),
+        labels=(*drawing.labels, *(Label(name, at, "dimension", (1.0, 1.0)) for name, at in places.items())),
+    )
+
+
+def _add_rim(sketch: _Sketch, pads: np.ndarray) -> None:
+    """Add the rim between the faces of two pads."""
+    low, high = np.sort(pads[:, 0]) * _MM
+    height, middle = 0.3 * (high - low), float(pads[:, 1].mean()) * _MM
+    corners = np.array(
+        [(low, middle - height), (high, middle - height), (high, middle + height), (low, middle + height)]
+    )
+    sketch.shapes.append(Outline(corners, "rim", 1.0, closed=True, filled=True))
+    sketch.labels.append(Label("rim", corners.mean(axis=0)))
+
+
+def _add_forces(
+    sketch: _Sketch, forces: Sequence[parts.OuterForce], scale: float, extent: tuple[np.ndarray, np.ndarray]
 ) -> None:
-    """Draw an arrow from the point, or to it if `inwards`; none for a force of nearly 0 or nan."""
-    size, reach = float(np.linalg.norm(force)), force * scale * _MM
+    low, high = extent
+    for outer in forces:
+        aside = outer.at[0] - (low[0] + high[0]) / 2  # from outside, where it would cross the middle
+        inwards = outer.reaction and abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
+        _add_arrow(sketch, outer, scale, inwards)
+
+
+def _add_arrow(sketch: _Sketch, outer: parts.OuterForce, scale: float, inwards: bool) -> None:
+    """Add an arrow from its point, or to it if `inwards`; none for a force of nearly 0 or nan."""
+    size, reach = float(np.linalg.norm(outer.force)), outer.force * scale * _MM
     if not np.linalg.norm(reach) > _SHORTEST:
         return
-    foot, tip = (at * _MM - reach, at * _MM) if inwards else (at * _MM, at * _MM + reach)
-    how = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", tuple(tip), tuple(foot), arrowprops=how, zorder=9)
-    ax.update_datalim(np.stack((foot, tip)))
-    away = force / size * (-1 if inwards else 1)
-    _write(
-        ax,
-        f"{name} {size:.4g} N".strip(),
-        foot if inwards else tip,
-        colour,
-        xytext=tuple(7 * away),
-        ha="left" if away[0] > 0.35 else "right" if away[0] < -0.35 else "center",
-        va="bottom" if away[1] > 0.35 else "top" if away[1] < -0.35 else "center",
-    )
-
-
-def _draw_key(ax: Axes, colours: dict[str, str], scale: float) -> None:
-    """Draw the key: colours, and the scale of the arrows."""
-    from matplotlib.lines import Line2D
-
-    handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in colours.items()]
-    title = f"1 mm is {1 / (scale * _MM):.3g} N" if scale else None
-    ax.legend(
-        handles=handles, loc="best", fontsize="small", framealpha=0.8, title=title, title_fontsize="small"
-    )
-
-
-def draw_open_and_closed(open_: Position, closed: Equilibrium, ax: Axes, key: bool = True) -> Axes:
-    """Draw the open mechanism as a shadow under the closed one with its forces."""
-    draw_mechanism(open_, ax, faint=True)
-    draw_mechanism(closed.position, ax, closed)
-    draw_forces(closed, ax, key=key)
-    ax.margins(0.28, 0.12)
-    ax.autoscale_view()
-    return ax
+    at = outer.at * _MM
+    foot, tip = (at - reach, at) if inwards else (at, at + reach)
+    role = "reaction" if outer.reaction else "load"
+    sketch.shapes.append(Arrow(foot, tip, role, outer.name))
+    away = outer.force / size * (-1 if inwards else 1)
+    words = f"{outer.name} {size:.4g} N"
+    ends = np.stack([foot, (foot + tip) / 2] if inwards else [tip, (foot + tip) / 2])
+    sketch.labels.append(Label(words, ends, role, (away[0], away[1]), priority=_FORCES))
 
 
 # Free bodies --------------------------------------------------------------------------------------
@@ -233,72 +231,54 @@ def free_body_diagrams(equilibria: Mapping[str, Equilibrium]) -> Figure:
     equilibria : mapping
         Equilibria at one position by their headings, such as without and with friction; one may be "".
     """
-    from matplotlib.figure import Figure
+    from beamdyn.common.drawing.on_axes import figure_of
+    from beamdyn.common.drawing.sheet import Paper
 
-    first, *_ = equilibria.values()
-    count = len(first.position.mechanism.bodies)
-    columns = min(3, count)
-    rows = -(-count // columns)
-    figure = Figure(figsize=(4.6 * columns, 4.4 * rows * len(equilibria)), layout="constrained")
-    parts: Any = figure.subfigures(len(equilibria), 1, squeeze=False)
-    for part, (heading, equilibrium) in zip(parts[:, 0], equilibria.items(), strict=True):
-        _draw_free_bodies(part.subplots(rows, columns, squeeze=False).ravel(), equilibrium)
+    rows = free_body_drawings(equilibria)
+    return figure_of(rows, Paper(_PANEL * max(map(len, rows)), (_PANEL,) * len(rows)))
+
+
+def free_body_drawings(equilibria: Mapping[str, Equilibrium]) -> list[list[Drawing]]:
+    """Drawings of every body with all that acts on it, three in a row; see `free_body_diagrams`."""
+    rows = []
+    for heading, equilibrium in equilibria.items():
         scale = _scale_of_actions(equilibrium)
-        words = f"1 mm of an arrow is {1 / (scale * _MM):.3g} N" if scale else ""
-        part.suptitle(": ".join(filter(None, (heading, words))), fontsize="medium")
-    return figure
+        bodies = equilibrium.position.mechanism.bodies
+        made = [free_body_drawing(equilibrium, body, scale, heading) for body in bodies]
+        rows += [made[i : i + 3] for i in range(0, len(made), 3)]
+    return rows
 
 
-def _draw_free_bodies(axes: np.ndarray, equilibrium: Equilibrium) -> None:
-    """Draw each body on axes of its own; those left over go."""
-    bodies, scale = equilibrium.position.mechanism.bodies, _scale_of_actions(equilibrium)
-    for body, ax in zip(bodies, axes, strict=False):
-        draw_free_body(equilibrium, body, ax, scale)
-    for ax in axes[len(bodies) :]:
-        ax.remove()
-
-
-def draw_free_body(equilibrium: Equilibrium, body: str, ax: Axes, scale: float) -> Axes:
-    """Draw the free-body diagram of a body: loads black, joints green; `scale` the length of 1 N [m/N]."""
-    corners = parts.outline(equilibrium.position, body)
-    _draw_body(ax, corners * _MM, 1.0)
+def free_body_drawing(equilibrium: Equilibrium, body: str, scale: float, heading: str = "") -> Drawing:
+    """The free-body diagram of a body: loads black, joints green; `scale` the length of 1 N [m/N]."""
+    sketch, corners = _Sketch(), parts.outline(equilibrium.position, body)
+    sketch.shapes.append(_body(corners * _MM))
     loads = {load.name for load in equilibrium.position.mechanism.loads}
     pulling = {name for name, _, _ in parts.shapes(equilibrium.position, "cable")} - loads
-    couples = []
+    couples, points = [], []
     for action in free_body(equilibrium, body):
         if not np.isfinite(action.at).all():
             couples.append(_describe_couple(action))
             continue
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
         inwards = towards and action.name not in pulling  # a push comes from outside, a cable pulls away
-        colour = LOAD if action.name in loads else REACTION
-        words = action.name.replace("friction of ", "friction of\n")  # narrow: the arrow lies in a face
-        _draw_arrow(ax, action.at, action.force, scale, colour, words, inwards)
-        ax.plot(*(action.at * _MM), "o", color="white", markeredgecolor="0.1", markersize=5, zorder=6)
-    ax.set_title("\n".join((body, *filter(None, couples))), fontsize="medium")
-    _frame(ax)
-    return ax
-
-
-def _frame(ax: Axes) -> None:
-    """Set limits to a square around all that is drawn, with room for labels."""
-    box = ax.dataLim
-    half = max(1.2 * box.width, 0.7 * box.height)
-    x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
-    ax.set(xlim=(x - half, x + half), ylim=(y - half, y + half), xlabel="x [mm]", ylabel="y [mm]")
-    ax.set_aspect("equal")
+        outer = parts.OuterForce(action.name, action.at, action.force, action.name not in loads)
+        _add_arrow(sketch, outer, scale, inwards)
+        points.append(Symbol("pin", action.at * _MM, "pin", 5.0))
+    sketch.shapes += points
+    title = "\n".join((", ".join(filter(None, (body, heading))), *filter(None, couples)))
+    return sketch.drawing(title=title, words=f"Free body of {body}", newton=scale * _MM)
 
 
 def _describe_couple(action: Action) -> str:
-    return f"{action.name}: couple {action.couple:.4g} N m" if abs(action.couple) > 1e-12 else ""
+    return f"{action.name}: couple {action.couple:.4g} N m" if abs(action.couple) > _COUPLE else ""
 
 
 def _scale_of_actions(equilibrium: Equilibrium) -> float:
     mechanism = equilibrium.position.mechanism
     forces = [np.linalg.norm(a.force) for body in mechanism.bodies for a in free_body(equilibrium, body)]
-    low, high = parts.extent(equilibrium.position)
     largest = float(np.nanmax(forces, initial=0.0))
-    return _LONGEST * float(np.linalg.norm(high - low)) / largest if largest else 0.0
+    return _LONGEST * _size(equilibrium.position) / largest if largest else 0.0
 
 
 # Motion -------------------------------------------------------------------------------------------
@@ -328,18 +308,19 @@ def animate(
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(5.6, 5.2), layout="constrained")
-    ax = figure.subplots()
+    from beamdyn.common.drawing.layout import Fit
+    from beamdyn.common.drawing.on_axes import draw_on, frame_of
+
+    figure = Figure(figsize=(5.6, 5.2))
     low, high = (_MM * corner for corner in parts.extent(positions))
-    margin = 0.12 * float(np.linalg.norm(high - low))
     count = len(positions.batch)
 
     def frames() -> Iterator[int]:
         for k in (*range(count), *range(count - 2, 0, -1)):
-            ax.clear()
-            draw_mechanism(Position(positions.mechanism, positions.batch[k]), ax)
-            ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
-            ax.set_title(caption(k))
+            figure.clear()
+            drawing = mechanism_drawing(Position(positions.mechanism, positions.batch[k]), title=caption(k))
+            ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+            draw_on(ax, drawing, Fit.of(low, high, frame_of(ax), _ROOM))
             yield k
 
     save_animation(figure, path, frames(), 80, rate, force)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ class Member(NamedTuple):
     force: float
 
 
-class Arrow(NamedTuple):
+class OuterForce(NamedTuple):
     """A force: name, where it acts (2,) [m], its components (2,) [N], and whether it is a reaction."""
 
     name: str
@@ -27,23 +27,16 @@ class Arrow(NamedTuple):
     reaction: bool
 
 
-def points_of(mechanism: Mechanism, body: str) -> list[tuple[float, float]]:
-    """Points of a body in the drawing at which joints and loads act, without repeats [m]."""
-    ends = [end for part in mechanism.parts for shape in part.shapes() for end in shape.ends]
-    return list(dict.fromkeys((float(x), float(y)) for owner, (x, y) in ends if owner == body))
-
-
 def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndarray]]:
     """Shapes of a style: the name of the joint or load, the shape, and its points (k, 2) [m]."""
-    for part in position.mechanism.parts:
-        for shape in part.shapes():
-            if shape.style == style:
-                yield part.name, shape, np.array([position.point(*end) for end in shape.ends])
+    for name, shape in position.mechanism.shapes:
+        if shape.style == style:
+            yield name, shape, np.array([position.point(*end) for end in shape.ends])
 
 
 def outline(position: Position, body: str) -> np.ndarray:
     """Corners of the convex hull of a body's points at a position, anticlockwise, (k, 2) [m]."""
-    drawn = points_of(position.mechanism, body)
+    drawn = position.mechanism.points[body]
     now = np.array([position.point(body, at) for at in drawn]).reshape(-1, 2)
     return now if len(now) < 3 else _hull(now)
 
@@ -69,10 +62,10 @@ def _is_two_force(mechanism: Mechanism, body: str) -> bool:
     return len(joints) == 2 and all(joint.is_hinge for joint in joints) and not loaded
 
 
-def label_place(position: Position, body: str) -> np.ndarray:
-    """A place within a body for its name, away from the other bodies (2,) [m]."""
-    mine = outline(position, body)
-    others = [outline(position, other) for other in position.mechanism.bodies if other != body]
+def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
+    """A place within a body for its name, away from the other bodies, by the outlines of all (2,) [m]."""
+    mine = outlines[body]
+    others = [corners for other, corners in outlines.items() if other != body and len(corners)]
     centre = mine.mean(axis=0)
     if not others:
         return centre
@@ -85,7 +78,7 @@ def members(position: Position, equilibrium: Equilibrium | None = None) -> Itera
     """Bars and bodies with two pins."""
     yield from _members("bar", position, equilibrium)
     for body in two_force_bodies(position.mechanism):
-        ends = np.array([position.point(body, at) for at in points_of(position.mechanism, body)])
+        ends = np.array([position.point(body, at) for at in position.mechanism.points[body]])
         yield Member(body, ends, np.nan if equilibrium is None else _axial(equilibrium, body, ends))
 
 
@@ -108,13 +101,13 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
     return float(at_end[0])
 
 
-def outer_forces(equilibrium: Equilibrium) -> list[Arrow]:
+def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
     """Forces on the mechanism from outside: loads, and reactions of the ground."""
     mechanism = equilibrium.position.mechanism
     loads = {load.name for load in mechanism.loads}
     outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}
     return [
-        Arrow(action.name, action.at, action.force, action.name not in loads)
+        OuterForce(action.name, action.at, action.force, action.name not in loads)
         for body in mechanism.bodies
         for action in free_body(equilibrium, body)
         if action.name in outer and np.isfinite(action.at).all()
@@ -123,12 +116,13 @@ def outer_forces(equilibrium: Equilibrium) -> list[Arrow]:
 
 def extent(*positions: Position) -> tuple[np.ndarray, np.ndarray]:
     """Least and greatest coordinates (2,) of all points at some positions [m]."""
-    points = np.concatenate(
-        [
-            np.asarray(position.point(body, at)).reshape(-1, 2)
-            for position in positions
-            for body in (*position.mechanism.bodies, GROUND)
-            for at in points_of(position.mechanism, body)
-        ]
-    )
-    return points.min(axis=0), points.max(axis=0)
+    points = [
+        np.asarray(position.point(body, at)).reshape(-1, 2)
+        for position in positions
+        for body, drawn in position.mechanism.points.items()
+        for at in drawn
+    ]
+    if not points:
+        return np.zeros(2), np.zeros(2)
+    every = np.concatenate(points)
+    return every.min(axis=0), every.max(axis=0)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.pictures import COLOURS
-from brakes.drawings.mechanism import draw_open_and_closed
-from brakes.planar import Equilibrium, Position
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,41 +33,47 @@ class StrokeChart(NamedTuple):
     place: float
 
 
-def mechanism_figure(drawn: Position, shown: Equilibrium, heading: str, chart: StrokeChart | None) -> Figure:
-    """Draw a mechanism as drawn, at one position with its forces, and its loads over the stroke.
+def mechanism_figure(drawing: Drawing, chart: StrokeChart | None) -> Figure:
+    """Draw a mechanism and its loads over the stroke.
 
     Parameters
     ----------
-    drawn : Position
-        Drawn as a shadow.
-    shown : Equilibrium
-        At one position.
-    heading : str
-        Title, of one line or more.
+    drawing : Drawing
+        From `brakes.drawings.mechanism.open_and_closed`.
     chart : StrokeChart, optional
         Forces and moments have panels of their own.
     """
     from matplotlib.figure import Figure
 
+    from beamdyn.common.drawing.on_axes import draw_in
+
     width = 12.0 if chart else 7.5
     figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long
-    top = 0.97 - 0.04 * (1 + heading.count("\n"))
-    panels = _panels(chart) if chart else []
-    cells = figure.add_gridspec(
-        max(len(panels), 1), 2 if chart else 1, wspace=0.2, hspace=0.08,
-        left=0.8 / width, right=1 - 0.2 / width, bottom=0.1, top=top,
-    )  # fmt: skip
-    ax = draw_open_and_closed(drawn, shown, figure.add_subplot(cells[:, 0]))
-    ax.set_title(heading, fontsize="medium" if "\n" in heading else None)
+    draw_in(figure, (0.005, 0.01, (6.2 if chart else width) / width - 0.01, 0.98), drawing)
+    if chart is not None:
+        plot_chart(figure, chart, left=7.0 / width)
+    return figure
+
+
+def chart_figure(chart: StrokeChart) -> Figure:
+    """Draw the loads over the stroke."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 6.0))
+    plot_chart(figure, chart, left=0.12)
+    return figure
+
+
+def plot_chart(figure: Figure, chart: StrokeChart, left: float) -> None:
+    """Plot forces and moments below one another, from a part of the figure's width on."""
+    panels = _panels(chart)
+    cells = figure.add_gridspec(len(panels), 1, hspace=0.08, left=left, right=0.985, bottom=0.1, top=0.95)
     for row, (curves, label) in enumerate(panels):
-        assert chart is not None
         last = row == len(panels) - 1
-        axes = plot_curves(
-            chart.travel, curves, figure.add_subplot(cells[row, 1]), chart.label if last else "", label
-        )
+        xlabel = chart.label if last else ""
+        axes = plot_curves(chart.travel, curves, figure.add_subplot(cells[row, 0]), xlabel, label)
         axes.axvline(chart.place, color="0.4", linewidth=1, linestyle=":")
         axes.tick_params(labelbottom=last)
-    return figure
 
 
 def _panels(chart: StrokeChart) -> list[tuple[Mapping[str, np.ndarray], str]]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, not_negative, numbers, positive, together
 from beamdyn.common.checks import flag, kind, refuse, set_fields, several
+from beamdyn.common.one_line import error_at_most, spanned
 from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
 
 
@@ -26,6 +28,13 @@ class DrumBrake:
     ------
     ValueError
         If there is no shoe, the tuples differ in length, or the drum radii differ.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> drum.DrumBrake((shoe, shoe), leading=(True, False)).leading
+    (True, False)
     """
 
     shoes: tuple[Shoe, ...]
@@ -46,14 +55,30 @@ class DrumBrake:
 
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
-    """Assemble a leading and a trailing shoe; the same shoe twice unless a second is given."""
+    """Assemble a leading and a trailing shoe; the same shoe twice unless a second is given.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> drum.simplex(shoe).leading  # one leads, one trails
+    (True, False)
+    """
     kind("leading", leading, Shoe)
     kind("trailing", trailing, Shoe | None)
     return DrumBrake((leading, trailing or leading), (True, False))
 
 
 def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
-    """Assemble two shoes that lead forward and trail in reverse; the same twice unless a second is given."""
+    """Assemble two shoes that lead forward and trail in reverse; the same twice unless a second is given.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> drum.duplex(shoe).leading  # both lead
+    (True, True)
+    """
     kind("first", first, Shoe)
     kind("second", second, Shoe | None)
     return DrumBrake((first, second or first), (True, True))
@@ -79,6 +104,14 @@ class BrakeResult(SlidesOrLocks):
         Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
         Of the shoe that locks first.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> found = drum.brake_torque(drum.simplex(shoe), friction=0.35, force=1000.0)
+    >>> found.shoes[0].leading, found.shoes[1].leading
+    (True, False)
     """
 
     brake: DrumBrake
@@ -93,6 +126,13 @@ class BrakeResult(SlidesOrLocks):
     locking_friction: Numbers
     margin: Numbers
     locked: Numbers
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
+        yield f"C* {spanned(self.c_star)}"
+        yield error_at_most([np.max(shoe.closure) for shoe in self.shoes])
+        yield "locked" if np.any(self.locked) else "slides"
 
 
 def brake_torque(
@@ -126,6 +166,14 @@ def brake_torque(
     ------
     ValueError
         As for `shoe_torque`.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> found = drum.brake_torque(drum.simplex(shoe), friction=0.35, force=1000.0)
+    >>> bool(found.torque == sum(each.torque for each in found.shoes))
+    True
     """
     kind("brake", brake, DrumBrake)
     reverse = flag("reverse", reverse)
@@ -182,7 +230,13 @@ def _largest(values: list[Numbers]) -> Numbers:
 
 
 def wheel_cylinder_force(bore: Numbers, line_pressure: Numbers) -> Numbers:
-    """Compute the force [N] of a wheel cylinder's piston from its bore [m] and the line pressure [Pa]."""
+    """Compute the force [N] of a wheel cylinder's piston from its bore [m] and the line pressure [Pa].
+
+    Examples
+    --------
+    >>> round(float(drum.wheel_cylinder_force(bore=0.02, line_pressure=5e6)), 1)  # N: p pi d^2 / 4
+    1570.8
+    """
     return np.pi / 4 * positive("bore", bore, "m") ** 2 * not_negative("line_pressure", line_pressure, "Pa")
 
 
@@ -222,6 +276,11 @@ def stop_energy(
     ------
     ValueError
         If a value is out of bounds, the final speed is not below the first, or the radius is missing.
+
+    Examples
+    --------
+    >>> drum.stop_energy(mass=1000.0, speed=20.0)  # J: m v^2 / 2
+    200000.0
     """
     m, v1, v2 = (
         positive("mass", mass, "kg"),
@@ -262,6 +321,11 @@ def temperature_rise(
     ------
     ValueError
         If a value is out of bounds.
+
+    Examples
+    --------
+    >>> drum.temperature_rise(energy=100e3, drum_mass=5.0)  # K
+    40.0
     """
     part = not_negative("share", share)
     refuse(np.asarray(part) > 1, "share", part, "", "give a fraction of the energy, from 0 to 1")

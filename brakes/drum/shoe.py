@@ -8,6 +8,7 @@ instead (delta = 0), which is right for b = 0 only. In axes turned by delta the 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -16,6 +17,7 @@ import numpy as np
 from beamdyn.common.array_checks import Numbers, keep_checked, not_negative, positive, together
 from beamdyn.common.checks import flag, kind, one_of, refuse
 from beamdyn.common.described import Described
+from beamdyn.common.one_line import error_at_most, spanned
 from beamdyn.common.results import Result
 
 _START = "start of the lining, from straight down, where the pin is"
@@ -56,6 +58,13 @@ class Shoe:
     ValueError
         If a length is not positive, the pin not below the centre or far from the drum, the force not
         above the pin, or the arc empty, over the pin, or past the pressure's second zero.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> round(float(shoe.moment_arm), 3)  # m
+    0.225
     """
 
     drum_radius: Annotated[Numbers, Described("m", "r", "inner radius of the drum", above=0)]
@@ -218,6 +227,14 @@ class ShoeResult(SlidesOrLocks):
         1 - friction / locking_friction: 0 at locking, negative past it.
     locked : ndarray of bool
         Whether the friction is at or past self-locking.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> found = drum.shoe_torque(shoe, force=1000.0, friction=0.35)
+    >>> bool(found.locked), round(float(found.locking_friction), 3)
+    (False, 0.999)
     """
 
     shoe: Shoe
@@ -236,6 +253,13 @@ class ShoeResult(SlidesOrLocks):
     locking_friction: Numbers
     margin: Numbers
     locked: Numbers
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{'leading' if self.leading else 'trailing'}, torque {spanned(self.torque, 'N m')}"
+        yield f"C* {spanned(self.c_star)}"
+        yield f"{error_at_most(self.closure)}"
+        yield "locked" if np.any(self.locked) else "slides"
 
     def pressure(self, alpha: Numbers) -> np.ndarray:
         """Pressure [Pa] at angles alpha [rad], 0 off the lining; of one case."""
@@ -284,6 +308,13 @@ def shoe_torque(
     With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
     sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
     d = r K - b S - c C; torque = mu A p0 r K.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> round(float(drum.shoe_torque(shoe, force=1000.0, friction=0.35, leading=True).torque), 2)  # N m
+    176.73
     """
     kind("shoe", shoe, Shoe)
     leading = flag("leading", leading)

@@ -8,6 +8,7 @@ psi, until the right piston reaches its bottom. A piston's position is where its
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -16,6 +17,7 @@ import numpy as np
 from beamdyn.common.array_checks import Numbers, keep_checked, positive, together
 from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
+from beamdyn.common.one_line import error_at_most, spanned, warned
 from beamdyn.common.results import Result
 from brakes.forklift.levers import Levers
 from brakes.forklift.vehicle import ACUTE
@@ -46,6 +48,11 @@ class DuoServo:
     ------
     ValueError
         If a length is not positive, or a pin is not inside the drum on its side.
+
+    Examples
+    --------
+    >>> forklift.BENDIX_12_5.drum_radius  # m
+    0.15875
     """
 
     drum_radius: Annotated[Numbers, Described("m", "r", "inner radius of the drum", above=0)]
@@ -243,6 +250,12 @@ class ShoeMotion(Result):
         drum [m] (negative: a gap), and its angle on the lining at rest, from +x [rad].
     levers : Levers
         Lever arms and directions at the end.
+
+    Examples
+    --------
+    >>> motion = forklift.BENDIX_12_5.move_shoes(0.0106)
+    >>> round(float(np.degrees(motion.seating_turn)), 2)  # until the linings touch
+    5.23
     """
 
     geometry: DuoServo
@@ -258,6 +271,14 @@ class ShoeMotion(Result):
     lining_penetration: Numbers
     penetration_angle: Numbers
     levers: Levers
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"drum turns {spanned(np.degrees(self.drum_turn), 'deg')}"
+        travels = (spanned(np.multiply(1e3, each), "mm") for each in (self.right_travel, self.left_travel))
+        yield f"pistons travel {' and '.join(travels)}"
+        yield error_at_most(self.residual)
+        yield warned(self.interference)
 
     @property
     def residual(self) -> Numbers:

@@ -19,6 +19,7 @@ roots below self-locking, s < min(a1, b2).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -26,6 +27,7 @@ import numpy as np
 
 from beamdyn.common.array_checks import Numbers, positive, together
 from beamdyn.common.checks import InvalidValue, refuse
+from beamdyn.common.one_line import error_at_most, spanned, warned
 from beamdyn.common.results import Result
 from brakes.forklift.levers import Levers
 
@@ -69,12 +71,19 @@ class InternalForces(Result):
     leading_share, trailing_share : ndarray
         Shares of the shoes in the torque, B / (B + D) and D / (B + D).
     residual : ndarray
-        Largest of the `equilibrium_equations`, with the larger of T / r and P_T as the unit of force and r
-        as that of length.
+        Largest of the `equilibrium_equations`, nondimensional: with the larger of T / r and P_T as the unit
+        of force and r as that of length.
     status : str or ndarray of str
         ``"equilibrium"``, ``"locked"`` or ``"no solution"``; the forces are nan for the last two.
     warnings : tuple of str
         Reasons to doubt the result, a sentence each.
+
+    Examples
+    --------
+    >>> brake = forklift.BENDIX_12_5
+    >>> forces = forklift.internal_forces(brake, torque=11000.0, piston_force=11650.0, clearance=0.0106)
+    >>> round(float(forces.leading_share + forces.trailing_share), 9)
+    1.0
     """
 
     levers: Levers
@@ -101,6 +110,13 @@ class InternalForces(Result):
     residual: Numbers
     status: Any
     warnings: tuple[str, ...]
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"torque {spanned(self.torque, 'N m')}, C* {spanned(self.c_star)}"
+        yield error_at_most(self.residual)
+        yield f"{self.status}" if np.ndim(self.status) == 0 else self.message
+        yield warned(self.warnings)
 
     @property
     def message(self) -> str:
@@ -154,6 +170,13 @@ def internal_forces(
     ValueError
         If neither torque nor friction is given, a value is out of bounds, or a torque is demanded of
         a lining whose friction is at or past self-locking.
+
+    Examples
+    --------
+    >>> brake = forklift.BENDIX_12_5
+    >>> forces = forklift.internal_forces(brake, torque=11000.0, piston_force=11650.0, clearance=0.0106)
+    >>> round(float(forces.Q), -2)  # N; Yoo et al. (1997): 34800
+    34800.0
     """
     if torque is None and friction is None:
         raise ValueError("give torque, or friction, or both to compare them")
@@ -301,15 +324,25 @@ def equilibrium_equations(
     levers : Levers
         Arms and directions; with `Levers.in_radii` the unit of length is the drum's radius.
     torque, piston_force : float or ndarray
-        T and P_T, in units consistent with the lengths and the unknowns.
+        T [N m] and P_T [N]; or both in units consistent with other ones of the levers and the unknowns.
     unknowns : ndarray, shape (10, ...)
-        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L.
+        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L [N].
 
     Returns
     -------
     ndarray, shape (10, ...)
         In the paper's order: forces and moment of the leading, then of the trailing shoe; A normal to B,
         C to D; equal friction A D = B C; torque of the drum. Zero at a solution.
+
+    Examples
+    --------
+    >>> brake = forklift.BENDIX_12_5
+    >>> forces = forklift.internal_forces(brake, torque=11e3, piston_force=11650.0, clearance=0.0106)
+    >>> pins = (forces.A_vector, forces.B_vector, forces.C_vector, forces.D_vector)
+    >>> unknowns = np.array([*np.concatenate(pins), forces.Q, forces.P_L])
+    >>> left = forklift.equilibrium_equations(forces.levers, 11e3, 11650.0, unknowns)
+    >>> bool((abs(left) < 1e-6).all())  # in balance: N, N m
+    True
     """
     r, alpha1, alpha2, gamma = levers.drum_radius, levers.alpha1, levers.alpha2, levers.gamma
     Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L = unknowns

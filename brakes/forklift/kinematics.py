@@ -13,12 +13,14 @@ leave mobility 2.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from beamdyn.common.checks import count, kind, positive
+from beamdyn.common.one_line import number, warned
 from beamdyn.common.results import Result, plain
 from brakes.forklift.duo_servo import DuoServo
 from brakes.planar import (
@@ -60,6 +62,12 @@ class Stage:
         Rank of the constraints.
     least_singular_value : ndarray, shape (S,)
         Smallest singular value of the constraints over the largest: near 0 a constraint is nearly redundant.
+
+    Examples
+    --------
+    >>> stage = forklift.follow_shoes(forklift.BENDIX_12_5, clearance=0.0106, positions=5).drum
+    >>> bool((stage.rank == stage.constraints).all())  # no redundant constraint on the way
+    True
     """
 
     mechanism: Mechanism = field(repr=False)
@@ -77,7 +85,14 @@ class Stage:
 
 @dataclass(frozen=True)
 class Event:
-    """An event of the motion: its stage, the turn [rad] at which it happens, and a sentence."""
+    """An event of the motion: its stage, the turn [rad] at which it happens, and a sentence.
+
+    Examples
+    --------
+    >>> followed = forklift.follow_shoes(forklift.BENDIX_12_5, clearance=0.0106, positions=5)
+    >>> all(isinstance(event, forklift.Event) for event in followed.events)
+    True
+    """
 
     name: str
     stage: int
@@ -103,6 +118,12 @@ class Kinematics(Result):
         Each lining reaches the drum; the right piston reaches its bottom.
     interference : tuple of str
         Parts that collide, a sentence each.
+
+    Examples
+    --------
+    >>> followed = forklift.follow_shoes(forklift.BENDIX_12_5, clearance=0.0106, positions=5)
+    >>> followed.clearance
+    0.0106
     """
 
     geometry: DuoServo
@@ -112,6 +133,12 @@ class Kinematics(Result):
     drum: Stage
     events: tuple[Event, ...]
     interference: tuple[str, ...]
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"clearance {number(1e3 * self.clearance, 'mm')}"
+        yield from (f"{each.name} at {number(np.degrees(each.turn), 'deg')}" for each in self.events)
+        yield warned(self.interference)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings."""
@@ -145,6 +172,12 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     ------
     ValueError
         If the clearance is not positive, or larger than the drum allows.
+
+    Examples
+    --------
+    >>> followed = forklift.follow_shoes(forklift.BENDIX_12_5, clearance=0.0106, positions=5)
+    >>> followed.right.turn.shape
+    (5,)
     """
     kind("geometry", geometry, DuoServo)
     c, n = positive("clearance", clearance, "m"), count("positions", positions, 2, MOST_POSITIONS)
@@ -159,6 +192,11 @@ def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "r
     """Build the mechanism of stage 1 of one side, ``"right"`` or ``"left"``.
 
     Its loads have no size: they measure the piston's travel and drive the clearance to zero.
+
+    Examples
+    --------
+    >>> len(forklift.build_seating_mechanism(forklift.BENDIX_12_5, 0.0106).joints) > 0
+    True
     """
     drawn = geometry.tip, geometry.adjuster, _contact(geometry, clearance)
     tip, adjuster, contact = (_on_side(side, p) for p in drawn)
@@ -171,7 +209,15 @@ def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "r
 
 
 def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
-    """Build the mechanism of stage 2, described with the linings seated and the tips at these points [m]."""
+    """Build the mechanism of stage 2, described with the linings seated and the tips at these points [m].
+
+    Examples
+    --------
+    >>> motion = forklift.BENDIX_12_5.move_shoes(0.0106)
+    >>> tips = tuple(map(float, motion.right_tip)), tuple(map(float, motion.left_tip))
+    >>> len(forklift.build_turning_mechanism(forklift.BENDIX_12_5, *tips).bodies) > 0
+    True
+    """
     sides = {"right": right_tip, "left": left_tip}
     parts = [f"{side} {part}" for side in sides for part in ("shoe", "dummy", "piston")]
     joints: list[Joint] = [
@@ -249,6 +295,13 @@ def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
         Number of independent rows.
     least : ndarray, shape (S,)
         Smallest singular value over the largest.
+
+    Examples
+    --------
+    >>> seating = forklift.build_seating_mechanism(forklift.BENDIX_12_5, 0.0106)
+    >>> rank, least = forklift.constraint_rank(planar.assemble(seating))
+    >>> bool((least > 0).all())
+    True
     """
     system = position.mechanism.system
     rows = system.rows(position.batch).gradient[:, : system.constraints]

@@ -37,6 +37,12 @@ class Levers:
     ------
     ValueError
         If a length is not positive, or P_L and Q, or P_T and Q, more than 90 degrees apart.
+
+    Examples
+    --------
+    >>> levers = forklift.BENDIX_12_5.move_shoes(0.0106).levers
+    >>> float(levers.drum_radius)  # m
+    0.15875
     """
 
     drum_radius: Annotated[Numbers, Described("m", "r", "inner radius of the drum", above=0)]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers
 from beamdyn.common.checks import kind
+from beamdyn.common.one_line import spanned, warned
 from beamdyn.common.results import Result
 from brakes.forklift.duo_servo import ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
@@ -26,11 +28,29 @@ class Procedure(Result):
         The shoes' motion; its lever arms go into the forces.
     forces : InternalForces
         The forces.
+
+    Examples
+    --------
+    >>> truck = forklift.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> conditions = forklift.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> motion = forklift.BENDIX_12_5.move_shoes(0.0106)
+    >>> found = forklift.brake_procedure(truck, conditions, motion, piston_force=11650.0)
+    >>> bool(found.forces.torque == found.stop.torque_per_brake)
+    True
     """
 
     stop: Stop
     motion: ShoeMotion
     forces: InternalForces
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"stop in {spanned(self.stop.distance, 'm')}"
+        yield f"drum turns {spanned(np.degrees(self.motion.drum_turn), 'deg')}"
+        yield f"C* {spanned(self.forces.c_star)}"
+        yield warned(self.warnings)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -71,6 +91,17 @@ def brake_procedure(
     ------
     ValueError
         As for `stop` and `internal_forces`.
+
+    Examples
+    --------
+    >>> truck = forklift.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> conditions = forklift.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> motion = forklift.BENDIX_12_5.move_shoes(0.0106)
+    >>> found = forklift.brake_procedure(truck, conditions, motion, piston_force=11650.0)
+    >>> round(float(found.stop.distance), 2)  # m
+    13.42
     """
     kind("motion", motion, ShoeMotion, "DuoServo.move_shoes gives one")
     stopped = stop(truck, conditions)

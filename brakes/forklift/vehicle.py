@@ -16,6 +16,7 @@ The paper's equation (3) and its tables differ; `brakes.reproduce.forklift_as_pr
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple
 
@@ -24,6 +25,7 @@ import numpy as np
 from beamdyn.common.array_checks import Numbers, keep_checked, together
 from beamdyn.common.checks import kind, refuse
 from beamdyn.common.described import Described
+from beamdyn.common.one_line import spanned
 from beamdyn.common.results import Result
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
@@ -38,10 +40,14 @@ class Truck:
 
     Parameters
     ----------
-    empty_mass, load_mass : float or ndarray
-        Mass of the empty truck and of the load [kg]; the load may be 0.
-    empty_cg, load_cg : tuple
-        Their centres of gravity (x, y) [m]; a load on the fork has x < 0.
+    empty_mass : float or ndarray
+        Mass of the empty truck [kg].
+    empty_cg : tuple
+        Its centre of gravity (x, y) [m].
+    load_mass : float or ndarray
+        Mass of the load [kg], which may be 0.
+    load_cg : tuple
+        Its centre of gravity (x, y) [m]; a load on the fork has x < 0.
     front_wheel_radius : float or ndarray
         Radius r1 of the front wheels [m].
     wheelbase : float or ndarray
@@ -52,6 +58,14 @@ class Truck:
     ValueError
         If a mass or length is not positive, or the centre of gravity, of the truck alone or with its
         load, is not between the axles and above the ground.
+
+    Examples
+    --------
+    >>> truck = forklift.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> float(truck.mass)  # kg, with its load
+    9450.0
     """
 
     empty_mass: Annotated[Numbers, Described("kg", "m", "mass of the empty truck", above=0)]
@@ -117,6 +131,11 @@ class Truck:
 
 
 @dataclass(frozen=True)
+class SlopeAngle(Described):
+    """Description of the angle of a slope, which files may give in %, too."""
+
+
+@dataclass(frozen=True)
 class StopConditions:
     """Road, speed and timing of a stop; every value may be an array, one entry per case.
 
@@ -139,9 +158,15 @@ class StopConditions:
     ------
     ValueError
         If a value is out of bounds.
+
+    Examples
+    --------
+    >>> conditions = forklift.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> round(conditions.speed, 3)  # m/s
+    5.556
     """
 
-    slope: Annotated[Numbers, Described("rad", "beta", "slope, downhill as it travels", **ACUTE)]
+    slope: Annotated[Numbers, SlopeAngle("rad", "beta", "slope, downhill as it travels", **ACUTE)]
     speed: Annotated[Numbers, Described("m/s", "V", "speed before the stop", above=0)]
     friction: Annotated[
         Numbers, Described("", "mu", "friction of tyres on the ground", above=0, most=2, remedy="70 % is 0.7")
@@ -187,6 +212,16 @@ class Stop(Result):
         Normal forces of the axles while it slides [N].
     standing_front_load, standing_rear_load : ndarray
         The same at rest on the slope [N].
+
+    Examples
+    --------
+    >>> truck = forklift.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> steep = np.radians(27.0)
+    >>> conditions = forklift.StopConditions(steep, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
+    >>> bool(forklift.stop(truck, conditions).stops)  # on 27 deg it does not
+    False
     """
 
     truck: Truck
@@ -206,6 +241,12 @@ class Stop(Result):
     rear_load: Numbers
     standing_front_load: Numbers
     standing_rear_load: Numbers
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{spanned(self.distance, 'm')} in {spanned(self.time, 's')}"
+        yield f"torque of a brake {spanned(self.torque_per_brake, 'N m')}"
+        yield self.message
 
     @property
     def residual(self) -> Numbers:
@@ -252,6 +293,15 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     ------
     ValueError
         If the truck would overturn at rest on the slope, or the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> truck = forklift.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> conditions = forklift.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> round(float(forklift.stop(truck, conditions).distance), 2)  # m
+    13.42
     """
     kind("truck", truck, Truck)
     kind("conditions", conditions, StopConditions)

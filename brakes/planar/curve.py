@@ -13,10 +13,12 @@ from brakes.planar.linear import decompose
 from brakes.planar.system import System
 
 _SMALL_STEP = 1e-9  # convergence is quadratic: the next step would be below rounding
+_GUIDING_STEP = 1e-5  # of nodes, which guide: positions asked for are solved to rounding
 _CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the mechanism
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
 _FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # step sizes along the curve, over the length of the mechanism
 _NODES = 20_000
+_HALVINGS = 12  # of a segment: as near as its cubic is to the curve, or nearer
 
 
 class Node(NamedTuple):
@@ -70,7 +72,7 @@ def _advance(system: System, node: Node, step: float) -> Node | None:
     """The node a step along the tangent further, or None if the step is too long."""
     ahead = node.y + step * node.tangent
     try:
-        y = close_joints(system, ahead[None], node.tangent[None])[0]
+        y = close_joints(system, ahead[None], node.tangent[None], _GUIDING_STEP)[0]
     except np.linalg.LinAlgError:
         return None
     following = node_at(system, y, node.tangent)
@@ -78,19 +80,22 @@ def _advance(system: System, node: Node, step: float) -> Node | None:
     return following if near else None
 
 
-def close_joints(system: System, y: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+def close_joints(
+    system: System, y: np.ndarray, tangent: np.ndarray, last_step: float = _SMALL_STEP
+) -> np.ndarray:
     """Close the joints of positions (S, 3 n), each within the plane normal to its tangent (S, 3 n)."""
-    return newton(system, y, lambda v, g, moved: (((moved - y) * tangent).sum(axis=1), tangent))
+    return newton(system, y, lambda v, g, moved: (((moved - y) * tangent).sum(axis=1), tangent), last_step)
 
 
 Equation = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def newton(system: System, y: np.ndarray, equation: Equation) -> np.ndarray:
+def newton(system: System, y: np.ndarray, equation: Equation, last_step: float = _SMALL_STEP) -> np.ndarray:
     """Newton's method on the joints and one more equation, for all positions (S, 3 n) at once.
 
     The equation takes the values (S, loads) and gradients (S, loads, 3 n) of the loads, and y; it gives a
-    residual (S,) and its gradient (S, 3 n).
+    residual (S,) and its gradient (S, 3 n).  It ends after a step below `last_step`; the error that is left
+    is about its square.
     """
     m, loads = system.constraints, list(system.loads.values())
     for tries in range(20):
@@ -102,7 +107,7 @@ def newton(system: System, y: np.ndarray, equation: Equation) -> np.ndarray:
         step = _step(np.concatenate((rows.gradient[:, :m], gradient[:, None]), axis=1), residual, system)
         y = y - step
         size = np.abs(step).max()
-        if size < _SMALL_STEP:
+        if size < last_step:
             return y
         if not size < 10.0:
             break
@@ -147,12 +152,19 @@ def solve_at_values(system: System, nodes: list[Node], k: int, target: np.ndarra
     chord = _chords(nodes)[segment]
     ends = value[segment], value[segment + 1], slope[segment] * chord, slope[segment + 1] * chord
     low, high = np.zeros(len(target)), np.ones(len(target))
-    for _ in range(30):
+    for _ in range(_HALVINGS):
         middle = (low + high) / 2
         below = _cubic(middle, *ends) < target
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     start, _ = _between(nodes, segment, low)
     return newton(system, start, lambda v, g, _: (v[:, k] - target, g[:, k]))
+
+
+def solve_at_sum(system: System, a: Node, b: Node, weight: np.ndarray, target: float) -> np.ndarray:
+    """Coordinates (3 n,) between two nodes at which a weighted sum of the loads' coordinates has a value."""
+    low, high = a.value @ weight, b.value @ weight
+    start = a.y + (target - low) / (high - low) * (b.y - a.y)
+    return newton(system, start[None], lambda v, g, _: (v @ weight - target, weight @ g))[0]
 
 
 def solve_at_arc_lengths(system: System, nodes: list[Node], target: np.ndarray) -> np.ndarray:

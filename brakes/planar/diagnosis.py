@@ -12,11 +12,27 @@ _STILL = 1e-8  # relative motion that counts as rounding
 
 
 class AssemblyError(ValueError):
-    """The joints of a mechanism cannot be brought together."""
+    """The joints of a mechanism cannot be brought together.
+
+    Examples
+    --------
+    >>> issubclass(planar.AssemblyError, ValueError)
+    True
+    """
+
+
+class OppositeTravelError(ValueError):
+    """A travel that should grow with the driver falls."""
 
 
 class OutOfReachError(ValueError):
-    """A driver does not reach a value: it turns back before it."""
+    """A driver does not reach a value: it turns back before it.
+
+    Examples
+    --------
+    >>> issubclass(planar.OutOfReachError, ValueError)
+    True
+    """
 
 
 def moving_bodies(motions: np.ndarray) -> np.ndarray:

@@ -24,6 +24,14 @@ class Action(NamedTuple):
         The force [N]; nan where it is not determined.
     couple : float
         The couple, anticlockwise positive [N m].
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> loads = (planar.Force("hand", "lever", (0.3, 0.0), (0, -1), 100.0), planar.Moment("held", "lever"))
+    >>> actions = planar.free_body(planar.solve(planar.Mechanism(("lever",), (hinge,), loads)), "lever")
+    >>> [action.name for action in actions]
+    ['hinge', 'hand', 'held']
     """
 
     name: str
@@ -48,6 +56,17 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     -------
     tuple of Action
         Joints, then loads, then friction; forces and moments of all add up to zero.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> loads = (
+    ...     planar.Force("hand", "lever", at=(0.3, 0.0), direction=(0, -1), magnitude=100.0),
+    ...     planar.Force("work", "lever", at=(0.1, 0.0), direction=(0, 1)),
+    ... )
+    >>> actions = planar.free_body(planar.solve(planar.Mechanism(("lever",), (hinge,), loads)), "lever")
+    >>> sum(action.force for action in actions).round(9)  # N: in balance
+    array([0., 0.])
     """
     kind("equilibrium", equilibrium, Equilibrium, "solve(mechanism) gives one")
     mechanism = equilibrium.position.mechanism

@@ -39,6 +39,14 @@ class FrictionalEquilibrium:
         then acts the other way; where the mechanism jams, so that no load moves it, all forces are nan.
     without : Equilibrium
         Without friction.
+
+    Examples
+    --------
+    >>> axle = planar.Pin("axle", "drum", "ground", at=(0.0, 0.0), radius=0.01, friction=0.1)
+    >>> loads = (planar.Force("weight", "drum", (0.1, 0.0), (0, -1), 100.0), planar.Moment("lift", "drum"))
+    >>> found = planar.solve_with_friction(planar.Mechanism(("drum",), (axle,), loads), "lift")
+    >>> found.squeeze.has_answer, found.release.has_answer
+    (True, True)
     """
 
     squeeze: Equilibrium
@@ -72,6 +80,18 @@ def solve_with_friction(
     ------
     ValueError
         If the mobility is not 1, or equilibrium without friction is not determined.
+
+    Examples
+    --------
+    >>> axle = planar.Pin("axle", "drum", "ground", at=(0.0, 0.0), radius=0.01, friction=0.1)
+    >>> loads = (
+    ...     planar.Force("weight", "drum", at=(0.1, 0.0), direction=(0, -1), magnitude=100.0),
+    ...     planar.Moment("lift", "drum"),
+    ... )
+    >>> found = planar.solve_with_friction(planar.Mechanism(("drum",), (axle,), loads), "lift")
+    >>> ways = found.release, found.without, found.squeeze
+    >>> [round(float(way.amplitudes["lift"]), 3) for way in ways]  # N m
+    [9.9, 10.0, 10.1]
     """
     check_mechanism(mechanism, position)
     mechanism.load(driver)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from types import NoneType
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, NamedTuple, get_args
 
 from beamdyn.common.checks import flag, kind, set_fields, several
 from beamdyn.common.described import Described, described_hints, descriptions, kinds_of
@@ -44,16 +45,37 @@ def check_inputs(core: object, prefix: str = "") -> None:
     ValueError
         With the first that is refused.
     """
-    hints = described_hints(type(core))
-    for name, described in descriptions(type(core)).items():
-        value, kinds = getattr(core, name), kinds_of(hints[name])
-        if value is None and NoneType in kinds:
+    for name, wanted in _wanted(type(core)).items():
+        value = getattr(core, name)
+        if value is None and wanted.optional:
             continue
-        if is_list(hints[name]):
+        if wanted.listed:
             for k, part in enumerate(several(prefix + name, value, object)):
-                _check(f"{prefix}{name}[{k}]", part, kinds_of(get_args(kinds[0])[0])[0], described)
-        elif (checked := _check(prefix + name, value, kinds[0], described)) is not None:
+                _check(f"{prefix}{name}[{k}]", part, wanted.kind, wanted.described)
+        elif (checked := _check(prefix + name, value, wanted.kind, wanted.described)) is not None:
             set_fields(core, **{name: checked})
+
+
+class _Wanted(NamedTuple):
+    """What is wanted of an input: its type, or that of its parts if it is a list; whether it may be None."""
+
+    kind: Any
+    listed: bool
+    optional: bool
+    described: Described
+
+
+@cache
+def _wanted(core: type) -> dict[str, _Wanted]:
+    """What is wanted of each input of a dataclass: told once, since designs are made by the thousand."""
+    hints = described_hints(core)
+    return {name: _read(hints[name], described) for name, described in descriptions(core).items()}
+
+
+def _read(hint: Any, described: Described) -> _Wanted:
+    kinds, listed = kinds_of(hint), is_list(hint)
+    kind = kinds_of(get_args(kinds[0])[0])[0] if listed else kinds[0]
+    return _Wanted(kind, listed, NoneType in kinds, described)
 
 
 def _check(name: str, value: object, wanted: Any, described: Described) -> float | None:

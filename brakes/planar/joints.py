@@ -33,6 +33,12 @@ class Pin(Joint):
         Where it is on the other body, if not at the same place; `assemble` brings the two together.
     radius, friction : float
         Radius of the pivot [m] and coefficient of friction.
+
+    Examples
+    --------
+    >>> pin = planar.Pin("axle", "drum", "ground", at=(0.25, -0.2), radius=0.015, friction=0.1)
+    >>> pin.is_hinge
+    True
     """
 
     label = "pins"
@@ -88,6 +94,12 @@ class Bar(Joint):
         Its end on the body, and on the other, in the drawing [m].
     length : float, optional
         Its length [m] if not the drawing's.
+
+    Examples
+    --------
+    >>> rod = planar.Bar("rod", "handle", "ground", at=(0.02, 0.02), to=(0.04, 0.055))
+    >>> rod.acts_on
+    ('handle', 'ground')
     """
 
     label = "bars"
@@ -130,6 +142,12 @@ class Slot(Joint):
         A point of the slot [m], if it does not pass through `at` in the drawing.
     friction : float
         Coefficient of friction.
+
+    Examples
+    --------
+    >>> guide = planar.Slot("guide", "slider", "ground", at=(0.1, 0.0), along=(1, 0))
+    >>> guide.acts_on
+    ('slider', 'ground')
     """
 
     label = "slots"
@@ -171,6 +189,12 @@ class Contact(Joint):
         A point of the face [m], if it does not pass through `at` in the drawing.
     friction : float
         Coefficient of friction.
+
+    Examples
+    --------
+    >>> block = planar.Contact("block", "lever", "drum", at=(0.25, -0.05), normal=(0, 1), friction=0.4)
+    >>> block.friction
+    0.4
     """
 
     label = "contacts"
@@ -212,6 +236,11 @@ class RotationLock(Joint):
         Its name and the two bodies.
     ratio : float
         Ratio of the angles; other than 1 it is a gear, whose housing is on the ground.
+
+    Examples
+    --------
+    >>> planar.RotationLock("gears", "left arm", "right arm", ratio=-1.0).ratio
+    -1.0
     """
 
     label = "bodies that turn together"
@@ -239,6 +268,12 @@ class Cable(Joint):
         Its points in the drawing [m], from end to end.
     length : float, optional
         Its length [m] if not the drawing's.
+
+    Examples
+    --------
+    >>> wire = planar.Cable("wire", ("arm", "ground"), ((0.04, 0.0), (0.0, 0.05)))
+    >>> wire.points
+    ((0.04, 0.0), (0.0, 0.05))
     """
 
     label = "cables of fixed length"

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from beamdyn.common.checks import count, positive, real_array
-from brakes.planar.curve import Node, find_zero, follow, node_at, solve_at_arc_lengths, solve_at_values
+from brakes.planar.curve import (
+    Node,
+    find_zero,
+    follow,
+    node_at,
+    solve_at_arc_lengths,
+    solve_at_sum,
+    solve_at_values,
+)
 from brakes.planar.diagnosis import (
     AssemblyError,
+    OppositeTravelError,
     OutOfReachError,
     explain_mobility,
     join_names,
@@ -41,6 +50,19 @@ class Toggle:
         Bodies that stand still there while others move.
     message : str
         The same as a sentence.
+
+    Examples
+    --------
+    >>> joints = (
+    ...     planar.Pin("A", "arm", "ground", at=(0, -0.04)),
+    ...     planar.Pin("B", "arm", "handle", at=(0, 0)),
+    ...     planar.Bar("CD", "handle", "ground", at=(0.02, 0.02), to=(0.04, 0.0546)),
+    ... )
+    >>> hand = planar.Force("hand", "handle", at=(0.08, 0.012), direction=(0, -1))
+    >>> clamp = planar.Mechanism(("handle", "arm"), joints, (hand,))
+    >>> path = planar.trace(clamp, "hand", length=0.06, points=41)
+    >>> [round(1e3 * toggle.value, 1) for toggle in path.toggles]  # mm of the hand, where it stands still
+    [14.3]
     """
 
     load: str | None
@@ -73,6 +95,14 @@ class Stroke:
         Toggle positions passed between the least and the greatest value.
     closure : float
         Largest gap that is left in a joint, over the length of the mechanism.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> turn = planar.Moment("turn", "lever")
+    >>> run = planar.stroke(planar.Mechanism(("lever",), (hinge,), (turn,)), "turn", [0.0, 0.1, 0.2])
+    >>> run.driver, run.values, run.toggles
+    ('turn', array([0. , 0.1, 0.2]), ())
     """
 
     driver: str
@@ -92,6 +122,12 @@ def assemble(mechanism: Mechanism) -> Position:
     ------
     AssemblyError
         If they cannot be: by how much, and which joint is furthest apart.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> float(planar.assemble(planar.Mechanism(("lever",), (hinge,))).angle("lever"))  # rad: as drawn
+    0.0
     """
     check_mechanism(mechanism)
     system = mechanism.system
@@ -145,10 +181,17 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
         If the driver turns back before a value: where.
     ValueError
         If the mobility is not 1, or the driver does not move.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> turn = planar.Moment("turn", "lever")
+    >>> run = planar.stroke(planar.Mechanism(("lever",), (hinge,), (turn,)), "turn", [0.0, 0.1, 0.2])  # rad
+    >>> run.position.angle("lever").round(9)
+    array([0. , 0.1, 0.2])
     """
     check_mechanism(mechanism)
-    if not mechanism.load(driver).has_coordinate:
-        raise ValueError(f"driver {driver!r} follows its body and has no coordinate: drive another load")
+    _check_coordinate(mechanism, driver)
     system, start, k = _start(mechanism, driver)
     target = real_array("values", values) / _units(system)[k]
     if not target.size:
@@ -157,17 +200,16 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     down = _reach(system, start.reversed(), k, target.min(initial=0.0), driver)
     nodes = [node.reversed() for node in reversed(down[1:])] + up
     try:
-        y = solve_at_values(system, nodes, k, target + start.value[k])
+        ends = (min(0.0, target.min()), max(0.0, target.max()))
+        y = solve_at_values(system, nodes, k, start.value[k] + np.append(target, ends))
     except np.linalg.LinAlgError:
         raise OutOfReachError(
             f"no position is found at one of the values of {driver!r}: it turns back or motions branch "
             "there; end the stroke before it, or follow the motion with trace"
         ) from None
     if len(nodes) > 1:  # the curve followed ends past the values
-        span = start.value[k] + np.array((min(0.0, target.min()), max(0.0, target.max())))
-        low, high = solve_at_values(system, nodes, k, span)
-        nodes[0], nodes[-1] = node_at(system, low, nodes[0].tangent), node_at(system, high, nodes[-1].tangent)
-    return _finish(mechanism, driver, start, nodes, y)
+        nodes[0], nodes[-1] = (node_at(system, y[i], nodes[end].tangent) for i, end in ((-2, 0), (-1, -1)))
+    return _finish(mechanism, driver, start, nodes, y[:-2])
 
 
 def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -> Stroke:
@@ -188,6 +230,19 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     Returns
     -------
     Stroke
+
+    Examples
+    --------
+    >>> joints = (
+    ...     planar.Pin("A", "crank", "ground", at=(0.0, 0.0)),
+    ...     planar.Pin("B", "crank", "coupler", at=(0.0, 0.04)),
+    ...     planar.Pin("C", "coupler", "rocker", at=(0.12, 0.09)),
+    ...     planar.Pin("D", "rocker", "ground", at=(0.1, 0.0)),
+    ... )
+    >>> linkage = planar.Mechanism(("crank", "coupler", "rocker"), joints, (planar.Moment("drive", "crank"),))
+    >>> path = planar.trace(linkage, "drive", length=0.1, points=5)
+    >>> np.hypot(*path.position.point("crank", (0.0, 0.04)).T).round(9)  # the pin B stays on its circle
+    array([0.04, 0.04, 0.04, 0.04, 0.04])
     """
     check_mechanism(mechanism)
     system, start, _ = _start(mechanism, driver)
@@ -203,6 +258,64 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     y = solve_at_arc_lengths(system, nodes, s)
     nodes[-1] = node_at(system, y[-1], nodes[-1].tangent)
     return _finish(mechanism, driver, start, nodes, y)
+
+
+def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, float], value: float) -> float:
+    """Travel of the driver at which a weighted sum of the travels of loads first has a value [m or rad].
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The mechanism, of mobility 1.
+    driver : str
+        The load whose coordinate grows.
+    weights : mapping
+        Weight of each load in the sum, which must grow with the driver at first.
+    value : float
+        The value of the sum, above 0 [m or rad].
+
+    Raises
+    ------
+    AssemblyError, OutOfReachError
+        If the joints cannot be brought together, or the driver or the sum turns back before.
+    OppositeTravelError
+        If the sum falls while the driver grows.
+    ValueError
+        If the mobility is not 1, the driver does not move, or a load has no coordinate.
+    """
+    check_mechanism(mechanism)
+    for name in (driver, *weights):
+        _check_coordinate(mechanism, name)
+    system, start, k = _start(mechanism, driver)
+    unit = _units(system)
+    weight = np.array([weights.get(name, 0.0) for name in system.loads]) * unit
+    if weight @ start.rate <= 0:
+        raise OppositeTravelError(f"the travel of {join_names(weights)} falls while {driver!r} grows")
+    target, before = float(weight @ start.value) + value, start
+    for node in follow(system, start):
+        last = _before_turning(system, before, node, (np.eye(len(unit))[k], weight))
+        if weight @ last.value >= target:
+            y = solve_at_sum(system, before, last, weight, target)
+            return float((node_at(system, y, last.tangent).value[k] - start.value[k]) * unit[k])
+        if last is not node:
+            reached, moved = weight @ (last.value - start.value), (last.value[k] - start.value[k]) * unit[k]
+            raise OutOfReachError(
+                f"the travel of {join_names(weights)} cannot reach {value:g}: it is {reached:.9g} where it "
+                f"or the driver {driver!r} turns back, at {moved:.9g}"
+            )
+        before = node
+    raise AssertionError("a curve is followed until it ends with an error")
+
+
+def _before_turning(system: System, a: Node, b: Node, sums: Sequence[np.ndarray]) -> Node:
+    """The second of two nodes, or where the first of these sums of coordinates turns back before it."""
+    turning = [find_zero(system, a, b, lambda n, w=w: float(n.rate @ w)) for w in sums if b.rate @ w <= 0]
+    return min(turning, key=lambda node: float((node.y - a.y) @ a.tangent), default=b)
+
+
+def _check_coordinate(mechanism: Mechanism, name: str) -> None:
+    if not mechanism.load(name).has_coordinate:
+        raise ValueError(f"driver {name!r} follows its body and has no coordinate: drive another load")
 
 
 def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:

@@ -38,6 +38,12 @@ class Force(AppliedLoad):
         Its size along the direction [N]; None: unknown.
     follows : bool
         Whether its direction turns with the body; otherwise it is fixed in space.
+
+    Examples
+    --------
+    >>> hand = planar.Force("hand", "lever", at=(0.3, 0.0), direction=(0, -1), magnitude=100.0)
+    >>> hand.with_magnitude(50.0).magnitude  # N
+    50.0
     """
 
     label = "forces"
@@ -83,6 +89,11 @@ class Moment(AppliedLoad):
         Its size [N m]; None: unknown.
     other : str
         The body that has the opposite moment.
+
+    Examples
+    --------
+    >>> planar.Moment("torque", "drum", magnitude=12.0).magnitude  # N m
+    12.0
     """
 
     label = "moments"
@@ -108,6 +119,12 @@ class CablePair(AppliedLoad):
         The points on the body, and on the other, in the drawing [m].
     magnitude : float, optional
         Its tension [N]; None: unknown.
+
+    Examples
+    --------
+    >>> pull = planar.CablePair("wire", "right arm", "left arm", at=(-0.042, 0.002), to=(-0.042, 0.034))
+    >>> pull.acts_on
+    ('right arm', 'left arm')
     """
 
     label = "cables with their housing"
@@ -147,6 +164,14 @@ class Spring(Load):
         Stiffness [N/m].
     free_length : float
         Length without force [m].
+
+    Examples
+    --------
+    >>> spring = planar.Spring(
+    ...     "return", "arm", "ground", at=(0.0, 0.0), to=(0.0, 0.1), stiffness=500.0, free_length=0.08
+    ... )
+    >>> spring.stiffness  # N/m
+    500.0
     """
 
     label = "springs"
@@ -189,6 +214,11 @@ class TorsionSpring(Load):
         Relative angle without moment, counted from the drawing [rad].
     other : str
         The other body.
+
+    Examples
+    --------
+    >>> planar.TorsionSpring("return", "arm", stiffness=2.0, free_angle=-0.5).stiffness  # N m/rad
+    2.0
     """
 
     label = "torsion springs"

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.checks import kind, set_fields, several
-from brakes.planar.part import Joint, Load, Part
+from brakes.planar.part import Joint, Load, Part, Shape
 from brakes.planar.points import GROUND, Point, suggest
 from brakes.planar.rows import FrictionLaw
 from brakes.planar.system import System, build
@@ -35,6 +35,17 @@ class Mechanism:
     ------
     ValueError
         If a name is used twice, or a joint or load is on a body that does not exist, or on nothing.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> loads = (
+    ...     planar.Force("hand", "lever", at=(0.3, 0.0), direction=(0, -1), magnitude=100.0),
+    ...     planar.Force("work", "lever", at=(0.1, 0.0), direction=(0, 1)),
+    ... )
+    >>> found = planar.solve(planar.Mechanism(("lever",), (hinge,), loads))
+    >>> round(float(found.amplitudes["work"]), 6)  # N: 100 * 0.3 / 0.1
+    300.0
     """
 
     bodies: tuple[str, ...]
@@ -75,6 +86,19 @@ class Mechanism:
         return build(self.bodies, joints, {load.name: load.row() for load in self.loads}, self.friction)
 
     @cached_property
+    def shapes(self) -> tuple[tuple[str, Shape], ...]:
+        """Shapes of all joints and loads, with their names."""
+        return tuple((part.name, shape) for part in self.parts for shape in part.shapes())
+
+    @cached_property
+    def points(self) -> dict[str, list[Point]]:
+        """Points of each body and the ground at which joints and loads act, without repeats [m]."""
+        found: dict[str, list[Point]] = {body: [] for body in (*self.bodies, GROUND)}
+        for owner, (x, y) in dict.fromkeys(end for _, shape in self.shapes for end in shape.ends):
+            found[owner].append((float(x), float(y)))
+        return found
+
+    @cached_property
     def drawing(self) -> Position:
         """The position drawn, whether or not its joints close."""
         return Position(self, np.zeros(self.system.size))
@@ -103,7 +127,15 @@ class Position:
     mechanism : Mechanism
         The mechanism.
     coordinates : ndarray, shape (3 n,) or (S, 3 n)
-        Displacements from the drawing in the scales of the system.
+        Displacements of the n bodies from the drawing, nondimensional: x and y over the size of the
+        mechanism, and the angle times the radius of the body's points over that size.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> place = planar.assemble(planar.Mechanism(("lever",), (hinge,)))
+    >>> place.point("lever", (0.3, 0.0)).round(9)
+    array([0.3, 0. ])
     """
 
     mechanism: Mechanism

@@ -17,11 +17,23 @@ from brakes.planar.rows import FrictionLaw, Row
 class Shape(NamedTuple):
     """A part of the drawing of a joint or load.
 
-    style : how it is drawn: a bar or cable through `ends`, a spring between them, a pin or a face at the
-        first of them; a force is drawn as an arrow where it is known.
-    ends : points of bodies; each body's outline goes around those of all its joints and loads.
-    frame : the body with which a face turns.
-    along : direction of a face.
+    Parameters
+    ----------
+    style : {"bar", "cable", "spring", "pin", "face", "force"}
+        A bar or cable through `ends`, a spring between them, a pin or a face at the first of them; a force is
+        drawn as an arrow where it is known.
+    ends : tuple of End
+        Points of bodies; each body's outline goes around those of all its joints and loads.
+    frame : str
+        The body with which a face turns.
+    along : tuple of float
+        Direction of a face.
+
+    Examples
+    --------
+    >>> pin = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> [shape.style for shape in pin.shapes()]
+    ['pin']
     """
 
     style: Literal["bar", "cable", "spring", "pin", "face", "force"]
@@ -58,6 +70,11 @@ class Part:
     ------
     ValueError
         If an input is not as it is described.
+
+    Examples
+    --------
+    >>> isinstance(planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0)), planar.Part)
+    True
     """
 
     label: ClassVar[str] = ""
@@ -129,6 +146,11 @@ class Joint(Part):
        `signs` if the signs of the size have names, and `is_hinge` if it holds a point and nothing else.
     7. Add the class to `JOINTS` and to `__all__` in `brakes/planar/__init__.py`, and write a test of it
        against a closed form.  Files, forms, statics, strokes, friction and drawings take it from there.
+
+    Examples
+    --------
+    >>> [joint.__name__ for joint in planar.JOINTS]
+    ['Pin', 'Bar', 'Slot', 'Contact', 'RotationLock', 'Cable']
     """
 
     signs: ClassVar[tuple[str, str]] = ("", "")
@@ -163,6 +185,11 @@ class Load(Part):
        a load with a field `magnitude` derive from `AppliedLoad` instead, which does that.
     4. `shapes`, `label` and `one_way` are as those of a joint.
     5. Add the class to `LOADS` and to `__all__` in `brakes/planar/__init__.py`, and write a test.
+
+    Examples
+    --------
+    >>> [load.__name__ for load in planar.LOADS]
+    ['Force', 'Moment', 'CablePair', 'Spring', 'TorsionSpring']
     """
 
     def row(self) -> Row:

@@ -66,6 +66,14 @@ class Equilibrium:
         Contacts that pull, cables that push, and ill-conditioned positions.
     multiplier : ndarray, shape (..., R)
         Size of every row of joints, loads and friction [N, N m].
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> hand = planar.Force("hand", "lever", at=(0.3, 0.0), direction=(0, -1), magnitude=100.0)
+    >>> found = planar.solve(planar.Mechanism(("lever",), (hinge,), (hand,)))
+    >>> found.has_answer, found.loose  # nothing holds the lever
+    (False, ('lever',))
     """
 
     position: Position = field(repr=False)
@@ -137,6 +145,15 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     ------
     AssemblyError
         If no position is given and the joints cannot be brought together.
+
+    Examples
+    --------
+    >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
+    >>> hand = planar.Force("hand", "lever", at=(0.3, 0.0), direction=(0, -1), magnitude=100.0)
+    >>> held = planar.Moment("held", "lever")
+    >>> found = planar.solve(planar.Mechanism(("lever",), (hinge,), (hand, held)))
+    >>> round(float(found.amplitudes["held"]), 6), found.reactions["hinge"].round(6)
+    (30.0, array([  0., 100.]))
     """
     check_mechanism(mechanism, position)
     position = assemble(mechanism) if position is None else position.of(mechanism)

@@ -104,20 +104,24 @@ class System:
         for arrays in self.arrays:
             arrays.add(pose, Totals(value, force, couple))
         parts = np.stack((np.real(force), np.imag(force), couple / self.radius[:, None]), axis=-1)
-        gradient = np.moveaxis(parts[:, :-1], 2, 0).reshape(len(y), len(value), self.size)
-        return Rows(value.T, np.moveaxis(force, 2, 0), np.moveaxis(couple, 2, 0), gradient)
+        gradient = parts[:, :-1].transpose(2, 0, 1, 3).reshape(len(y), len(value), self.size)
+        return Rows(value.T, force.transpose(2, 0, 1), couple.transpose(2, 0, 1), gradient)
 
     def place(self, y: np.ndarray, body: str, at: Point) -> np.ndarray:
         """Where a point of a body is [m], shape (S, 2)."""
-        (centre, angle), k = self._pose(y), self.bodies[body]
+        k = self.bodies[body]
+        if 3 * k == self.size:  # the ground
+            return np.tile(np.array(at, dtype=float), (len(y), 1))
         arm = (complex(*at) - self.origin) / self.length - self.centre[k]
         # The displacement is added to the drawing, so that a point far from (0, 0) keeps its digits.
-        moved = (centre[k] - self.centre[k] + arm * (np.exp(1j * angle[k]) - 1)) * self.length
-        return np.array(at) + np.stack((moved.real, moved.imag), axis=-1)
+        shift = y[:, 3 * k] + 1j * y[:, 3 * k + 1]
+        moved = (shift + arm * (np.exp(1j * self.angle(y, body)) - 1)) * self.length
+        return np.array(at) + moved.view(float).reshape(-1, 2)
 
     def angle(self, y: np.ndarray, body: str) -> np.ndarray:
         """Angle of a body [rad], shape (S,)."""
-        return self._pose(y)[1][self.bodies[body]]
+        k = self.bodies[body]
+        return y[:, 3 * k + 2] / self.radius[k] if 3 * k < self.size else np.zeros(len(y))
 
     def _pose(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Centres (complex) and angles of all bodies and the ground, each (n + 1, S)."""

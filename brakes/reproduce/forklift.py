@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 from rich.console import Group
 
+from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.edge.input_sweep import Output
 from brakes.answers.tables import list_outputs
 from brakes.drawings.duo_servo import free_bodies, positions
@@ -233,11 +236,9 @@ def pictures() -> dict[str, Figure]:
 
 
 def _truck() -> Figure:
-    figure = Figure(figsize=(12.0, 5.0), layout="constrained")
-    for ax, name, shown in zip(figure.subplots(1, 2), _WAYS, _base_stops(), strict=True):
-        truck(ax, shown)
-        ax.set_title(f"{name}\n{ax.get_title()}", fontsize=10)
-    return figure
+    drawn = [(name, truck(shown)) for name, shown in zip(_WAYS, _base_stops(), strict=True)]
+    both = [replace(drawing, title=f"{name}\n{drawing.title}") for name, drawing in drawn]
+    return figure_of([both], Paper.of([both], 860.0))
 
 
 def _distance() -> Figure:
@@ -255,15 +256,11 @@ def _distance() -> Figure:
 
 
 def _stages() -> Figure:
-    figure = Figure(figsize=(11.0, 4.4), layout="constrained")
-    positions(figure, follow_shoes(BENDIX_12_5, _base("clearance")))
-    return figure
+    return figure_of([positions(follow_shoes(BENDIX_12_5, _base("clearance")))], Paper(790.0, (330.0,)))
 
 
 def _shoes() -> Figure:
-    figure = Figure(figsize=(10.0, 5.4), layout="constrained")
-    free_bodies(figure, base_forces(), follow_shoes(BENDIX_12_5, _base("clearance")))
-    return figure
+    return figure_of([free_bodies(base_forces(), follow_shoes(BENDIX_12_5, _base("clearance")))])
 
 
 def _over() -> Figure:

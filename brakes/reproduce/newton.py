@@ -7,11 +7,13 @@ B and D enter the moments by their sizes, so that Q and P_L are positive in all 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamdyn.common.array_checks import positive
+from beamdyn.common.one_line import counted, number
 from beamdyn.common.results import Result
 from brakes.forklift import Levers, equilibrium_equations
 
@@ -46,6 +48,11 @@ class NewtonResult(Result):
     iterations: int
     residual: float
     condition_number: float
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{counted(self.iterations, 'step')}, residual {number(self.residual)}"
+        yield self.message
 
     @property
     def message(self) -> str:

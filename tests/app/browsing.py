@@ -1,26 +1,36 @@
 """What a person does on the page of an interactive program in a real browser, and waits for."""
 
-DRAWING = "img.drawing[alt$='drawing of the result']"
+DRAWING = ".board[data-words$='drawing of the result']"
+CHARTS = ".charts[data-words$='charts of the result']"
+PICTURE = f"{DRAWING}, {CHARTS}"
 
 
 def go(page, name):
     """Bring a screen to the front, and wait until it is drawn."""
     page.get_by_role("tab", name=name).click()
     page.wait_for_function(
-        "wanted => document.querySelector(wanted)?.naturalWidth > 100",
-        arg=f"{DRAWING}[alt^='{name}']",
+        "wanted => [...document.querySelectorAll(wanted)].some(it => it.getBoundingClientRect().width > 100)",
+        arg=f"{DRAWING}[data-words^='{name}'], {CHARTS}[data-words^='{name}']",
     )
 
 
 def drawing(page):
-    return page.locator(f"{DRAWING}:visible").get_attribute("src")
+    """What identifies the drawing in front, or the charts of a screen that has only these."""
+    return in_front(page).get_attribute("data-picture")
+
+
+def in_front(page):
+    """The drawing of the screen in front, or its charts if it has only these."""
+    return page.locator(PICTURE).locator("visible=true").first
 
 
 def redrawn(page, before):
-    """Wait until another drawing is shown."""
+    """Wait until another drawing is shown, or other charts."""
     page.wait_for_function(
-        "([wanted, before]) => { const it = document.querySelector(wanted); return it && it.src != before }",
-        arg=[DRAWING, before],
+        "([wanted, before]) => { const it = [...document.querySelectorAll(wanted)].find("
+        "it => it.getBoundingClientRect().height > 50);"
+        " return it && it.dataset.picture != before; }",
+        arg=[PICTURE, before],
     )
 
 

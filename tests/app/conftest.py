@@ -26,20 +26,38 @@ def simulate(monkeypatch, tmp_path):
     """Run an async function with a maker of clients of a program: `simulate(program, body)`."""
     pytest.importorskip("nicegui", reason=NO_NICEGUI)
     monkeypatch.setenv("NICEGUI_STORAGE_PATH", str(tmp_path))
-    monkeypatch.setattr("beamdyn.common.app.screen_view.SOON", PATIENCE)  # each answer comes at once
 
-    def run(program, body):
+    def run(program, body, solver=None):
         from nicegui.testing.user_simulation import user_simulation
 
         from beamdyn.common.app.server import root_of
 
         async def main():
-            async with user_simulation(root=root_of(program)) as first:
+            async with user_simulation(root=root_of(program, solver or AtOnce())) as first:
                 await body(clients(first))
 
         asyncio.run(main())
 
     return run
+
+
+class AtOnce:
+    """What makes answers here and now, in place of `Processes`."""
+
+    def submit(self, task, *given):
+        made = asyncio.get_running_loop().create_future()
+        try:
+            made.set_result(task(*given))
+        except Exception as error:
+            made.set_exception(error)
+        return made
+
+
+class InThread:
+    """What makes answers beside the page's event loop."""
+
+    def submit(self, task, *given):
+        return asyncio.ensure_future(asyncio.to_thread(task, *given))
 
 
 def clients(first):
@@ -78,6 +96,15 @@ class Fields:
     def enter(self, path, text):
         with self.user.client:
             self.field(path).set_value(text)
+
+    def leave(self, path, text):
+        """Type into a field that is taken when it is left, as those of lists are."""
+        field = self.field(path)
+        with self.user.client:
+            field.set_value(text)
+            for listener in list(field._event_listeners.values()):
+                if listener.type == "blur":
+                    field._handle_event({"listener_id": listener.id, "args": {}})
 
     def go(self, name):
         """Bring a screen to the front."""
@@ -157,7 +184,7 @@ def opening(browser, address):
         page.set_default_navigation_timeout(1e3 * PATIENCE)
         page.goto(at or address(program))
         page.wait_for_function("window.did_handshake")  # what is typed before a page is reloaded is lost
-        page.wait_for_selector("img.drawing")
+        page.wait_for_selector(".board:visible, .chart:visible")
         return page
 
     yield open_page

@@ -13,8 +13,10 @@ from beamdyn.common.app.document_report import report_of
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Program
+from beamdyn.common.app.under_way import SOON
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.scene.physics import AUTO
+from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE
 
 pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.announced.OutsideLinearTheory")
@@ -120,7 +122,8 @@ def test_each_screen_shows_the_entries_that_it_solves(simulate, fields):
         assert [field.value for field in elements(page, "mount.radius")] == ["0.2 m"] * 2
         assert elements(page, "motion.rolling_radius") == []
 
-    simulate(BEAMDYN, body)
+    two = replace(SCENE, screens=(FREQUENCIES, STEADY_STATE))
+    simulate(Program("two", "Two screens", (two,)), body)
 
 
 def test_slider_follows_its_field_and_leaves_it_as_it_is(simulate, fields):
@@ -165,9 +168,7 @@ async def becomes(said, page):
     raise AssertionError(page.text())
 
 
-def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_next(
-    simulate, fields, monkeypatch
-):
+def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_next(simulate, fields):
     slow = Slow()
 
     async def body(client):
@@ -176,20 +177,20 @@ def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_n
         await becomes("Up to date.", page)
         slow.go.clear()
         slow.solved.clear()
-        monkeypatch.setattr("beamdyn.common.app.screen_view.SOON", 0.01)
         for radius in ("0.11 m", "0.12 m", "0.13 m", "0.14 m"):
             page.enter("mount.radius", radius)
             assert "Computing. Below is the last good result." in page.text()
-            assert page.greyed() == 1
+        await asyncio.sleep(2 * SOON)
+        assert page.greyed() == 1
         slow.go.set()
         await becomes("Up to date.", page)
         assert slow.solved == ["0.11 m", "0.14 m"]
         assert page.greyed() == 0
 
-    simulate(slow.program, body)
+    simulate(slow.program, body, InThread())
 
 
-def test_report_and_downloads_wait_for_the_answer(simulate, fields, monkeypatch):
+def test_report_and_downloads_wait_for_the_answer(simulate, fields):
     slow = Slow()
 
     async def body(client):
@@ -197,7 +198,6 @@ def test_report_and_downloads_wait_for_the_answer(simulate, fields, monkeypatch)
         user = await client()
         page = fields(user)
         await becomes("Up to date.", page)
-        monkeypatch.setattr("beamdyn.common.app.screen_view.SOON", 0.01)
         wanted = {"Report as HTML": "<table>", f"download {FREQUENCIES.name} as CSV": "frequency_Hz_1"}
         for i, (label, head) in enumerate(wanted.items()):
             slow.go.clear()
@@ -209,4 +209,4 @@ def test_report_and_downloads_wait_for_the_answer(simulate, fields, monkeypatch)
             assert head in (await user.download.next(timeout=PATIENCE)).text
             assert "Computing" not in page.text()
 
-    simulate(slow.program, body)
+    simulate(slow.program, body, InThread())

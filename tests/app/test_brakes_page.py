@@ -23,7 +23,7 @@ def test_opens_on_the_papers_base_case(simulate, fields):
 
 
 WRONG = {
-    "stop.speed": ("Vehicle", "20", 'stop.speed = "20": give a unit'),
+    "stop.speed": ("Vehicle", "20 s", 'stop.speed = "20 s": a unit of time'),
     "truck.empty_mass": ("Vehicle", "-3 kg", "it must be greater than 0"),
     "brake.tip_x": ("Kinematics", "fast", "not a number with a unit"),
     "stop.friction": ("Vehicle", "", "missing; give the"),

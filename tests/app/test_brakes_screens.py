@@ -11,6 +11,7 @@ from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.input_sweep import sweep_csv
+from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.rendering import csv_text, html, png, svg
 from brakes.app.bases import base
 from brakes.app.caliper import CALIPER
@@ -247,7 +248,7 @@ def test_an_entry_cannot_add_a_key():
     [("20 km/h", "m/s", "m/s", "5.555555556 m/s"), ("0.4 m", "m", "mm", "400 mm"), ("x", "m", "mm", "x")],
 )
 def test_another_unit_is_the_same_quantity(text, unit, target, expected):
-    assert in_unit(text, unit, target) == expected
+    assert in_unit(text, Quantity(unit, "", ""), target) == expected
 
 
 def test_mistake_about_no_field_is_kept():

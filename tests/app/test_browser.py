@@ -33,12 +33,13 @@ def test_change_by_keyboard_mistake_and_remedy(opened, program):
     number = good.partition(" ")[0]
     field(page, label).focus()
     page.keyboard.press("Control+a")
-    page.keyboard.type(number)
-    expect(shown(page, f'"{number}": give a unit')).to_be_visible()
+    page.keyboard.type(f"{number} x")
+    expect(shown(page, f'"{number} x": unknown unit')).to_be_visible()
     expect(page.locator(".greyed:visible")).to_have_count(1)
     expect(shown(page, "Below is the last good result.")).to_be_visible()
     assert drawing(page) == before
-    page.keyboard.type(good.removeprefix(number))
+    page.keyboard.press("Backspace")
+    page.keyboard.type(good.removeprefix(number).strip())
     expect(page.locator(".greyed:visible")).to_have_count(0)
     redrawn(page, before)
 

@@ -125,7 +125,7 @@ def test_markup_in_a_design_stays_text(visited, tmp_path):
     file.write_text(f'caliper = "v-brake"\ntitle = "{SCRIPT}"\n[run]\nfinger = "40 N"\n', encoding="utf-8")
     before = drawing(page)
     give(page, file)
-    page.wait_for_selector("img.drawing[alt^='Caliper']")
+    page.wait_for_selector(".board[data-words^='Caliper']")
     redrawn(page, before)
     expect(field(page, "title")).to_have_value(SCRIPT)
     expect(shown(page, SCRIPT)).to_be_visible()

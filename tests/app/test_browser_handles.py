@@ -92,8 +92,8 @@ def test_picture_is_fitted_when_the_point_is_let_go(page):
     held = drawing(page)
     page.mouse.up()
     page.wait_for_function(
-        "([wanted, held]) => document.querySelector(wanted).src != held",
-        arg=[f"{DRAWING}[alt^='Caliper']", held],
+        "([wanted, held]) => document.querySelector(wanted).dataset.picture != held",
+        arg=[f"{DRAWING}[data-words^='Caliper']", held],
     )
     assert middle(found)[1] > y + 5  # [px] the picture reaches farther up
 

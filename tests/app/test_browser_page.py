@@ -4,7 +4,7 @@ import pytest
 
 from beamdyn.app.program import BEAMDYN
 from brakes.app.program import BRAKES
-from tests.app.browsing import DRAWING, drawing, field, go, kept, redrawn, shown
+from tests.app.browsing import DRAWING, drawing, field, go, in_front, kept, redrawn, shown
 from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, PATIENCE, free_port, start, stop
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
@@ -29,7 +29,7 @@ def test_screen_fits_at_1280_and_at_800_pixels(pages, program, name):
         page.set_viewport_size({"width": width, "height": 900})
         go(page, name)
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-        box = page.locator(f"{DRAWING}:visible").bounding_box()
+        box = in_front(page).bounding_box()
         assert box["width"] > 0.5 * width
         assert box["x"] >= 0 and box["x"] + box["width"] <= width
 
@@ -94,14 +94,14 @@ def test_screen_is_chosen_by_keyboard(page):
     page.get_by_role("tab", name="Vehicle").focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
-    page.wait_for_selector(f"{DRAWING}[alt^='Kinematics']")
+    page.wait_for_selector(f"{DRAWING}[data-words^='Kinematics']")
 
 
 def test_mistake_in_a_folded_table_is_seen(page):
     go(page, "Vehicle")
     field(page, "friction, mu").fill("much")
     expect(page.get_by_text("stop.friction").locator("visible=true")).to_be_visible()
-    page.get_by_role("button", name="[stop]").click()
+    page.get_by_role("button", name="Road and stop").click()
     expect(page.get_by_text("stop.friction").locator("visible=true")).to_have_count(0)
     field(page, "wheelbase, L").fill("2 m")
     expect(page.get_by_text("stop.friction").locator("visible=true")).to_be_visible()

@@ -6,13 +6,13 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from matplotlib.patches import Circle
 
+from beamdyn.common.app import tasks
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.handles import Sheet, changed_texts, describe_place, draw_sheet
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Screen
-from beamdyn.common.edge.rendering import data_url
+from beamdyn.common.drawing.shapes import Disc, points_of_shape
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
 from brakes.app.program import BRAKES
@@ -73,35 +73,26 @@ def named(handles, label):
 
 
 def test_handle_is_where_the_svg_has_its_point(case):
-    """The view is made from matplotlib's transforms; the SVG says where its points really are."""
-    screen = case.screen
-
-    def draw(answer, at):
-        figure = screen.draw(answer, at)
-        for i, handle in enumerate(screen.handles(answer, at)):
-            figure.axes[0].plot(*(handle.scale * np.array(handle.at)), "o", gid=f"probe{i}")
-        return figure
-
-    made = draw_sheet(dataclasses.replace(screen, draw=draw), case.answer, case.place)
-    root = ET.fromstring(made.text)
+    """The view is made from the layout; the SVG says where its points really are."""
+    root = ET.fromstring(case.sheet.text)
     size = np.array(root.get("viewBox").split()[2:], dtype=float)
-    assert made.ratio == pytest.approx(size[0] / size[1], rel=1e-6)
-    for i, handle in enumerate(made.handles):
-        (mark,) = root.iterfind(f".//{SVG}g[@id='probe{i}']//{SVG}use")
-        at = np.array([float(mark.get("x")), float(mark.get("y"))]) / size
-        # numbers in the SVG have six decimals of a point
-        np.testing.assert_allclose(made.place(handle), at, rtol=0, atol=1e-8)
+    assert case.sheet.ratio == pytest.approx(size[0] / size[1], rel=1e-6)
+    grips = root.findall(f".//{SVG}circle[@class='grip']")
+    for grip, handle in zip(grips, case.sheet.handles, strict=True):
+        assert grip.get("id").endswith(handle.label.replace(" ", "-"))
+        at = np.array([float(grip.get("cx")), float(grip.get("cy"))]) / size
+        # numbers in the SVG have four decimals of a point
+        np.testing.assert_allclose(case.sheet.place(handle), at, rtol=0, atol=1e-6)
 
 
 def test_drawing_has_the_point_that_a_handle_moves(case):
-    ax = case.screen.draw(case.answer, case.place).axes[0]
-    circles = [patch for patch in ax.patches if isinstance(patch, Circle)]
-    points = [line.get_xydata() for line in ax.lines]
-    points += [[circle.center for circle in circles], [text.get_position() for text in ax.texts]]
-    points = np.vstack([np.reshape(np.asarray(p, dtype=float), (-1, 2)) for p in points if len(p)])
+    ((drawing, *_), *_) = case.screen.drawings(case.answer, case.place)
+    circles = [shape for shape in drawing.shapes if isinstance(shape, Disc)]
+    points = [points_of_shape(shape) for shape in drawing.shapes if not isinstance(shape, Disc)]
+    points = np.vstack([*points, [circle.centre for circle in circles] or np.empty((0, 2))])
     for handle in case.sheet.handles:
         at = handle.scale * np.array(handle.at)
-        on_circle = [abs(np.hypot(*(at - circle.center)) - circle.radius) for circle in circles]
+        on_circle = [abs(np.hypot(*(at - circle.centre)) - circle.radius) for circle in circles]
         assert min(*np.hypot(*(points - at).T), *on_circle) < 1e-9 * handle.scale, handle.label
 
 
@@ -267,7 +258,8 @@ class Handles:
 
     def picture(self, name):
         elements = self.page.user.client.elements.values()
-        return next(e for e in elements if e.tag == "img" and e.props["alt"].startswith(name)).props["src"]
+        boards = [e for e in elements if e.props.get("data-words", "").startswith(name)]
+        return next(e.props["data-picture"] for e in boards)
 
 
 def on_page(simulate, fields, name, body):
@@ -291,7 +283,7 @@ def test_pulled_point_writes_fields_and_is_drawn_there(simulate, fields):
         texts = {path: page.field(path).value for path in ("brake.adjuster_x", "brake.adjuster_y")}
         _, answer = answered(FORKLIFT, KINEMATICS, texts)
         # let go, the drawing is the usual one of that design, with nothing over it
-        assert handles.picture("Kinematics") == data_url(drawn(KINEMATICS, answer, 2.0))
+        assert handles.picture("Kinematics") == draw_sheet(KINEMATICS, answer, 2.0).name
 
     on_page(simulate, fields, "Kinematics", body)
 
@@ -305,8 +297,9 @@ def test_picture_stays_while_a_point_is_held_and_is_fitted_when_it_is_let_go(sim
         await handles.pull(label, 0.0, 0.0, done=True)
         assert handles.place(other) != pytest.approx(before, abs=1e-2)
         texts = {"dimensions.housing": page.field("dimensions.housing").value}
-        assert handles.picture("Caliper") == data_url(
-            drawn(CALIPERS, answered(CALIPER, CALIPERS, texts)[1], 1.0)
+        assert (
+            handles.picture("Caliper")
+            == draw_sheet(CALIPERS, answered(CALIPER, CALIPERS, texts)[1], 1.0).name
         )
 
     on_page(simulate, fields, "Caliper", body)
@@ -334,10 +327,11 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
     async def body(page, handles):
         label = "pin of the shoe"
         x, y = handles.place(label)
-        kept = OpenDocument.solve
-        monkeypatch.setattr(
-            OpenDocument, "solve", lambda self, screen: solved.append(screen) or kept(self, screen)
-        )
+        for way in ("glance", "solve"):  # while it is held, and when it is let go
+            kept = getattr(tasks, way)
+            monkeypatch.setattr(
+                tasks, way, lambda *given, kept=kept, way=way: solved.append(way) or kept(*given)
+            )
         for i in range(1, 31):
             handles.send(label, "pointerdown", x + 0.001 * i, y - 0.001 * i, False)
         handles.send(label, "pointerdown", x + 0.03, y - 0.03, True)
@@ -347,7 +341,7 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
             await asyncio.sleep(0.1)
         await asyncio.sleep(0.1)
         assert handles.place(label)[0] == pytest.approx(x + 0.03, abs=5e-3)  # the picture is fitted anew
-        assert len(solved) == 2  # the first place and the last, each once for two fields
+        assert solved == ["glance", "solve"]  # the first place and the last, each once for two fields
 
     on_page(simulate, fields, "Drum brake", body)
 

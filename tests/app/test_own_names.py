@@ -105,7 +105,26 @@ def test_foreign_origin_is_refused(port, host, origin, method, path, more):
 def test_no_other_page_frames_it(port, path, name):
     _, headers, _ = ask(port, path, Host=f"{name}:{port}")
     assert headers["X-Frame-Options"] == "DENY"
-    assert headers["Content-Security-Policy"] == "frame-ancestors 'none'"
+    assert "frame-ancestors 'none'" in policy_of(headers)
+
+
+def policy_of(headers):
+    """The rules of an answer's only Content-Security-Policy."""
+    (policy,) = headers.get_all("Content-Security-Policy")
+    return policy.split("; ")
+
+
+@pytest.mark.parametrize("path", ["/", "/no-such-page"])
+def test_page_loads_nothing_from_elsewhere_and_sends_nothing_there(port, path):
+    _, headers, _ = ask(port, path, Host=f"localhost:{port}")
+    rules = policy_of(headers)
+    assert {"default-src 'self'", "object-src 'none'", "base-uri 'none'", "form-action 'self'"} <= {*rules}
+    (connect,) = [rule for rule in rules if rule.startswith("connect-src")]
+    assert connect.split() == ["connect-src", "'self'", f"ws://localhost:{port}", f"wss://localhost:{port}"]
+    words = {word for rule in rules for word in rule.split()[1:]}
+    allowed = {"'self'", "'none'", "'unsafe-inline'", "'unsafe-eval'", "data:", "blob:"}
+    assert words - allowed == {f"ws://localhost:{port}", f"wss://localhost:{port}"}
+    assert headers["X-Content-Type-Options"] == "nosniff"
 
 
 def test_name_that_is_asked_for_is_answered():

@@ -7,6 +7,7 @@ import pytest
 
 from beamdyn.common.app.open_document import OpenDocument
 from brakes.app.program import BRAKES
+from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE
 
 VEHICLE = BRAKES.documents[0]
@@ -38,9 +39,7 @@ async def recalled(storage):
             await asyncio.sleep(0.01)
 
 
-def test_stored_design_is_read_before_anything_is_stored(simulate, storage, monkeypatch):
-    monkeypatch.setattr("beamdyn.common.app.screen_view.SOON", 0.0)  # the first answer comes late
-
+def test_stored_design_is_read_before_anything_is_stored(simulate, storage):
     async def body(client):
         user = await client(design(**{"stop.speed": "25 km/h"}))
         await recalled(storage)
@@ -49,7 +48,7 @@ def test_stored_design_is_read_before_anything_is_stored(simulate, storage, monk
         made = user.client.elements.values()
         assert "25 km/h" in [e.value for e in made if e.props.get("data-path") == "stop.speed"]
 
-    simulate(BRAKES, body)
+    simulate(BRAKES, body, InThread())  # the first answer comes late
 
 
 @pytest.mark.parametrize("stored", [None, design()], ids=["nothing", "the same design"])

@@ -10,6 +10,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.equations.fields.field import Term
 from beamdyn.modal.model import Model
+from beamdyn.transient import weakly_modulated
 from beamdyn.transient.gauss import propagate
 from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
 from beamdyn.transient.step_size import integrate
@@ -68,6 +69,20 @@ def test_changing_speed_agrees_with_steps_factorised_one_by_one(name, start, end
     for ours, wanted in ((found.state, exact.state), (found.acceleration, exact.acceleration)):
         scale = np.abs(wanted).max(axis=tuple(range(wanted.ndim - 1)))
         assert (np.abs(ours - wanted) <= 1e-6 * scale).all()
+
+
+def test_single_precision_of_the_second_order_is_far_below_the_accuracy(monkeypatch) -> None:
+    """It is taken where 1e-6 of the second order is within the accuracy; rounding is 6e-8 of it."""
+    system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(3), ROLLING.motion)
+    zero, modulated, accuracy = np.zeros(system.size), system.modulated(2.5, 10.0), 1e-6
+    states = []
+    for rounding in (weakly_modulated._SINGLE_ROUNDING, np.inf):
+        monkeypatch.setattr(weakly_modulated, "_SINGLE_ROUNDING", rounding)
+        segment = propagate_modulated(modulated, 2.5, 10.0, 801, zero, zero, 8, accuracy)
+        assert segment is not None
+        states.append(segment.state[:, 1 : system.size + 1])
+    difference = np.abs(states[0] - states[1]).max() / np.abs(states[1]).max()
+    assert 0 < difference < 0.1 * accuracy
 
 
 def test_strong_modulation_is_declined() -> None:

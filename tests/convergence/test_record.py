@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.modal.model import Model
-from beamdyn.transient import step_size
+from beamdyn.transient import record_steps, step_size
 from beamdyn.transient.gauss import tableau
 from beamdyn.transient.record_steps import RecordSteps, propagate_record
 from beamdyn.transient.step_size import StepSize
@@ -124,7 +124,9 @@ def test_ends_of_steps_over_several_samples_converge_with_the_order_of_the_stage
     system, zero = system_of(RECORDS[name]), np.zeros(1)
     sizes = END / 16 / np.array([1, 2, 3, 12])
     ends = [
-        propagate_record(system, RecordSteps.choose(system, END, FixedSteps(h)), zero, zero, 8).state[-1, 1:]
+        propagate_record(system, RecordSteps.choose(system, END, FixedSteps(h)), zero, zero, 8, 1e-15).state[
+            -1, 1:
+        ]
         for h in sizes
     ]
     errors = [np.abs(end / ends[-1] - 1).max() for end in ends[:-1]]
@@ -159,3 +161,59 @@ def test_long_pieces_are_divided() -> None:
     t = np.linspace(0, END, 4001)
     assert np.abs(run.deflection(t) - exact.deflection(t)).max() <= run.time_error + exact.time_error
     assert run.time_error <= 1e-6 * run.largest
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
+def test_expanded_maps_of_equal_steps_are_those_solved_one_by_one(accuracy: float, monkeypatch) -> None:
+    """Within the accuracy that their series is given, over the largest coordinate."""
+    system, zero = system_of(RECORDS["noisy"], 2), np.zeros(2)
+    steps = RecordSteps.choose(system, END, FixedSteps(1.1e-3))
+    assert len(steps) == len(TIMES) - 1 and len(steps.blocks) == 1
+    expanded = propagate_record(system, steps, zero, zero, 8, accuracy)
+    monkeypatch.setattr(record_steps, "_expand", lambda *arguments: False)
+    solved = propagate_record(system, steps, zero, zero, 8, accuracy)
+    for one, other in ((expanded.state[:, 1:3], solved.state[:, 1:3]), (expanded.state, solved.state)):
+        assert not np.array_equal(one, other)  # they were found in another way
+        np.testing.assert_allclose(one, other, rtol=0, atol=accuracy * np.abs(other).max())
+
+
+DRIFTING = np.cumsum((1 + 9e-7) ** np.arange(513)) - 1  # each step longer than the last by less than 1e-6
+UNEQUAL = np.cumsum(1 + 0.3 * np.random.default_rng(3).random(301))
+FINE = np.arange(1001.0)  # five samples a step
+
+
+@pytest.mark.parametrize("places", [DRIFTING, UNEQUAL, FINE], ids=["drifting", "unequal", "fine"])
+def test_steps_that_are_not_on_an_equal_grid_are_solved_one_by_one(places: np.ndarray, monkeypatch) -> None:
+    """Expanded maps are of equal steps between two samples; to the bit, as the same code is to run."""
+    times = (places - places[0]) * END / (places[-1] - places[0])
+    system, zero = system_of(bd.SampledRotation(times, noisy(1e-3, times)), 2), np.zeros(2)
+    h = END / 200 if places is FINE else 1.5 * END / len(places)
+    steps = RecordSteps.choose(system, END, FixedSteps(h))
+    assert len(steps) >= 128  # enough to be expanded
+    found = propagate_record(system, steps, zero, zero, 8, 1e-3)
+    monkeypatch.setattr(record_steps, "_expand", lambda *arguments: False)
+    solved = propagate_record(system, steps, zero, zero, 8, 1e-3)
+    np.testing.assert_array_equal(found.state, solved.state)
+
+
+def test_many_samples_at_unequal_times_keep_the_tolerance() -> None:
+    """At nearly steady speed, where equal steps would be expanded; in no more steps than samples."""
+    rng = np.random.default_rng(3)
+    times = 1e-3 * np.cumsum(1 + 0.3 * rng.random(1001))
+    times -= times[0]
+    values = 30 + 0.2 * np.sin(40 * times) ** 2 + 0.01 * rng.standard_normal(len(times))
+    made, end = scene(bd.SampledRotation(times, values)), float(times[-1])
+    run, exact = (bd.simulate(made, end, 2, tolerance) for tolerance in (1e-3, 1e-8))
+    t = np.linspace(0, end, 4001)
+    assert np.abs(run.deflection(t) - exact.deflection(t)).max() <= run.time_error + exact.time_error
+    assert run.time_error <= 1e-3 * run.largest and count_steps(run) < len(times)
+
+
+def test_a_jump_takes_one_step_between_samples_not_tiny_ones() -> None:
+    """Samples resolve the jump; steps between them have no kinks inside, whatever modes the jump excites."""
+    values = np.where(TIMES > END / 2, 10.0, 5.0)
+    run = bd.simulate(scene(bd.SampledRotation(TIMES, values, "pchip")), END, 5, 1e-2)
+    assert count_steps(run) <= len(TIMES) - 1
+    exact = bd.simulate(scene(bd.SampledRotation(TIMES, values, "pchip")), END, 5, 1e-6)
+    t = np.linspace(0, END, 4001)
+    assert np.abs(run.deflection(t) - exact.deflection(t)).max() <= run.time_error + exact.time_error

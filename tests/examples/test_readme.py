@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import matplotlib
 import pytest
+
+from beamdyn.cli import main
 
 ROOT = Path(__file__).parents[2]
 
@@ -50,3 +53,16 @@ def test_first_block_of_sweeps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_the_first_two_shell_blocks_are_install_and_test() -> None:
     install, test = blocks("README.md", "sh")[:2]
     assert "beamdyn reproduce" in install and "pytest" in test
+
+
+def test_page_on_spreads(capsys) -> None:
+    """Its Python runs, and its command prints the ranges of the page, which follow from no random number."""
+    names: dict[str, object] = {}
+    exec(blocks("docs/spread.md", "python")[0], names)
+    command = blocks("docs/spread.md", "sh")[0].replace("\\\n", " ").splitlines()[0]
+    assert main(shlex.split(command)[1:]) == 0
+    shown = capsys.readouterr().out
+    page = blocks("docs/spread.md", "text")[0].splitlines()
+    ranges = page[page.index("Ranges, by Ritz, at most 14 functions, batched") :][4:6]
+    assert [line.rpartition("corner")[0] in shown for line in ranges] == [True, True]  # then the error
+    assert all(line.startswith(" mode") for line in ranges)

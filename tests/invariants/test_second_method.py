@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -12,6 +13,8 @@ from numpy.polynomial import Polynomial
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
+from benchmarks.cases.reference.of_two_planes import blade_of_scene
+from benchmarks.cases.reference.resolved import known_frequencies
 from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged, solve
 from benchmarks.cases.reference.twisted_beam.cases import blade_of, cases
 from benchmarks.cases.reference.twisted_beam.energy import Deflection, spin_energy
@@ -170,3 +173,19 @@ def test_beamdyn(case, discretization):
     expected = frequencies(case)
     found = bd.natural_modes(scene_of(case), case["gamma"], len(expected), method)
     np.testing.assert_allclose(2 * np.pi * found.frequency, expected, rtol=rtol)
+
+
+def test_a_stiffness_that_falls_fast_is_resolved():
+    """EI falls linearly to 1e-6 of its value at mid-span: its reciprocal has a pole 1e-6 beyond that.
+
+    Compared with pieces that become shorter by factors of 1.5, other than those of the reference.  rtol: both
+    are known to rounding, 1e-13 of the squared frequency.
+    """
+    stiffness = bd.Table((0.0, 0.5, 0.5, 1.0), (1.0, 1e-6, 1.0, 1.0))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, stiffness), bd.Mount(0.1, math.pi, math.pi / 2))
+    known = known_frequencies(scene, 1.0, 3)
+    assert known.uncertainty.max() <= 1e-12
+    blade, unit = blade_of_scene(scene)
+    towards_middle = (0.5 - 0.5 * 1.5 ** -np.arange(1, 40)).tolist()
+    other = solve(replace(blade, breakpoints=[*towards_middle, 0.5]), unit, 3, 2).squares / unit**2
+    np.testing.assert_allclose(-(known.eigenvalue**2).real, other, rtol=1e-12)

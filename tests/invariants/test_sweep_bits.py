@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from importlib.util import find_spec
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 import beamdyn as bd
+from beamdyn.transient.transient import TransientRequest
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP as WINDOW
 from benchmarks.cases.scenes import SHORT_SPIN_UP as SCENE
 from tests.child_processes import by_proc, children
@@ -28,7 +30,11 @@ def run(**options):
 
 
 def bits(found):
-    return [a.tobytes() for a in (found.peaks, found.largest, found.time_error)], found.status
+    return (
+        [a.tobytes() for a in (found.peaks, found.largest, found.time_error)],
+        found.mode_error,
+        found.status,
+    )
 
 
 def chunks(store):
@@ -144,6 +150,40 @@ def test_ctrl_c_keeps_what_is_finished(undisturbed, tmp_path):
     assert children(os.getpid()) == others  # no process is left
     assert bits(run(store=tmp_path / "s")) == undisturbed
     assert before.items() <= chunks(tmp_path / "s").items()
+
+
+def test_samples_of_an_interrupted_sweep_are_given_up(monkeypatch):
+    """The motion that is under way ends, and no other begins: its thread and its hold on BLAS go with it."""
+    begun, go_on, integrate = [], threading.Event(), TransientRequest.run
+
+    def held(request):
+        begun.append(threading.current_thread())
+        assert go_on.wait(60)
+        return integrate(request)
+
+    def interrupt(done, total):
+        while not begun:
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(TransientRequest, "run", held)
+    with pytest.raises(KeyboardInterrupt), ThreadPoolExecutor(1) as executor:
+        run(modes=2, executor=executor, progress=interrupt)
+    go_on.set()
+    begun[0].join(60)
+    assert len(begun) == 1 and not begun[0].is_alive()
+
+
+def test_one_process_samples_in_the_thread_that_ctrl_c_reaches(monkeypatch):
+    threads, integrate = [], TransientRequest.run
+
+    def noted(request):
+        threads.append(threading.current_thread())
+        return integrate(request)
+
+    monkeypatch.setattr(TransientRequest, "run", noted)
+    run(modes=2)
+    assert {*threads} == {threading.current_thread()}
 
 
 @by_proc

@@ -222,7 +222,7 @@ def test_each_stage_alone() -> None:
         ({"truck__load_cg_x": "-3 m"}, ["truck", "ahead of the front wheel", "less load"]),
         ({"truck__empty_cg_x": "2 m"}, ["truck", "behind the rear wheel"]),
         ({"truck__load_mass": "3500 N"}, ["truck.load_mass", "force", "mass is wanted"]),
-        ({"stop__slope": "17.3 %"}, ["stop.slope", "angle"]),
+        ({"stop__slope": "17.3 m"}, ["stop.slope", "angle"]),
         ({"stop__slope": "90 deg"}, ["stop.slope", "below"]),
         ({"stop__speed": "0 km/h"}, ["stop.speed", "greater than 0"]),
         ({"stop__speed": "20"}, ["stop.speed", "give a unit"]),

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from matplotlib.text import Annotation
 
 from beamdyn.common.curves import curves, sweep_figure
 from brakes import drum, forklift
@@ -37,16 +35,6 @@ def axes():
     return Figure(figsize=(5, 4)).subplots()
 
 
-def arrows(ax) -> dict[str, np.ndarray]:
-    """Vectors of the arrows drawn, by the names beside them, which follow their arrows."""
-    notes = [child for child in ax.get_children() if isinstance(child, Annotation)]
-    found = {}
-    for arrow, name in pairwise(notes):
-        if arrow.arrow_patch is not None and "$" in name.get_text():
-            found[name.get_text().split("$")[1].replace(" ", "")] = np.subtract(arrow.xy, arrow.xyann)
-    return found
-
-
 def stopped(**changes) -> forklift.Stop:
     return forklift.stop(forklift.Truck(**(TRUCK | changes)), forklift.StopConditions(**STOP))
 
@@ -54,7 +42,7 @@ def stopped(**changes) -> forklift.Stop:
 def test_forces_on_a_drum_shoe_balance_as_drawn() -> None:
     """Pressure, friction, pin and actuating force of each shoe sum to nothing."""
     found = drum.brake_torque(drum.simplex(SHOE), friction=0.35, force=1000.0)
-    drawn = arrows(free_body(axes(), found))
+    drawn = free_body(found).arrows
     for shoe in "12":
         four = [drawn[f"{name}_{shoe}"] for name in "PNTR"]
         assert np.hypot(*sum(four)) < 1e-12
@@ -64,7 +52,7 @@ def test_forces_on_a_drum_shoe_balance_as_drawn() -> None:
 
 def test_both_shoes_of_a_duplex_brake_rub_the_same_way_round() -> None:
     found = drum.brake_torque(drum.duplex(SHOE), friction=0.35, force=1000.0)
-    drawn = arrows(free_body(axes(), found))
+    drawn = free_body(found).arrows
     np.testing.assert_allclose(drawn["T_1"], -drawn["T_2"], rtol=1e-12)
 
 
@@ -97,7 +85,7 @@ def test_figure_of_a_brake(friction: float, panels: int) -> None:
 def test_axle_loads_and_friction_as_drawn() -> None:
     """Across the slope they hold the weight; along it, what is left accelerates the truck."""
     found = stopped()
-    drawn = arrows(truck(axes(), found))
+    drawn = truck(found).arrows
     along = np.array([np.cos(0.3019), -np.sin(0.3019)])
     total = sum(drawn[name] for name in ("Mg", "N_A", "N_B", "R_A"))
     across = np.array([along[1], -along[0]])
@@ -107,8 +95,7 @@ def test_axle_loads_and_friction_as_drawn() -> None:
 
 
 def test_a_truck_without_load_is_drawn_and_named() -> None:
-    ax = truck(axes(), stopped(load_mass=0.0))
-    assert "never stops" in ax.get_title()
+    assert "never stops" in truck(stopped(load_mass=0.0)).title
 
 
 def test_slopes_on_which_it_never_stops_are_named() -> None:
@@ -137,23 +124,20 @@ def test_the_lining_drawn_enters_the_drum_as_deep_as_computed() -> None:
 
 @pytest.mark.parametrize("progress", [0.0, 0.5, 1.0, 1.5, 2.0])
 def test_the_brake_on_its_way(progress: float) -> None:
-    ax = duo_servo(axes(), BRAKE, BRAKE.move_shoes(0.0106), progress)
-    assert len(ax.lines) > 8
+    assert len(duo_servo(BRAKE, BRAKE.move_shoes(0.0106), progress).shapes) > 8
 
 
 @pytest.mark.parametrize("progress, drawn", [(0.0, False), (1.0, True), (2.0, True)])
 def test_the_key_says_what_red_is_where_there_is_any(progress: float, drawn: bool) -> None:
-    legend = duo_servo(axes(), BRAKE, BRAKE.move_shoes(0.0106), progress).get_legend()
-    assert legend is not None
-    assert ("inside the drum's wall" in [text.get_text() for text in legend.get_texts()]) == drawn
+    legend = duo_servo(BRAKE, BRAKE.move_shoes(0.0106), progress).legend
+    assert ("inside the drum's wall" in legend.values()) == drawn
 
 
 def test_duo_servo_shoes_balance_as_drawn() -> None:
     found = forklift.internal_forces(BRAKE, torque=11000.0, piston_force=11650.0, clearance=0.0106)
-    figure = Figure(figsize=(8, 4))
-    free_bodies(figure, found, forklift.follow_shoes(BRAKE, 0.0106))
-    for ax, names in zip(figure.axes, (("C", "D", "P_T", "Q"), ("A", "B", "P_L", "Q")), strict=True):
-        drawn = arrows(ax)
+    shoes = free_bodies(found, forklift.follow_shoes(BRAKE, 0.0106))
+    for shoe, names in zip(shoes, (("C", "D", "P_T", "Q"), ("A", "B", "P_L", "Q")), strict=True):
+        drawn = shoe.arrows
         assert np.hypot(*sum(drawn[name] for name in names)) < 1e-12
         assert np.hypot(*drawn["Q"]) > 0.01
 

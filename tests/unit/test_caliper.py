@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
+from beamdyn.common.drawing.shapes import Arrow
 from beamdyn.common.edge.config import ConfigError
 from brakes import calipers
 from brakes.calipers import Caliper, stop
@@ -20,6 +20,7 @@ from brakes.config.mechanism import mechanism_from_dict, parse_mechanism
 from brakes.drawings import mechanism as drawings
 from brakes.drawings import mechanism_parts as parts
 from brakes.drawings.caliper import caliper_figure
+from brakes.drawings.mechanism import force_scale
 from brakes.planar import OutOfReachError, Position, free_body
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "calipers"
@@ -336,10 +337,10 @@ def test_outer_forces_are_loads_and_what_the_ground_gives():
 
 def test_arrows_have_one_scale():
     answer = calipers.VBrake().build().equilibrium()
-    ax = Figure().subplots()
-    scale = drawings.force_scale(answer)
-    drawings.draw_forces(answer, ax)
-    drawn = [math.dist(text.xy, text.xyann) for text in ax.texts if text.arrow_patch is not None]
+    low, high = parts.extent(answer.position)
+    scale = force_scale(parts.outer_forces(answer), math.dist(low, high))
+    made = drawings.open_and_closed(answer.position, answer)
+    drawn = [math.hypot(*shape.vector) for shape in made.shapes if isinstance(shape, Arrow)]
     sizes = [np.linalg.norm(arrow.force) for arrow in parts.outer_forces(answer)]
     assert sorted(drawn) == pytest.approx(
         sorted(1e3 * scale * size for size in sizes if size > 1e-9), rel=1e-9
@@ -381,7 +382,7 @@ def test_outlines_are_where_the_points_are():
     run = calipers.SinglePivot().build().stroke(points=2)
     last = Position(run.position.mechanism, run.position.batch[-1])
     corners = parts.outline(last, "right arm")
-    for at in parts.points_of(last.mechanism, "right arm"):
+    for at in last.mechanism.points["right arm"]:
         assert np.abs(corners - last.point("right arm", at)).sum(axis=1).min() < 1e-15
 
 

@@ -27,7 +27,7 @@ def test_modes_prints_the_published_frequency_without_noise(run):
 
 
 def test_speed_comes_from_the_motion_if_not_given(run):
-    assert "157.0796" in run("modes", BLADE)[1]
+    assert "at 1500 rpm" in run("modes", BLADE)[1]  # in the unit of the file
     assert "at 0 rad/s" in run("modes", SCENE)[1]
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -94,3 +96,36 @@ def test_mistakes(run, options, code, said):
     found, _, err = run(ROLLING, *options)
     assert found == code
     assert said in " ".join(err.split())
+
+
+def test_the_largest_strain_on_a_rough_road_as_the_page_prints_it(monkeypatch, capsys):
+    page = (EXAMPLES.parent / "docs" / "loads.md").read_text(encoding="utf-8")
+    command, printed = re.findall(
+        r"^## On a rough road.*?^```sh\n(.*?)^```.*?^```text\n(.*?)^```", page, re.DOTALL | re.MULTILINE
+    )[0]
+    monkeypatch.chdir(EXAMPLES.parent)
+    assert main(shlex.split(command)[1:]) == DONE
+    out = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert out == printed.splitlines()
+
+
+def test_random_loads_are_written(tmp_path, capsys):
+    files = [tmp_path / f"random.{kind}" for kind in ("json", "csv", "png")]
+    options = ["--road", "B", "--velocity", "60 km/h", "--highest", "10 1/m", "--at", "0, 50 mm"]
+    named = [
+        word
+        for kind, file in zip(("json", "csv", "plot"), files, strict=True)
+        for word in (f"--{kind}", file)
+    ]
+    scene = str(EXAMPLES / "harvester_on_road.toml")
+    assert main([*map(str, ["random-loads", scene, *options, "--modes", "2", *named])]) == DONE
+    back = bd.load(files[0])
+    rows = [*csv.DictReader(files[1].read_text().splitlines())]
+    assert float(rows[1]["rms_moment_N_m"]) == back.rms("moment")[1, 0]
+    assert float(rows[0]["largest_strain_1"]) == back.strain[0, 0, 0]
+    assert files[2].stat().st_size > 10_000
+    capsys.readouterr()
+    assert main(["random-loads", scene, "--road", "B", "--at", "1 m"]) == BAD_INPUT
+    assert '--at = "1 m"' in capsys.readouterr().err
+    assert main(["random-loads", scene]) == BAD_INPUT
+    assert "--psd, --road, --roughness: give one" in capsys.readouterr().err

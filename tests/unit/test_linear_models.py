@@ -8,7 +8,10 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE, main
-from beamdyn.cli.linear_models import parse_frequencies, parse_input, parse_output
+from beamdyn.cli.excitations import parse_input, parse_output
+from beamdyn.cli.linear_models import parse_frequencies
+from beamdyn.linear_models.model_at_speed import ModelAtSpeed
+from beamdyn.modal.model import Model
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2, np.pi), damping_ratio=0.01)
@@ -142,18 +145,43 @@ def test_a_density_of_a_tip_force_has_its_unit(run, tmp_path):
 
 def test_an_input_beside_the_first_resonance_is_warned_of():
     first = bd.natural_modes(SCENE, 0.0, 1).frequency[0]
-    bands = {0.5: "below the first resonance", 1.5: "above the first resonance"}
-    for middle, said in bands.items():
+    for middle in (0.5, 1.5):
         psd = bd.PowerSpectrum([0.9 * middle * first, 1.1 * middle * first], [1.0, 1.0])
+        said = f"what {first:.4g} Hz excites is not in the answer"
         assert any(said in each for each in bd.random_response(SCENE, 0.0, psd).warnings)
     around = bd.PowerSpectrum([0.5 * first, 1.5 * first], [1.0, 1.0])
     assert not any("resonance" in each for each in bd.random_response(SCENE, 0.0, around).warnings)
 
 
+def test_a_road_that_ends_between_the_side_bands_is_warned_of():
+    """A rotating beam answers at f + n and f - n; the road must reach both."""
+    scene = bd.load_scene(FILE)
+    first = bd.natural_modes(scene, 80.0, 1).frequency[0]
+    turn = 80 / (2 * np.pi)
+    for ends, lacking in (((1.0, first), [first + turn]), ((first, 9e3), [first - turn]), ((1.0, 9e3), [])):
+        psd = bd.PowerSpectrum(ends, [1.0, 1.0])
+        said = [w for w in bd.random_response(scene, 80.0, psd, "n2", modes=2).warnings if "resonance" in w]
+        assert len(said) == len(lacking)
+        assert all(f"what {f:.4g} Hz excites" in w for f, w in zip(lacking, said, strict=True))
+
+
+def test_poles_where_lapack_does_not_converge(monkeypatch):
+    """LAPACK's QZ algorithm stops without eigenvalues on some scenes of two nearly equal planes."""
+
+    def stop(*_):
+        raise np.linalg.LinAlgError("generalized eig algorithm (ggev) did not converge")
+
+    monkeypatch.setattr("scipy.linalg.eigvals", stop)
+    model = ModelAtSpeed(Model(SCENE, bd.Ritz(20)), 5.0, None)
+    found = np.sort(np.imag(model.poles)[np.imag(model.poles) > 0])[:4]
+    known = 2 * np.pi * bd.natural_modes(SCENE, 5.0, 4).frequency
+    np.testing.assert_allclose(found, known, rtol=1e-8)  # rounding of an unscaled eigenproblem
+
+
 def test_a_road_may_go_on(run):
     asked = ("random", FILE, "--road", "C", "--velocity", "90 km/h")
     code, _, err = run(*asked)
-    assert code == 0 and "below the first resonance" in err
+    assert code == 0 and "excites is not in the answer" in err
     code, _, err = run(*asked, "--highest", "10 1/m")
     assert code == 0 and "resonance" not in err
 

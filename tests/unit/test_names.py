@@ -25,7 +25,7 @@ ELSEWHERE |= {
     "LinearSystem",
     "ModalSystem",
 }  # parts of results, made by nobody
-ELSEWHERE |= {"ElastoDyn"}  # a program
+ELSEWHERE |= {"ElastoDyn", "DejaVu"}  # a program, a font
 ELSEWHERE |= {"Described", "FieldsOnly", "SampledScene"}  # for who extends the package
 ELSEWHERE |= {"Re", "RecurDyn", "with_speed"}  # no advice: a formula, a paper's program, a method at fault
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from beamdyn.common.described import descriptions
 from brakes import planar
 from brakes.config.mechanism_inputs import PARTS
-from brakes.drawings.mechanism import draw_mechanism
+from brakes.drawings.mechanism import mechanism_drawing
 from brakes.planar import (
     GROUND,
     JOINTS,
@@ -80,8 +79,8 @@ def test_a_drawer_jams():
 
 
 def test_it_is_drawn_and_its_inputs_are_checked():
-    ax = draw_mechanism(drawer(0.1, 0.5).drawing, Figure().subplots())
-    assert sum(line.get_linewidth() == 1.6 for line in ax.lines) == 2  # faces
+    made = mechanism_drawing(drawer(0.1, 0.5).drawing)
+    assert sum(shape.role == "contact" for shape in made.shapes) == 2  # faces
     with pytest.raises(ValueError, match="guide 'rail': friction = -1: it must be at least 0"):
         drawer(-1.0, 0.5)
 

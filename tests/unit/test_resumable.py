@@ -9,8 +9,9 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from benchmarks.resumable import Cases, add_options
+from benchmarks.resumable import Cases, SavedRows, add_options
 
 
 @dataclass(frozen=True)
@@ -56,3 +57,21 @@ def test_the_options_of_a_run(tmp_path: Path) -> None:
     kept = cases.run(parser.parse_args(["--scenes", "1", "--workers", "1", "--save", str(saved)]))
     assert [a.number for a in kept] == [0, 0]
     assert len(cases.load(saved)) == 2
+
+
+def test_rows_are_measured_once(tmp_path: Path) -> None:
+    asked: list[str] = []
+
+    def measure_rows(title: str) -> list[tuple[str, str, str]]:
+        asked.append(title)
+        return [(f"{title}: time [s]", "1.0", "µs | -")]
+
+    path = tmp_path / "rows.jsonl"
+    first = SavedRows(path, "numpy 2").rows("one", measure_rows)
+    again = SavedRows(path, "numpy 2")
+    assert again.rows("two", measure_rows) != again.rows("one", measure_rows) == first
+    assert asked == ["one", "two"]
+    with pytest.raises(ValueError, match=r"is of numpy 2, not of numpy 3: name a new file"):
+        SavedRows(path, "numpy 3").rows("one", measure_rows)
+    SavedRows(None, "numpy 2").rows("one", measure_rows)
+    assert asked == ["one", "two", "one"]

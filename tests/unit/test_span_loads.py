@@ -11,6 +11,13 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.checks import InvalidValue
+from beamdyn.loads.load_rows import span_rows
+from beamdyn.loads.load_time_error import largest_per_coordinate
+from beamdyn.loads.mode_error import mode_error
+from beamdyn.loads.section_points import StationOutputs, sections_at
+from beamdyn.loads.stations import stations_at
+from beamdyn.modal.modal_basis import ModalBasis
+from benchmarks import loads as loads_measured
 
 LENGTH, WIDTH, THICK, E, RHO, G = 0.5, 0.02, 0.004, 200e9, 7800.0, 9.81
 MASS = RHO * WIDTH * THICK
@@ -161,6 +168,14 @@ def test_forced_vibration_of_a_uniform_cantilever():
         loads.force[..., 1], wave * shear, rtol=0, atol=1e-6 * np.abs(shear).max()
     )  # the shear forces of the modes left out fall as k^-6, the moments as k^-7
     np.testing.assert_allclose(loads.moment[..., 0], wave * moment, rtol=0, atol=loads.moment_error.max())
+
+
+@pytest.mark.parametrize("part", loads_measured.PARTS)
+def test_root_and_mid_span_against_closed_forms_and_the_unreduced_model(part):
+    """Moment, strain, shear and axial force: under weight, spun, shaken, with a tip body; all to 1e-8."""
+    for what, measured, bound in part():
+        assert bound == "1e-08"
+        assert max(map(float, measured.split(","))) < 1e-8, what
 
 
 ROLLING = bd.RollingWheel(0.3, bd.SteadyRotation(20.0), bd.RoadWave(wavelength=0.4, velocity_amplitude=0.05))
@@ -329,3 +344,43 @@ def test_pictures_show_the_largest_of_speeds_and_the_window_of_a_run():
     unknown = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 10.0), bd.Mount(0.1, math.pi))
     with pytest.raises(ValueError, match="the result has no stress"):
         bd.static_loads(unknown, [1.0]).plot(quantity="stress")
+
+
+# Errors -------------------------------------------------------------------------------------------
+
+
+def test_a_load_that_is_rounding_has_a_finite_error():
+    """A moment of 1e-20 beside a force of 1 N: how far two models differ there says nothing."""
+    scene = bd.Scene(BEAM, OUTWARD)
+    stations = stations_at(BEAM, [0.0, 0.25])
+    outputs = StationOutputs.of_sections(sections_at(scene, stations, None, None))
+    distance = np.tile([1e-9, 1e-20, 1e-20], (23, 1))
+    error = mode_error(
+        distance, np.array([1.0, 1e-20, 1e-20]), stations, outputs, ModalBasis(3, (0.0,)), LENGTH
+    )
+    assert np.isfinite(error).all()
+    assert (error[:, 1:3] < 1e-11).all() and (error[:, 1:3] > 0).all()
+    far = mode_error(
+        distance, np.array([1e-9, 1e-20, 1e-20]), stations, outputs, ModalBasis(3, (0.0,)), LENGTH
+    )
+    assert np.isinf(far[:, 0]).all()
+
+
+def test_a_shock_between_evenly_spaced_times_counts_in_the_error_of_time():
+    """Along the beam, for 1 ms of a run of 2 s: its arm on the deflection is in the loads per coordinate."""
+    at, width = 0.7731, 2e-4
+
+    def shock(t):
+        zero = np.zeros_like(t)
+        along = 5e3 * np.exp(-(((t - at) / width) ** 2))
+        return bd.MotionSample(zero, zero, zero, np.stack([along, 0 * t, 0.1 * np.cos(30 * t)], axis=-1))
+
+    mount = bd.Mount(0.1, math.pi, math.pi / 2)
+    motion = bd.UserMotion(shock, t_end=2.0, breakpoints=(at - 5 * width, at + 5 * width))
+    run = bd.simulate(bd.Scene(BEAM, mount, motion), 2.0, 2, 1e-4)
+    system = run.system
+    rows = span_rows(run.scene, run.request.model.discretization, system.equations, stations_at(BEAM, [0.0]))
+    per_coordinate = largest_per_coordinate(rows.in_motion(system.equations), system, run.path, np.zeros(2))
+    strongest = abs(system.root(np.array([at])).root_axial[0])
+    arm = np.abs(rows.in_motion(system.equations).position["root_axial"]) * strongest
+    assert (per_coordinate >= 0.9 * arm).all()

@@ -6,13 +6,14 @@ import math
 import os
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import beamdyn as bd
 from beamdyn.common.parallel.store import Store, fingerprint
 from beamdyn.common.records import DamagedRecord
 
@@ -177,6 +178,20 @@ def test_files_are_json(tmp_path):
 )
 def test_other_values_have_other_keys(one, other):
     assert fingerprint(one) != fingerprint(other)
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A motion of a user's, whose size matters although equality leaves it out."""
+
+    name: str
+    size: np.ndarray = field(compare=False)
+
+
+def test_only_our_own_classes_have_fields_that_do_not_count():
+    assert fingerprint(Drive("a", np.ones(2))) != fingerprint(Drive("a", np.zeros(2)))
+    scene = bd.Scene(bd.Beam.from_stiffness(10.0, 1.2, 1.4e4), bd.Mount(0.5))
+    assert fingerprint(replace(scene, label="named")) == fingerprint(scene)
 
 
 def test_the_key_of_a_value_stays_when_the_value_is_used():

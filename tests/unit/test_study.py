@@ -1,19 +1,14 @@
-"""Studies: inputs and their names, shapes, results in files, refusals, and the command."""
+"""Studies: inputs and their names, shapes, answers of single calls, refusals and model errors."""
 
-import csv
 import pickle
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.cli import main
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
-from beamdyn.modal.eigen import solve_diagonal
-from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.studies.inputs import NAMES, scene_of
 
@@ -279,61 +274,6 @@ def test_a_speed_past_the_critical_one_refuses_its_peak_alone():
     assert any(said.startswith("at 1 of 2 designs there is no answer") for said in study.warnings)
 
 
-def test_where_there_is_no_gravity_there_is_no_line_of_it():
-    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.SteadyRotation(50.0))
-    study = bd.study(scene, {"model.gravity": [0.0, 9.81]}, "crossings", speed=135.0, modes=2)
-    forced = [i for i, label in enumerate(study.labels) if "forced" in label]
-    assert study.labels[forced[0]] == "mode 1, rotation (forced)"
-    assert (study.status[0] == "not excited").all() and np.isnan(study.value[0]).all()
-    found = bd.resonance_speeds(study.scene_at(1), 135.0, 2)
-    assert len(found) == np.isfinite(study.value[1]).sum() > 0
-
-
-def test_where_nothing_excites_any_design_there_is_no_study_of_crossings():
-    """As `resonance_speeds` says of one; whether designs are batched or solved one by one."""
-    for motion, discretization in ((bd.SteadyRotation(50.0), "ritz"), (None, "fem")):
-        scene = bd.Scene(SCENE.beam, SCENE.mount, motion)
-        (said,) = bd.resonance_speeds(scene, 50.0).warnings
-        assert said.startswith("nothing varies in time") and said.endswith("or gravity, excites the beam")
-        with pytest.raises(InvalidValue, match=r"nothing varies in time .* or gravity, excites the beam"):
-            bd.study(
-                scene, {"mount.radius": [0.1, 0.2]}, "crossings", speed=50.0, discretization=discretization
-            )
-
-
-def test_the_line_of_one_design_among_many_is_found():
-    """Of designs one by one, of which not all are looked at."""
-    gravity = np.where(np.arange(60) == 30, 9.81, 0.0)
-    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.SteadyRotation(50.0))
-    study = bd.study(scene, {"model.gravity": gravity}, "crossings", speed=135.0, modes=2, combine="zip")
-    assert np.array_equal((study.status != "not excited").any(axis=1), gravity > 0)
-
-
-@pytest.fixture
-def unsolvable_thin(monkeypatch):
-    """Designs of half the thickness, and top speeds of 70 rad/s, are left unsolved, as by rounding."""
-
-    def limited(stack, coarse, multiples, count, top, *rest):
-        if top.max() > 60.0:
-            raise np.linalg.LinAlgError("not positive definite")
-        return speeds_of_meeting(stack, coarse, multiples, count, top, *rest)
-
-    monkeypatch.setattr("beamdyn.studies.crossings.speeds_of_meeting", limited)
-
-
-def test_crossings_that_rounding_leaves_unsolved_are_refused(unsolvable_thin):
-    study = bd.study(rolling(), {"beam.thickness": [2e-4, 1e-4, 3e-4]}, "crossings", speed=50.0, modes=2)
-    assert (study.status[1] == "refused").all() and np.isnan(study.value[1]).all()
-    assert np.isinf(study.error[1]).all() and np.isfinite(study.error[[0, 2]]).all()
-    assert not (study.status[[0, 2]] == "refused").any()
-    assert any(said.startswith("at 1 of 3 designs there is no answer") for said in study.warnings)
-
-
-def test_crossings_of_which_rounding_leaves_all_unsolved(unsolvable_thin):
-    with pytest.raises(ValueError, match=r"none of 2 designs has an answer; at 2 of 2 .* rounding"):
-        bd.study(rolling(), {"mount.radius": [0.1, 0.2]}, "crossings", speed=70.0)
-
-
 def test_an_unresolved_response_has_an_infinite_error(monkeypatch):
     """Not the largest number that there is."""
     sure = SimpleNamespace(
@@ -367,156 +307,11 @@ def test_model_error_says_where_it_is_large():
     assert "at mount.setting_angle = 0.8 rad, speed = 60 rad/s the model error" in said
 
 
-# Where parts are computed and kept --------------------------------------------------------------------
-
-
-def test_a_store_resumes_where_the_executor_broke(tmp_path):
-    vary = {"mount.radius": np.linspace(0.0, 0.3, 3000)}
-    store, whole = tmp_path / "store", bd.study(SCENE, vary)
-
-    class Breaking(ThreadPoolExecutor):
-        left = 2
-
-        def submit(self, *task, **options):
-            self.left -= 1
-            if self.left < 0:
-                raise BrokenExecutor("it broke")
-            return super().submit(*task, **options)
-
-    with Breaking(1) as pool, pytest.raises(bd.StudyInterrupted, match="stored; the same call"):
-        bd.study(SCENE, vary, executor=pool, store=store)
-    kept, calls = {file.name for file in store.iterdir()}, []
-    resumed = bd.study(SCENE, vary, store=store, progress=lambda *done: calls.append(done))
-    assert np.array_equal(resumed.value, whole.value) and np.array_equal(resumed.error, whole.error)
-    assert len({file.name for file in store.iterdir()}) == 4  # three parts and the marker
-    assert kept <= {file.name for file in store.iterdir()} and calls[-1] == (3000, 3000)
-    again = bd.study(SCENE, vary, store=store)
-    assert np.array_equal(again.value, whole.value) and again.warnings == whole.warnings
-
-
-def test_a_damaged_part_is_computed_again(tmp_path):
-    vary = {"mount.radius": [0.1, 0.2]}
-    whole = bd.study(SCENE, vary, store=tmp_path / "store")
-    (part,) = (file for file in (tmp_path / "store").iterdir() if file.name != "store.json")
-    part.write_text(part.read_text()[:-20])
-    again = bd.study(SCENE, vary, store=tmp_path / "store")
-    assert np.array_equal(again.value, whole.value)
-    assert any("its designs were computed again" in said for said in again.warnings)
-
-
-def test_other_requests_find_no_answer_in_the_store(tmp_path):
-    store = tmp_path / "store"
-    bd.study(SCENE, {"mount.radius": [0.1, 0.2]}, store=store)
-    bd.study(SCENE, {"mount.radius": [0.1, 0.2]}, modes=2, store=store)
-    bd.study(SCENE, {"mount.radius": [0.1, 0.25]}, store=store)
-    assert len([*store.iterdir()]) == 4
-
-
-def test_executors_have_few_parts_at_a_time(monkeypatch):
-    """So that a million designs do not stand in memory as tasks."""
-    monkeypatch.setattr("beamdyn.common.parallel.tasks._IN_FLIGHT", 2)
-    most, flying = [0], [0]
-
-    class Counting(ThreadPoolExecutor):
-        def submit(self, *task, **options):
-            flying[0] += 1
-            most[0] = max(most[0], flying[0])
-            future = super().submit(*task, **options)
-            future.add_done_callback(lambda _: flying.__setitem__(0, flying[0] - 1))
-            return future
-
-    with Counting(1) as pool:
-        found = bd.study(SCENE, {"mount.radius": np.linspace(0, 0.3, 5000)}, executor=pool)
-    assert most[0] <= 2 and np.isfinite(found.value).all()
-
-
-@pytest.mark.parametrize("scene", [
-    bd.Scene(SCENE.beam, SCENE.mount, physics=bd.Physics(stretch=True)),
-    bd.Scene(SCENE.beam, bd.Mount(0.2, np.pi, precone=0.1)),
-    bd.Scene(SCENE.beam, bd.Mount(0.2, np.pi, root_stiffness=0.0)),
-    bd.Scene(SCENE.beam, bd.Mount(0.2, np.pi), physics=bd.Physics(planes=2, rotary_inertia=True)),
-])  # fmt: skip
-def test_what_is_not_batched_is_solved_one_by_one(scene):
-    study = bd.study(scene, {"speed": [0.0, 30.0]}, modes=2)
-    single = bd.natural_modes(scene, 30.0, 2)
-    assert np.array_equal(study.value[1], single.frequency) and np.array_equal(study.error[1], single.error)
-    assert study.provenance.method == "single calls"
-
-
-def test_point_masses_stay_where_they_are():
-    lumps = (bd.PointMass(0.02, 1e-4),)
-    scene = bd.Scene(bd.Beam.rectangular(**BEAM, point_masses=lumps), SCENE.mount)
-    study = bd.study(scene, {"beam.thickness": [1e-4, 3e-4]}, modes=2)
-    single = bd.Scene(bd.Beam.rectangular(**BEAM | {"thickness": 3e-4}, point_masses=lumps), SCENE.mount)
-    np.testing.assert_allclose(study.value[1], bd.natural_modes(single, 0.0, 2).frequency, rtol=ROUNDING)
-
-
-def test_many_eigenproblems_at_once_are_those_of_each():
-    """To the bit: stiff ones, and soft ones, which are shifted each by its own amount."""
-    random = np.random.default_rng(3)
-    factor = random.normal(size=(6, 5, 5))
-    mass = np.eye(5) + factor @ np.swapaxes(factor, 1, 2) * 10.0 ** random.uniform(-3, 1, (6, 1, 1))
-    stiffness = 1 + random.uniform(0, 3, (6, 5))
-    stiffness[2:, 1] = [-3.0, -0.02, 0.0, -40.0]
-    lowest = 1 / np.linalg.eigvalsh(mass)[:, -1]
-    together = solve_diagonal(mass, stiffness, 3, lowest)
-    for i in range(6):
-        alone = solve_diagonal(mass[i], stiffness[i : i + 1], 3, float(lowest[i]))
-        assert all(np.array_equal(one[0], all_[i]) for one, all_ in zip(alone, together, strict=True))
-
-
 def test_plots_of_one_input_and_of_more():
     one = bd.study(SCENE, {"mount.radius": [0.1, 0.2, 0.3]}).plot()
     assert len(one.get_lines()) == 3 and one.get_xlabel() == "mount.radius [m]"
     three = bd.study(
         SCENE, {"mount.radius": [0.1, 0.2], "speed": [0.0, 9.0], "beam.width": [0.01, 0.02]}
     ).plot()
-    assert len(three.get_lines()) == 2 and "beam.width = 0.01 m" in three.get_ylabel()
-
-
-def test_the_command_writes_what_it_shows(tmp_path, capsys):
-    (tmp_path / "scene.toml").write_text(TOML)
-    files = {kind: tmp_path / f"study.{kind}" for kind in ("csv", "json", "png")}
-    arguments = ["study", str(tmp_path / "scene.toml"), "--vary", "thickness=0.2:0.3:2 mm", "--vary"]
-    arguments += [
-        "speed=0:30:2 rad/s",
-        "--csv",
-        files["csv"],
-        "--json",
-        files["json"],
-        "--plot",
-        files["png"],
-    ]
-    assert main([str(each) for each in arguments]) == 0
-    assert "beam.thickness [mm]" in capsys.readouterr().out
-    study = bd.load(files["json"])
-    head, *rows = csv.reader(files["csv"].read_text().splitlines())
-    assert head[:3] == ["beam_thickness_m", "speed_rad_per_s", "frequency_1_Hz"]
-    assert len(rows) == 4 and float(rows[3][2]) == study.value[1, 1, 0]
-    assert files["png"].stat().st_size > 1000
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--vary", "beam.thickness=0.1:0.2:3 kg"], "mass"),
-        (["--vary", "beam.thickness=0.1:0.2:3"], "give a unit"),
-        (["--vary", "thickness=0.1:0.2:3 mm", "--vary", "beam.thickness=0.1:0.2:3 mm"], "given twice"),
-        (["--vary", "beam.thickness=:3 mm"], "start:stop:count"),
-        (["--vary", "thickness=0.1:0.2:3 mm", "--vary", "speed=0:1:2 rad/s", "--together"], "3 and 2 values"),
-        (["--vary", "thickness=0.1:0.2:2000 mm", "--vary", "radius=0:1:2000 m"], "at most 1000000 designs"),
-        (["--sweep", "thickness=0.1:0.2:3 mm"], "Did you mean --vary?"),
-        ([], "give --vary"),
-    ],
-)
-def test_the_command_refuses_in_a_sentence(options, said, tmp_path, capsys):
-    (tmp_path / "scene.toml").write_text(TOML)
-    assert main(["study", str(tmp_path / "scene.toml"), *options]) == 2
-    error = capsys.readouterr().err
-    assert said in error and error.count("\n") == 1
-
-
-def test_the_command_refuses_an_unknown_input(tmp_path, capsys):
-    (tmp_path / "scene.toml").write_text(TOML)
-    assert main(["study", str(tmp_path / "scene.toml"), "--vary", "beam.thicknes=1:2:3 mm"]) == 2
-    assert "beam.thickness" in capsys.readouterr().err
+    assert len(three.get_lines()) == 2 * 3  # speeds and modes
+    assert "beam.width = 0.01 m" in three.get_title()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.common.edge.views import rows_of
 from beamdyn.scene.motion import MotionSample
 from beamdyn.transient.step_size import TooManySteps
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
@@ -37,10 +38,10 @@ def test_peaks_are_those_of_single_transients(found):
 )
 @pytest.mark.parametrize(
     ("law", "tolerance", "two_speeds"),
-    [("smooth", 1e-3, True), ("linear", 2e-4, True), ("linear", 1e-4, False)],
+    [("smooth", 1e-3, True), ("linear", 2e-4, False), ("linear", 1e-4, False)],
 )
 def test_chosen_modes_leave_out_no_more_than_is_stated(law, tolerance, two_speeds, speeds):
-    """Modes at two speeds or, of an abrupt start at tight tolerances, at rest; all cases keep the same."""
+    """Modes at two speeds or, of an abrupt start at tight tolerances, at rest."""
     spun = replace(SCENE, motion=bd.SpinUp(55.0, 0.2, law=law), mount=bd.Mount(0.215, 1.0))
     found = bd.sweep(spun, speeds, WINDOW, tolerance=tolerance)
     assert ("rad/s" in found.provenance.method) == two_speeds
@@ -49,6 +50,36 @@ def test_chosen_modes_leave_out_no_more_than_is_stated(law, tolerance, two_speed
     ):
         run = bd.simulate(replace(spun, motion=spun.motion.with_speed(speed)), WINDOW[1], 12, 1e-5)
         assert abs(peak - run.peak(*WINDOW)) <= error + found.mode_error * largest
+
+
+@pytest.mark.parametrize(("angle", "fastest", "tolerance"), [(1.0, 90.0, 3e-4), (2.0, 200.0, 5e-4)])
+def test_modes_at_rest_are_taken_where_they_suffice_for_all_cases(angle, fastest, tolerance):
+    """Alone the slow case takes modes at rest, the fast one at two speeds, which are more coordinates."""
+    abrupt = replace(SCENE, motion=bd.SpinUp(55.0, 0.2, law="linear"), mount=bd.Mount(0.215, angle))
+    scenes = [replace(abrupt, motion=abrupt.motion.with_speed(speed)) for speed in (1.0, fastest)]
+    slow, fast = (bd.simulate(scene, WINDOW[1], tolerance=tolerance) for scene in scenes)
+    assert slow.request.basis.is_at_rest and not fast.request.basis.is_at_rest
+    at_rest = bd.simulate(scenes[1], WINDOW[1], slow.request.basis.modes, tolerance)
+    suffices = at_rest.relative_mode_error <= tolerance
+    found = bd.sweep(abrupt, (1.0, fastest), WINDOW, tolerance=tolerance)
+    assert found.mode_error <= tolerance
+    assert ("rad/s" in found.provenance.method) != suffices
+    assert suffices == (angle == 1.0)  # both outcomes are seen
+
+
+def test_tables_and_columns_have_the_error_of_the_modes(found):
+    """Half a unit of the last digit that is printed is not below both errors; 0 deflects by none."""
+    rough = replace(found, mode_error=2e-3)
+    np.testing.assert_array_equal(rough.peak_error, found.time_error + 2e-3 * found.largest)
+    shown = {line.split()[0]: line.split()[1] for line in rough.to_table().splitlines() if "done" in line}
+    for speed, error in zip(SPEEDS[1:], rough.peak_error[1:], strict=True):
+        assert 10.0 ** -len(shown[f"{speed:g}"].partition(".")[2]) / 2 >= 1e3 * error
+    heads, *rows = rows_of(rough)
+    of_modes = [row[heads.index("mode_error_m")] for row in rows]
+    np.testing.assert_allclose(of_modes, 2e-3 * found.largest, rtol=0, atol=1e-15)
+    unknown = replace(found, mode_error=np.inf)
+    assert unknown.peak_error[0] == 0 and np.isinf(unknown.peak_error[1:]).all()
+    assert "unresolved" in repr(unknown) and "unresolved" in unknown.to_table()
 
 
 def test_finite_elements_agree(found):
@@ -105,6 +136,14 @@ def test_progress_begins_and_ends(found):
     assert calls == [(0, 4), (2, 4), (4, 4)]
 
 
+def test_what_is_stored_counts_as_progress(tmp_path):
+    calls = []
+    for _ in range(2):
+        calls.clear()
+        bd.sweep(SCENE, SPEEDS, WINDOW, chunk=2, store=tmp_path, progress=lambda *call: calls.append(call))
+        assert calls == [(0, 4), (2, 4), (4, 4)]
+
+
 def test_result_is_saved_and_drawn(found, tmp_path):
     found.save(tmp_path / "sweep.json")
     saved = json.loads((tmp_path / "sweep.json").read_text())
@@ -152,7 +191,7 @@ BAD = {
 
 @pytest.mark.parametrize(("given", "message"), BAD.values(), ids=BAD)
 def test_bad_input_is_refused_before_any_work(given, message, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.chunk_collector.solve_chunk", None)  # not to be called
+    monkeypatch.setattr("beamdyn.transient.sweep.solve_chunk", None)  # not to be called
     store = tmp_path / "store"
     with pytest.raises(ValueError, match=message):
         bd.sweep(**{"scene": SCENE, "speeds": SPEEDS, "window": WINDOW, "store": store} | given)
@@ -166,7 +205,7 @@ def test_workers_and_an_executor_are_one_too_many():
 
 @pytest.mark.parametrize("content", ["directory", "file", "below a file"])
 def test_foreign_and_unwritable_stores_are_refused_before_any_work(content, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.transient.chunk_collector.solve_chunk", None)
+    monkeypatch.setattr("beamdyn.transient.sweep.solve_chunk", None)
     (tmp_path / "notes.txt").write_text("mine")
     store = {
         "directory": tmp_path,
@@ -183,9 +222,9 @@ def test_a_damaged_record_is_computed_again_and_named(damage, tmp_path):
     whole = bd.sweep(SCENE, [10.0, 20.0], WINDOW, chunk=1, store=tmp_path)
     file = min(path for path in tmp_path.iterdir() if path.name != "store.json")
     record = json.loads(file.read_text())
-    record["cases"][0][0] *= 2
+    record["result"]["list"][0]["object"][1]["peak"] *= 2
     if damage == "of an earlier version":
-        record = {key: record[key] for key in ("speeds", "fields", "cases")}
+        record = {"result": record["result"]}
     file.write_text(json.dumps(record))
     again = bd.sweep(SCENE, [10.0, 20.0], WINDOW, chunk=1, store=tmp_path)
     assert again.peaks.tolist() == whole.peaks.tolist()

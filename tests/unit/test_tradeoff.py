@@ -1,27 +1,22 @@
-"""Error against time: fronts, costs of digits, budgets, and the command."""
+"""Error against time: diagrams, physics, the whole, and the command."""
 
 import csv
 import json
 from dataclasses import replace
-from math import inf, isnan
+from math import isnan
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main
 from beamdyn.tradeoffs import (
-    Measurement,
-    cost_per_digit,
     frequencies,
     frequency_diagram,
     harmonics_diagram,
     integrators_diagram,
-    pareto_front,
     physics,
     physics_diagram,
     timing,
@@ -29,7 +24,6 @@ from beamdyn.tradeoffs import (
     transients,
 )
 from beamdyn.tradeoffs.physics import ALL, AS_GIVEN, pick
-from beamdyn.tradeoffs.timing import Family, Setting, measure_families
 from beamdyn.tradeoffs.transients import AT_ENDS, AT_REST
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.tradeoff_physics import make_scenes
@@ -37,17 +31,6 @@ from benchmarks.tradeoff_physics import make_scenes
 ROOT = Path(__file__).parents[2]
 STILL = str(ROOT / "examples" / "tyre_harvester.toml")
 MOVING = str(ROOT / "examples" / "rolling_harvester.toml")
-
-coarse = st.sampled_from([1e-9, 1e-6, 1e-3, 0.1, 2.0])  # few values, so that ties are drawn
-points = st.lists(st.tuples(coarse, coarse | st.just(inf)), max_size=12)
-
-
-def of(pairs):
-    return [Measurement("family", f"setting {i}", i, e, t) for i, (t, e) in enumerate(pairs)]
-
-
-def beats(a, b):
-    return a.error <= b.error and a.time <= b.time and (a.error < b.error or a.time < b.time)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -65,128 +48,6 @@ def once():
         patch.setattr(transients, "_MODES", (1, 2, 4))
         patch.setattr(transients, "_ALL_MODES", 8)
         yield
-
-
-# Fronts and digits --------------------------------------------------------------------------------
-
-
-@settings(derandomize=True, deadline=None)
-@given(points)
-def test_the_front_is_what_nothing_beats(pairs):
-    everything = of(pairs)
-    front = pareto_front(everything)
-    known = [m for m in everything if m.error < inf]
-    for m in everything:
-        beaten = m.error == inf or any(beats(other, m) for other in known)
-        assert (m in front) == (not beaten)
-    assert [m.time for m in front] == sorted(m.time for m in front)
-
-
-@settings(derandomize=True, deadline=None)
-@given(points)
-def test_a_digit_costs_the_shortest_time_that_reaches_it(pairs):
-    everything = of(pairs)
-    digits = cost_per_digit(everything)
-    reached = min((m.error for m in everything), default=inf)
-    assert len(digits) == {1e-9: 9, 1e-6: 6, 1e-3: 3, 0.1: 1, 2.0: 0, inf: 0}[reached]
-    for digit in digits:
-        assert digit.time == min(m.time for m in everything if m.error <= digit.error)
-    assert [d.time for d in digits] == sorted(d.time for d in digits)
-
-
-def test_the_ratio_is_to_the_digit_before():
-    digits = cost_per_digit(of([(1.0, 0.05), (2.0, 0.011), (4.0, 1e-3), (9.0, 1e-2)]))
-    assert [d.setting for d in digits] == ["setting 0", "setting 2", "setting 2"]
-    assert isnan(digits[0].ratio)
-    assert [d.ratio for d in digits[1:]] == [4.0, 1.0]
-
-
-# Budgets ------------------------------------------------------------------------------------------
-
-
-class Clock:
-    """Time that passes only in the runs."""
-
-    def __init__(self):
-        self.now = 0.0
-
-    def __call__(self):
-        return self.now
-
-    def case(self, setting, takes, answer=0.5):
-        def run(deadline):
-            if self.now + takes > deadline:
-                self.now = deadline
-                raise TimeoutError("half-way")
-            self.now += takes
-            if isinstance(answer, Exception):
-                raise answer
-            return answer
-
-        return Setting(setting, 1.0, run)
-
-
-@pytest.fixture
-def clock(monkeypatch):
-    clock = Clock()
-    monkeypatch.setattr(timing, "perf_counter", clock)
-    monkeypatch.setattr(timing, "process_time", clock)
-    return clock
-
-
-def run(clock, *cases, budget=10.0, resolved=1e-12):
-    return measure_families([Family("F", cases)], lambda answer: answer, resolved, budget)
-
-
-def test_a_cheap_case_is_repeated_and_a_dear_one_is_not(clock, monkeypatch):
-    monkeypatch.setattr(timing, "RUNS", 7)
-    found, skipped = run(clock, clock.case("a", 0.1), clock.case("b", 5.0))
-    assert ([m.time for m in found], skipped) == (pytest.approx([0.1, 5.0], rel=1e-12), [])
-    assert clock.now == pytest.approx(7 * 0.1 + 5.0, rel=1e-12)
-
-
-def test_the_shortest_run_counts(monkeypatch):
-    monkeypatch.setattr(timing, "RUNS", 3)
-    instants = iter([0.0, 3.0, 3.0, 4.0, 4.0, 6.0])  # the runs take 3, 1 and 2 s
-    monkeypatch.setattr(timing, "process_time", lambda: next(instants))
-    found, _ = measure_families([Family("F", (Setting("a", 1, lambda deadline: 0.5),))], float, 0.0, 1e3)
-    assert [m.time for m in found] == [1.0]
-
-
-def test_a_reference_leaves_half_of_the_budget(clock):
-    clock.now = 3.0
-    assert [timing.remaining_budget(budget, 1.0) for budget in (10.0, 3.0)] == [8.0, 1.5]
-
-
-def test_a_run_past_the_budget_is_given_up_and_named(clock):
-    found, skipped = run(clock, clock.case("a", 5.0), clock.case("b", 7.0), clock.case("c", 1.0))
-    assert [m.setting for m in found] == ["a"]
-    assert skipped == ["F: b given up after 5 s half-way, and the rest left out"]
-    assert clock.now == 10.0
-
-
-def test_what_would_not_fit_is_not_begun(clock):
-    found, skipped = run(clock, clock.case("a", 6.0), clock.case("b", 1.0))
-    assert [m.setting for m in found] == ["a"]
-    assert skipped == ["F: left out from b on, its 10 s being used up"]
-
-
-def test_a_failure_is_named(clock):
-    broken = clock.case("b", 1.0, ArithmeticError("no such luck"))
-    found, skipped = run(clock, clock.case("a", 1.0), broken, clock.case("c", 1.0))
-    assert [m.setting for m in found] == ["a"]
-    assert skipped == ["F: b failed (no such luck), and the rest left out"]
-
-
-def test_what_a_family_leaves_goes_to_the_next(clock):
-    families = [Family("F", (clock.case("a", 4.0),)), Family("G", (clock.case("b", 6.0),))]
-    found, skipped = measure_families(families, lambda answer: answer, 0.0, 10.0)
-    assert ([m.family for m in found], skipped) == (["F", "G"], [])
-
-
-def test_errors_are_not_below_what_is_resolved_and_never_nan(clock):
-    found, _ = run(clock, clock.case("a", 1.0, 1e-15), clock.case("b", 1.0, float("nan")))
-    assert [m.error for m in found] == [1e-12, inf]
 
 
 # Diagrams -----------------------------------------------------------------------------------------

@@ -11,6 +11,8 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.transient.step_size import TooManySteps, check_number_of_steps
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import largest_in_each
 from benchmarks.cases.scenes import HARVESTER, ROLLING, SHORT_SPIN_UP
 
 STEADY = replace(HARVESTER, mount=bd.Mount(0.215, 0.02), motion=bd.SteadyRotation(50.0))
@@ -130,6 +132,14 @@ def test_peak_between_samples_is_larger_than_the_samples(short: bd.Transient) ->
     assert short.peak(1.0, 2.0) >= dense * (1 - 1e-14)
 
 
+def test_windows_searched_together_are_those_searched_alone(short: bd.Transient) -> None:
+    windows = [(0.0, 2.0), (0.3, 0.31), (1.0, 1.0 + 1e-9), (1.5, 2.0)]  # the third is between two samples
+    assert isinstance(short.system, ModalSystem)
+    tip = short.path.projected(short.system.tips)
+    together = largest_in_each(lambda q: np.abs(q[:, 0]), tip, windows)
+    assert together == pytest.approx([short.peak(*window) for window in windows], rel=1e-12)  # rounding
+
+
 def test_full_finite_elements_equal_their_modes() -> None:
     scene = replace(ROLLING, motion=ROLLING.motion.with_speed(30.0))
     full = bd.simulate(scene, 0.5, modes=None, discretization=bd.Fem(6))
@@ -206,6 +216,16 @@ def test_modes_are_chosen_for_the_tolerance(tolerance, exact: bd.Transient) -> N
     true = np.abs(run.tip - exact.deflection(run.t)).max()
     assert true <= run.time_error + run.mode_error <= 2 * tolerance * run.largest
     assert "rad/s" in run.provenance.method
+
+
+def test_one_mode_fewer_than_chosen_would_miss_the_tolerance() -> None:
+    run = bd.simulate(ROLLING, 3.0, tolerance=1e-6)
+    basis = run.request.basis
+    assert basis.modes is not None
+    assert basis.modes > 2
+    assert run.mode_error <= 1e-6 * run.largest
+    fewer = replace(run.request, basis=replace(basis, modes=basis.modes - 1)).run()
+    assert fewer.mode_error > 1e-6 * fewer.largest
 
 
 def test_modes_chosen_serve_a_stock_integrator_and_times_too() -> None:
@@ -291,7 +311,7 @@ def test_a_tolerance_that_cannot_be_met_does_not_make_the_answer_worse(
 ) -> None:
     """More accurate steps leave less work for modes; a small limit of the work shows that in a second."""
     for limit in ("_MOST_WORK", "_SLOW_WORK"):
-        monkeypatch.setattr(importlib.import_module("beamdyn.transient.transient"), limit, 1e5)
+        monkeypatch.setattr(importlib.import_module("beamdyn.transient.smallest_basis"), limit, 1e5)
     sudden = replace(HARVESTER, motion=bd.SpinUp(50.0, duration=1e-4), damping_ratio=0.005)
     usual, tight = (bd.simulate(sudden, 0.05, tolerance=tolerance) for tolerance in (1e-5, 1e-9))
     assert tight.mode_error <= usual.mode_error and "not reached" in " ".join(tight.warnings)

@@ -21,7 +21,7 @@ def source(tmp_path_factory):
     copy = tmp_path_factory.mktemp("source")
     for name in ("pyproject.toml", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, copy)
-    for name in (*PACKAGES, "tests"):
+    for name in (*PACKAGES, "examples", "tests"):
         shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__", "*.pyc"))
     return copy
 
@@ -53,6 +53,9 @@ def test_holds_the_packages_with_their_data_and_nothing_else(source, wheel):
         for path in (source / package).rglob("*")
         if path.is_file()
     }
+    examples = (path for path in (source / "examples").rglob("*") if path.is_file())
+    shipped = "beamdyn/common/app/shipped_examples"
+    expected |= {f"{shipped}/{path.relative_to(source / 'examples').as_posix()}" for path in examples}
     for name in ("__init__.py", "py.typed"):  # the second says that the type hints hold
         assert {f"{package}/{name}" for package in PACKAGES} <= expected
     assert {name for name in files(wheel) if not name.startswith(dist_info(wheel))} == expected

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
 from functools import partial
+from html import escape
 
+from beamdyn.common.app.input_words import NOT_GIVEN, default_words, help_of, label, table_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.html_report import further, report_page
+from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import drawing, html, picture
+
+_Part = tuple[str, Sequence[str], str, str]
 
 
 def drawn(screen: Screen, answer: object, place: float) -> str:
@@ -15,15 +22,49 @@ def drawn(screen: Screen, answer: object, place: float) -> str:
     return drawing(lambda: screen.draw(answer, place))
 
 
-def report_of(work: OpenDocument, title: str) -> str:
-    """The HTML report on a document: tables and drawing of each screen whose answer is up to date."""
-    parts = []
+def report_of(
+    work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] = (), now: datetime | None = None
+) -> str:
+    """The HTML report on a document.
+
+    Parameters
+    ----------
+    work : OpenDocument
+        The document; in the report are tables and drawing of each screen whose answer is up to date, and
+        every input, with its default where none is given.
+    title : str
+        Above it.
+    sweeps : iterable of (title, picture)
+        Sweeps that are shown, as HTML.
+    now : datetime, optional
+        Date of the report; now if not given.
+    """
+    parts = [*_answers(work), *((name, (), "", made) for name, made in sweeps)]
+    when = (now or datetime.now().astimezone()).strftime("%Y-%m-%d %H:%M %Z").strip()
+    inputs = ("Every input", (), f"<p>{escape(when)}</p>{inputs_html(work)}", "")
+    options = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
+    return report_page(title, "\n".join(filter(None, (options, work.text()))), [*parts, inputs])
+
+
+def _answers(work: OpenDocument) -> Iterator[_Part]:
     for screen in work.document.screens:
         if not work.stale(screen):
             answered = work.answered[screen.name]
             answer = answered.answer
             made = picture(drawn(screen, answer, screen.last), screen.name)
             more = further((name, partial(draw, answer)) for name, draw in screen.more)
-            parts.append((screen.name, answered.notes, html(answered.tables) + more, made))
-    options = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
-    return report_page(title, "\n".join(filter(None, (options, work.text()))), parts)
+            yield screen.name, answered.notes, html(answered.tables) + more, made
+
+
+def inputs_html(work: OpenDocument) -> str:
+    """A table of every input in HTML: name and symbol, value, whether it was given, and meaning."""
+    rows = "".join(_input_row(entry, work.entries.get(entry.path, "").strip()) for entry in work.inputs)
+    heads = "".join(f'<th class="words">{head}</th>' for head in ("input", "value", "", "meaning"))
+    return f'<div class="scrolls"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>'
+
+
+def _input_row(entry: Input, text: str) -> str:
+    default, table = default_words(entry), table_of(entry.path).replace("_", " ")
+    state = "given" if text else "" if default == NOT_GIVEN else "default"
+    cells = (f"{table}: {label(entry)}" if table else label(entry), text or default, state, help_of(entry))
+    return "<tr>" + "".join(f'<td class="words">{escape(cell)}</td>' for cell in cells) + "</tr>"

@@ -9,13 +9,20 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.handles import Place, Sheet, View
+from beamdyn.common.app.handles import Place, Sheet, Viewport
 from beamdyn.common.app.screens import Handle
+from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.edge.rendering import data_url
 
-STYLE = """
+STYLE = (
+    f"""
+{page_colours(":root")}"""
+    + """
 .board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
+.board .machine { display: block; width: 100%; height: auto; user-select: none; }
 .board .drawing { display: block; width: 100%; min-width: 0; max-height: none; user-select: none; }
+.waits { opacity: 0.4; }
+.curves .drawing { max-width: 720px; min-width: 0; }
 .handle { position: absolute; width: 16px; height: 16px; margin: -8px; border-radius: 50%; cursor: grab;
   border: 2px solid #0072B2; background: rgb(255 255 255 / 0.35); box-shadow: 0 0 0 1px white;
   touch-action: none; }
@@ -24,7 +31,8 @@ STYLE = """
 .handle:hover { background: rgb(86 180 233 / 0.6); }
 .handle:active { cursor: grabbing; background: rgb(86 180 233 / 0.9); }
 """
-_OFTEN = 0.1  # least time between two messages of a moving handle [s]
+)
+_OFTEN = 0.03  # least time between two messages of a moving handle [s]
 _PAUSE = 0.01  # pause after a drawing, for it to be sent and later places to arrive [s]
 _FAR = 10  # arrow keys' steps with shift
 
@@ -69,23 +77,29 @@ class DraggableDrawing:
 
     Attributes
     ----------
-    held : View, optional
-        View that the drawing keeps while a handle is held.
+    held : Viewport, optional
+        Viewport that the drawing keeps while a handle is held.
+    view : Viewport, optional
+        That of the drawing which is shown.
     """
 
     def __init__(self, words: str, moved: Callable[[Handle, Place, bool], object]) -> None:
-        self.held: View | None = None
+        self.held: Viewport | None = None
+        self.view: Viewport | None = None
         self._moved = moved
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
         self._handles: list[Any] = []
+        self._places: dict[int, str] = {}
         self._said: Any = ui.label()
         with ui.element("div").classes("w-full drawing-frame"):
             self._board: Any = ui.element("div").classes("board")
         with self._board:
-            self._picture: Any = ui.element("img").classes("drawing").props("draggable=false")
-            self._picture.props["alt"] = words
+            self._figure: Any = ui.element("img").classes("drawing").props("draggable=false")
+            self._figure.props["alt"] = words
+            self._machine: Any = ui.html("", sanitize=False)
+        self._board.props["data-words"] = words
         self._how: Any = ui.label("Drag the round points, or choose one by Tab and move it by arrow keys.")
         self._how.classes("status")
         self._board.set_visibility(False)
@@ -101,15 +115,21 @@ class DraggableDrawing:
             self._make([handle.label for handle in sheet.handles])
             self._sheet = sheet
             for element, handle in zip(self._handles, sheet.handles, strict=True):
-                self._put(element, handle, words(handle))
+                self._put(element, handle, words)
 
     def _show(self, sheet: Sheet) -> None:
-        drawn = sheet.view is not None
+        self.view = sheet.view
+        drawn = self.view is not None
         self._said.set_text("" if drawn else sheet.text)
         self._board.set_visibility(drawn)
         if drawn:
             self._board.style(f"--ratio: {sheet.ratio:.6g}")
-            self._picture.props["src"] = data_url(sheet.text)
+            self._board.props["data-picture"] = sheet.name
+            self._figure.set_visibility(not sheet.element)
+            self._machine.set_visibility(bool(sheet.element))
+            self._machine.set_content(sheet.element)
+            if not sheet.element:
+                self._figure.props["src"] = data_url(sheet.text)
 
     def _make(self, labels: list[str]) -> None:
         """Make handles for these points; existing ones are kept."""
@@ -128,11 +148,16 @@ class DraggableDrawing:
         made.on("keydown", partial(self._stepped, i), js_handler=_KEY)
         return made
 
-    def _put(self, element: Any, handle: Handle, words: str) -> None:
+    def _put(self, element: Any, handle: Handle, words: Callable[[Handle], str]) -> None:
+        """Move a handle to its place, if it is another; what stays needs no message to the page."""
         x, y = self._sheet.place(handle)
-        element.style(f"left: {100 * x:.3f}%; top: {100 * y:.3f}%")
+        at = f"left: {100 * x:.3f}%; top: {100 * y:.3f}%"
+        if self.held is not None and self._places.get(element.id) == at:
+            return
+        self._places[element.id] = at
+        element.style(at)
         element.props["aria-valuenow"] = round(100 * x)
-        element.props["aria-valuetext"] = words
+        element.props["aria-valuetext"] = words(handle)
 
     def _stepped(self, i: int, event: Any) -> None:
         across, up, far = event.args

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.form_entries import has_rows, in_unit, toml_value, units_for
+from beamdyn.common.app.form_entries import has_rows, in_unit, units_of
+from beamdyn.common.app.input_words import (
+    NOT_GIVEN,
+    default_words,
+    help_of,
+    label,
+    name_words,
+    options_of,
+    table_of,
+)
+from beamdyn.common.app.reading import Reading, is_bare, read_entry, unit_of, usual_unit
 from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.units import show
 
-_NOT_GIVEN = "not given"
+_OFTEN = 0.03  # least time between two messages of a slider that is dragged [s]
 
 
 class Form:
@@ -32,6 +41,15 @@ class Form:
         Called with path and text when a field changes.
     drags : sequence of Drag
         Sliders below fields.
+    hold : callable
+        Called with True when a slider is taken hold of, with False when it is let go.
+    headings : mapping
+        Words above the tables, where those that follow from their names are not good ones.
+
+    Attributes
+    ----------
+    typed : dict
+        What was typed last into each field, by path.
     """
 
     def __init__(
@@ -41,21 +59,30 @@ class Form:
         entries: Mapping[str, str],
         changed: Callable[[str, str], object],
         drags: Sequence[Drag] = (),
+        hold: Callable[[bool], object] = lambda _: None,
+        headings: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.fields: dict[str, Any] = {}
+        self.typed: dict[str, str] = {}
+        self._inputs = {entry.path: entry for entry in inputs}
+        self._units: dict[str, str] = {}  # in which a bare number is taken, by path
+        self._headings = headings
         self._tables: dict[str, Any] = {}
         self._changed = changed
+        self._hold = hold
         self._drags = {drag.path: drag for drag in drags}
         for section in sections:
-            chosen = [entry for entry in inputs if _table(entry.path) == section]
+            chosen = [entry for entry in inputs if table_of(entry.path) == section]
             if chosen:
                 self._section(section, chosen, entries)
 
     def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
         given = any(entries.get(entry.path, "") for entry in inputs)
-        usual = all(_default(entry) != _NOT_GIVEN for entry in inputs)
-        heading = f"[{section}]" if section else "general"
-        table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
+        usual = all(default_words(entry) != NOT_GIVEN for entry in inputs)
+        words = section.replace("_", " ").capitalize() or "General"
+        table = ui.expansion(self._headings.get(section, words), value=given or usual or not section).classes(
+            "w-full section"
+        )
         with table.props("dense"):
             for entry in inputs:
                 with ui.element("div"):
@@ -63,7 +90,7 @@ class Form:
         self._tables[section] = table
 
     def _field(self, entry: Input, text: str) -> None:
-        made = self._select(entry, text) if _options(entry) else self._input(entry, text)
+        made = self._select(entry, text) if options_of(entry) else self._input(entry, text)
         made.without_auto_validation()  # mistakes are marked by the answer, not by the field
         made.classes("w-full").props(
             f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
@@ -77,7 +104,8 @@ class Form:
         """A slider that writes into a field and follows what is written there, limited to its range."""
 
         def place() -> float | None:
-            given = in_unit(field.value or "", entry.quantity.unit, drag.unit).partition(" ")[0]
+            text = self._read(entry.path).text
+            given = in_unit(text, entry.quantity, drag.unit).partition(" ")[0]
             try:
                 return min(max(float(given), drag.low), drag.high)
             except ValueError:
@@ -93,13 +121,15 @@ class Form:
             on_change=lambda e: write(e.value),
         )  # fmt: skip
         made.props(f'dense aria-label="{label(entry)} [{drag.unit}]"').classes("q-px-md")
+        made.on("update:model-value", lambda e: write(e.args), [None], throttle=_OFTEN)
+        made.on("pan", lambda e: self._hold(e.args == "start"))
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
 
     def _select(self, entry: Input, text: str) -> Any:
-        options = {option: option.replace("_", " ") for option in _options(entry)}
+        options = {option: option.replace("_", " ") for option in options_of(entry)}
         if not entry.required:
-            default = _default(entry)
-            options = {"": default if default == _NOT_GIVEN else f"{_NOT_GIVEN}: {default}", **options}
+            default = default_words(entry)
+            options = {"": default if default == NOT_GIVEN else f"{NOT_GIVEN}: {default}", **options}
         value = text if text in options else None
         return ui.select(
             options,
@@ -113,20 +143,49 @@ class Form:
         field = made(
             label(entry),
             value=text,
-            placeholder="" if entry.required else _default(entry),
-            on_change=lambda e: self._changed(entry.path, e.value or ""),
-        ).props("debounce=200 autocomplete=off spellcheck=false")
-        units = units_for(entry.quantity.unit)
+            placeholder="" if entry.required else default_words(entry),
+            on_change=lambda e: self._heard(entry, e.value or ""),
+        ).props("debounce=100 autocomplete=off spellcheck=false")
+        field.on("blur", lambda: self._tidy(entry))
+        self._units[entry.path] = (
+            unit_of(text, entry) or unit_of(default_words(entry), entry) or usual_unit(entry)
+        )
+        units = units_of(entry)
         if len(units) > 1:
             with field.add_slot("append"):
-                self._units(entry, field, units)
+                self._unit_button(entry, field, units)
         return field
 
-    def _units(self, entry: Input, field: Any, units: Sequence[str]) -> None:
+    def _heard(self, entry: Input, typed: str) -> None:
+        """Take what was typed into a field, or written there; say how it was read."""
+        self.typed[entry.path] = typed
+        read = self._read(entry.path)
+        self._units[entry.path] = unit_of(read.text, entry) or self._units[entry.path]
+        self._remark(entry, read)
+        self._changed(entry.path, read.text)
+
+    def _read(self, path: str) -> Reading:
+        """What stands in a field, as it is read."""
+        typed = self.fields[path].value or ""
+        return read_entry(typed, self._inputs[path], self._units.get(path, ""))
+
+    def _remark(self, entry: Input, read: Reading) -> None:
+        field = self.fields[entry.path]
+        field.props["hint"] = read.remark or help_of(entry)
+        field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
+
+    def _tidy(self, entry: Input) -> None:
+        """Write a field's text as it was read, when it is left."""
+        read, field = self._read(entry.path), self.fields[entry.path]
+        if read.remark and not field.error:
+            field.set_value(read.text)
+
+    def _unit_button(self, entry: Input, field: Any, units: Sequence[str]) -> None:
         """A button whose menu converts the field's value to another unit; made at the first click."""
 
         def put(unit: str) -> None:
-            field.set_value(in_unit(field.value or "", entry.quantity.unit, unit))
+            self._units[entry.path] = unit
+            field.set_value(in_unit(self._read(entry.path).text, entry.quantity, unit))
 
         def choose() -> None:
             button.clear()
@@ -135,11 +194,17 @@ class Form:
                     ui.menu_item(unit, partial(put, unit))
 
         button = ui.button(icon="straighten", on_click=choose)
-        button.props(f'flat dense round size=sm aria-label="unit of {_words(entry)}"')
+        button.props(f'flat dense round size=sm aria-label="unit of {name_words(entry)}"')
 
     def shows(self, entries: Mapping[str, str]) -> bool:
         """Whether these entries stand in the fields."""
-        return all((field.value or "") == entries.get(path, "") for path, field in self.fields.items())
+        return all(self._read(path).text == entries.get(path, "") for path in self.fields)
+
+    def put(self, entries: Mapping[str, str]) -> None:
+        """Make these entries stand in the fields; those that do already are left alone."""
+        for path, field in self.fields.items():
+            if self._read(path).text != entries.get(path, ""):
+                field.set_value(entries.get(path, ""))
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
         """Mark the fields with mistakes, clear the others, and open folded tables with a mistake."""
@@ -147,57 +212,9 @@ class Form:
             said = mistakes.get(path)
             field.error = " ".join(said) if said else None
             if said:
-                self._tables[_table(path)].open()
+                self._tables[table_of(path)].open()
 
 
 def _lines(*given: Any, **more: Any) -> Any:
     """A text field that grows with its lines."""
     return ui.textarea(*given, **more).props("autogrow")
-
-
-def label(entry: Input) -> str:
-    """Name and symbol of an input."""
-    symbol = entry.quantity.symbol
-    return f"{_words(entry)}, {symbol}" if symbol and symbol != entry.name else _words(entry)
-
-
-def help_of(entry: Input) -> str:
-    """Meaning, unit and bounds, and whether it may be left out."""
-    return entry.help if entry.required else f"{entry.help}; not required"
-
-
-def _words(entry: Input) -> str:
-    """Its name, after that of the tables within its table."""
-    return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
-
-
-def _table(path: str) -> str:
-    return path.partition(".")[0] if "." in path else ""
-
-
-def _options(entry: Input) -> tuple[str, ...]:
-    if entry.kind is bool:
-        return ("true", "false")
-    few = all(isinstance(choice, str | int) for choice in entry.choices)
-    return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
-
-
-def _default(entry: Input) -> str:
-    """The default value, as a user would type it."""
-    if entry.default is None or entry.default in ("", [], ()):
-        return _NOT_GIVEN
-    value, unit = entry.default, entry.quantity.unit
-    if value == math.inf and entry.quantity.infinite:
-        return entry.quantity.infinite
-    if isinstance(value, tuple):
-        return toml_value([_said(number, unit) for number in value])
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return show(value).strip('"')
-    return _said(value, unit)
-
-
-def _said(number: float, unit: str) -> str:
-    """A number with its unit; short lengths in millimetres."""
-    if unit == "m" and abs(number) < 1:
-        number, unit = 1e3 * number, "mm"
-    return f"{number:.6g} {unit}".rstrip()

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.edge.config import ConfigError, path_of
-from beamdyn.common.edge.inputs import Input, parts_of
-from beamdyn.common.edge.units import quantity
+from beamdyn.common.edge.inputs import Input, Quantity, parts_of
 
 Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
 
@@ -167,12 +166,17 @@ def units_for(unit: str) -> tuple[str, ...]:
     return _UNITS.get(unit, (unit,) if unit else ())
 
 
-def in_unit(text: str, unit: str, target: str) -> str:
+def units_of(entry: Input) -> tuple[str, ...]:
+    """Units in common use for an input."""
+    return *units_for(entry.quantity.unit), *entry.quantity.further_units
+
+
+def in_unit(text: str, quantity: Quantity, target: str) -> str:
     """The quantity, or list of quantities, in another unit; the text unchanged if it is no such quantity."""
     try:
         if text.startswith("["):
-            return toml_value([in_unit(part, unit, target) for part in tomllib.loads(f"v = {text}")["v"]])
-        value = quantity(text, unit) / quantity(f"1 {target}", unit)
+            return toml_value([in_unit(part, quantity, target) for part in tomllib.loads(f"v = {text}")["v"]])
+        value = quantity.in_unit(quantity.convert(text), target)
     except (ValueError, RecursionError, AttributeError):
         return text
     return f"{value:.10g} {target}"

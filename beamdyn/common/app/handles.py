@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 import numpy as np
 
+from beamdyn.common.app.comparison import with_ghost
 from beamdyn.common.app.form_entries import Entries, tables_of, toml_value, units_for
 from beamdyn.common.app.screens import Handle, Screen
+from beamdyn.common.drawing.layout import Layout
+from beamdyn.common.drawing.sheet import WIDTH, Paper, Rows, lay_out
+from beamdyn.common.drawing.svg import as_file, element
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import drawing
 from beamdyn.common.edge.units import quantity
@@ -20,6 +27,7 @@ if TYPE_CHECKING:
 
 Place = tuple[float, float]
 _UNITS = {"m": "mm", "rad": "deg"}  # where a field does not say in which
+_NARROW = 400.0  # width of the paper on a narrow page [pt]
 _ANGLE = math.radians(0.1)  # to what an angle is rounded
 
 
@@ -27,31 +35,49 @@ _ANGLE = math.radians(0.1)  # to what an angle is rounded
 
 
 @dataclass(frozen=True)
-class View:
-    """Where the first axes of a drawing lie in its picture.
+class Viewport:
+    """Where the first drawing of a picture lies in it.
 
     Parameters
     ----------
     limits : ndarray, shape (2, 2)
-        Lower left and upper right corner of the axes, in their own coordinates.
+        Lower left and upper right corner of the drawing, in its own coordinates.
     corners : ndarray, shape (2, 2)
         The same corners in the picture: part of its width from the left, of its height from the top.
     boxes : tuple
-        Places that the layout gave to all axes of the figure.
+        Places that the layout gave to all axes of a figure.
+    paper : Paper, optional
+        Of drawings.
+    layout : Layout, optional
+        Of the first of them.
     """
 
     limits: np.ndarray
     corners: np.ndarray
     boxes: tuple[Any, ...] = ()
+    paper: Paper | None = None
+    layout: Layout | None = None
 
     @classmethod
-    def of(cls, figure: Figure) -> View:
+    def of_layout(cls, layout: Layout, paper: Paper) -> Viewport:
+        """The view of the first of the layouts on paper."""
+        left, top, right, bottom = layout.frame
+        places = np.array([(left, bottom), (right, top)])
+        corners = places / (paper.width, paper.height)
+        return cls(layout.fit.from_paper(places), corners, paper=paper, layout=layout)
+
+    @classmethod
+    def of(cls, figure: Figure) -> Viewport:
         """The view of a figure, which must have been drawn: its layout is made only then."""
         ax = figure.axes[0]
         limits = np.array([ax.get_xlim(), ax.get_ylim()], dtype=float).T
         parts = ax.transData.transform(limits) / figure.bbox.size
         boxes = tuple(axes.get_position(original=True) for axes in figure.axes)
         return cls(limits, np.abs(parts - (0.0, 1.0)), boxes)
+
+    def holds(self, rows: Rows) -> bool:
+        """Whether it is that of drawings in as many rows."""
+        return self.paper is not None and len(self.paper.heights) == len(rows)
 
     def keep(self, figure: Figure) -> None:
         """Give another figure of the same kind this view: same limits, same places of all axes."""
@@ -80,20 +106,33 @@ class Sheet:
 
     Parameters
     ----------
-    text : str
-        Its SVG, or the sentence why there is none.
+    said : str
+        The sentence why there is none; of a figure its SVG file.
     handles : tuple of Handle
         Its points that can be moved.
-    view : View, optional
+    view : Viewport, optional
         Where its axes lie; None if there is no drawing.
     ratio : float
         Its width over its height.
+    element : str
+        The same as an element of the page, in its colours; of drawings only.
     """
 
-    text: str
+    said: str
     handles: tuple[Handle, ...] = ()
-    view: View | None = None
+    view: Viewport | None = None
     ratio: float = 1.0
+    element: str = ""
+
+    @cached_property
+    def text(self) -> str:
+        """Its SVG file, or the sentence why there is none."""
+        return as_file(self.element) if self.element else self.said
+
+    @property
+    def name(self) -> str:
+        """Another for another picture."""
+        return f"p{crc32((self.element or self.said).encode()):08x}"
 
     def place(self, handle: Handle) -> Place:
         """Where a handle is in the picture."""
@@ -102,7 +141,15 @@ class Sheet:
         return self.view.place((handle.scale * x, handle.scale * y))
 
 
-def draw_sheet(screen: Screen, answer: Any, progress: float, view: View | None = None) -> Sheet:
+def draw_sheet(
+    screen: Screen,
+    answer: Any,
+    progress: float,
+    view: Viewport | None = None,
+    other: Rows = (),
+    name: str = "",
+    narrow: bool = False,
+) -> Sheet:
     """The drawing of an answer with its handles.
 
     Parameters
@@ -113,16 +160,60 @@ def draw_sheet(screen: Screen, answer: Any, progress: float, view: View | None =
         The answer.
     progress : float
         Place of the slider.
-    view : View, optional
+    view : Viewport, optional
         Draw it in the same way as that one: a picture stays in place while a point of it moves.
+    other : sequence of sequences of Drawing
+        Those of another design, to be drawn beneath.
+    name : str
+        What that design is called.
+    narrow : bool
+        Whether the page is: then drawings stand below one another, on paper as wide as their letters ask for.
     """
+    rows = screen.drawings(answer, progress)
+    if not rows:
+        return Sheet("") if screen.charts else _sheet_of_figure(screen, answer, progress, view)
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            rows = rows if view is not None else _with_room(screen, answer, rows)
+            rows = with_ghost(rows, other, name) if other else rows
+            rows = [[drawing] for row in rows for drawing in row] if narrow else rows
+            width = _NARROW if narrow else WIDTH
+            return _sheet_of_drawings(rows, tuple(screen.handles(answer, progress)), view, width)
+    except (ValueError, ArithmeticError) as error:
+        return Sheet(f"There is no drawing: {error}")
+
+
+def _with_room(screen: Screen, answer: Any, rows: Rows) -> Rows:
+    """The same drawings, the first with room for what it shows at each mark of the slider."""
+    marks = len(screen.slider.marks) if screen.slider is not None else 0
+    corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
+    if not corners:
+        return rows
+    (first, *others), *more = rows
+    return [[replace(first, room=np.vstack(corners)), *others], *more]
+
+
+def _sheet_of_drawings(rows: Rows, handles: tuple[Handle, ...], view: Viewport | None, width: float) -> Sheet:
+    points = {handle.label: np.multiply(handle.scale, handle.at) for handle in handles}
+    (first, *others), *more = rows
+    rows = [[replace(first, points=points), *others], *more]
+    held = view.paper if view is not None and view.holds(rows) else None
+    paper = held or Paper.of(rows, width)
+    layouts = lay_out(rows, paper, None if held is None or view is None else view.layout)
+    made = element(layouts, paper)
+    ratio = paper.width / paper.height
+    return Sheet("", handles, Viewport.of_layout(layouts[0], paper), ratio, made)
+
+
+def _sheet_of_figure(screen: Screen, answer: Any, progress: float, view: Viewport | None) -> Sheet:
     handles: list[Handle] = []
     figures: list[Figure] = []
 
     def draw() -> Figure:
         handles.extend(screen.handles(answer, progress))
         figures.append(screen.draw(answer, progress))
-        if view is not None and handles:
+        if view is not None and view.boxes and handles:
             view.keep(figures[0])
         return figures[0]
 
@@ -130,7 +221,7 @@ def draw_sheet(screen: Screen, answer: Any, progress: float, view: View | None =
     if not text.startswith("<?xml"):
         return Sheet(text)
     width, height = figures[0].get_size_inches()
-    return Sheet(text, tuple(handles), View.of(figures[0]), float(width / height))
+    return Sheet(text, tuple(handles), Viewport.of(figures[0]), float(width / height))
 
 
 # In the fields ------------------------------------------------------------------------------------------

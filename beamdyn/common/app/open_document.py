@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from beamdyn.common.app.comparison import OtherDesign
 from beamdyn.common.app.form_entries import Entries, by_field, tables_of, toml_of
+from beamdyn.common.app.history import History
 from beamdyn.common.app.screens import Document, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
@@ -52,6 +54,15 @@ class OpenEntries:
             return by_field(error, self.inputs)
         return Answered(answer, tables, notes, self.entries)
 
+    def glance(self, last: Answered) -> Answered | Mapping[str, list[str]]:
+        """The answer as far as a drawing shows it, with the tables and notes of the last one."""
+        try:
+            tables = tables_of(self.entries, self.inputs, self.screen.needs)
+            answer = self.screen.solve(self.screen.coarser(tables))
+        except (ValueError, ArithmeticError, NoAnswer) as error:
+            return by_field(error, self.inputs)
+        return Answered(answer, last.tables, last.notes, self.entries)
+
 
 @dataclass
 class OpenDocument:
@@ -68,8 +79,40 @@ class OpenDocument:
     answered: dict[str, Answered] = field(init=False, default_factory=dict)
     mistakes: dict[str, dict[str, list[str]]] = field(init=False, default_factory=dict)
 
+    other: OtherDesign | None = field(init=False, default=None)
+    compared: dict[str, Answered] = field(init=False, default_factory=dict)
+    not_compared: dict[str, str] = field(init=False, default_factory=dict)
+
     def __post_init__(self) -> None:
         self.entries = dict(self.document.base_entries)
+        self.history = History(self.entries)
+
+    def compare(self, other: OtherDesign | None) -> None:
+        """Compare with another design from now on, or with none."""
+        self.other = other
+        self.compared.clear()
+        self.not_compared.clear()
+
+    def wants_other(self, screen: Screen) -> bool:
+        """Whether the other design has not been solved yet for a screen."""
+        known = screen.name in self.compared or screen.name in self.not_compared
+        return self.other is not None and not known
+
+    def keep_other(self, screen: Screen, outcome: Answered | Mapping[str, list[str]]) -> None:
+        """Keep the other design's answer, or why there is none."""
+        if isinstance(outcome, Answered):
+            self.compared[screen.name] = outcome
+        else:
+            sentences = [each for said in outcome.values() for each in said]
+            self.not_compared[screen.name] = " ".join(sentences)
+
+    def go(self, steps: int) -> bool:
+        """Undo if `steps` is negative, redo if it is positive; say whether there was such a step."""
+        entries = self.history.go(steps)
+        if entries is None:
+            return False
+        self._take(entries)
+        return True
 
     @property
     def inputs(self) -> list[Input]:
@@ -81,6 +124,13 @@ class OpenDocument:
         opened = self.document.opened(text, source)
         options = {path: self.entries[path] for path in self.document.aside}
         self.entries, self.mistakes = opened | options, {}
+        self.history.part()
+
+    def show(self, entries: Mapping[str, str]) -> None:
+        """Replace the design by entries that were kept earlier."""
+        self._take({path: str(text) for path, text in entries.items()})
+        self.mistakes = {}
+        self.history.part()
 
     def recall(self, stored: Mapping[str, object]) -> bool:
         """Take up entries from an earlier page, but for those changed since; say whether any differed."""
@@ -135,3 +185,9 @@ class OpenDocument:
     def solve(self, screen: Screen) -> bool:
         """Solve the present entries; on failure the last answer is kept, and `mistakes` says why."""
         return self.keep(screen, self.attempt(screen).solve())
+
+    def glance(self, screen: Screen) -> bool:
+        """Solve for the drawing alone, as `solve`; in full where there is no answer yet."""
+        last = self.answered.get(screen.name)
+        attempt = self.attempt(screen)
+        return self.keep(screen, attempt.solve() if last is None else attempt.glance(last))

@@ -4,6 +4,11 @@ A web page from elsewhere reaches a server on this computer through the visitor'
 its own that is made to point to 127.0.0.1 ("DNS rebinding"), which shows in the request's Host; or as itself
 by a websocket or a form, which shows in its Origin.  Both are checked here; starlette's
 `TrustedHostMiddleware` checks no Origins, and in its earlier versions takes no address in brackets.
+
+What a page may load and send, its Content-Security-Policy says: nothing from elsewhere, nothing to there.
+The toolkit needs three exceptions: its page starts by a script within it ('unsafe-inline'), Vue
+compiles templates and NiceGUI runs the program's own code ('unsafe-eval'), and elements carry their styles
+('unsafe-inline').  What users enter is therefore shown as text or in escaped HTML alone.
 """
 
 from __future__ import annotations
@@ -21,7 +26,23 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 _THIS_COMPUTER = ("127.0.0.1", "[::1]", "localhost")
 _HOST = re.compile(r"(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(:[0-9]+)?")
-_UNFRAMED = ((b"x-frame-options", b"DENY"), (b"content-security-policy", b"frame-ancestors 'none'"))
+_POLICY = "; ".join((
+    "default-src 'self'",
+    "script-src 'self' 'unsafe-inline' 'unsafe-eval'",
+    "style-src 'self' 'unsafe-inline'",
+    "img-src 'self' data: blob:",
+    "font-src 'self' data:",
+    "connect-src 'self'{sockets}",
+    "object-src 'none'",
+    "base-uri 'none'",
+    "form-action 'self'",
+    "frame-ancestors 'none'",
+))  # fmt: skip
+_GUARDS = (
+    (b"x-frame-options", b"DENY"),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+)
 
 
 class OwnNames:
@@ -48,11 +69,11 @@ class OwnNames:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
         elif not (refusal := self.refusal(_headers(scope, b"host"), _headers(scope, b"origin"))):
-            await self.app(scope, receive, _unframed(send))
+            await self.app(scope, receive, _guarded(send, _headers(scope, b"host")[0]))
         elif scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
         else:
-            await _refuse(_unframed(send), refusal)
+            await _refuse(_guarded(send), refusal)
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
         """Why a request with these headers is refused; empty if it is answered."""
@@ -88,15 +109,26 @@ def _headers(scope: Scope, name: bytes) -> list[str]:
     return [value.decode("latin-1") for key, value in scope["headers"] if key == name]
 
 
-def _unframed(send: Send) -> Send:
-    """The same way to answer, with headers that forbid to show the answer in a frame."""
+def _guarded(send: Send, host: str = "") -> Send:
+    """The same way to answer, with headers that say what the page may load, and that none may frame it.
 
-    async def send_unframed(message: MutableMapping[str, Any]) -> None:
+    Parameters
+    ----------
+    send : callable
+        The way to answer.
+    host : str
+        The own name that was asked for, whose websockets are named apart: not every browser counts them
+        among 'self'.
+    """
+    sockets = f" ws://{host} wss://{host}" if host else ""
+    policy = (b"content-security-policy", _POLICY.format(sockets=sockets).encode("latin-1"))
+
+    async def send_guarded(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
-            message["headers"] = [*message.get("headers", ()), *_UNFRAMED]
+            message["headers"] = [*message.get("headers", ()), *_GUARDS, policy]
         await send(message)
 
-    return send_unframed
+    return send_guarded
 
 
 async def _refuse(send: Send, sentence: str) -> None:

@@ -1,61 +1,35 @@
-"""The page of an interactive program, one per client: tabs, opening and saving files, HTML report."""
+"""The page of an interactive program, one per client: its screens, files, designs, undo and redo."""
 
 from __future__ import annotations
 
+import asyncio
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from nicegui import ui
+from nicegui import background_tasks, run, ui
 
+from beamdyn.common.app import tasks
+from beamdyn.common.app.browser_memory import BrowserMemory, named_designs, read_typed, refused_name
+from beamdyn.common.app.comparison import OtherDesign
+from beamdyn.common.app.design_link import LinkedDesign
+from beamdyn.common.app.designs_dialog import DesignActions, DesignsDialog
 from beamdyn.common.app.document_report import report_of
-from beamdyn.common.app.draggable_drawing import STYLE as BOARD
+from beamdyn.common.app.examples import examples_of
+from beamdyn.common.app.form_entries import Entries
+from beamdyn.common.app.header import Header
+from beamdyn.common.app.link_dialog import LinkDialog
+from beamdyn.common.app.look import BLUE, RED, STYLE
 from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.processes import TaskTaker
+from beamdyn.common.app.refusals import outcome_of
 from beamdyn.common.app.screen_view import ScreenView
 from beamdyn.common.app.screens import Document, Program, Screen
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.rendering import STYLE
 
 _LARGEST = 200_000  # bytes of a file that is opened
 _ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
-_LAYOUT = """
-body { font-size: 15px; }
-.nicegui-header { padding: 0 0.75rem; }
-.nicegui-content { padding: 0.25rem 0.75rem 1rem; }
-.q-tab-panel { padding: 0.5rem 0; }
-.q-tab-panels, .q-tab-panel, .q-panel { overflow: visible; }
-.screen { display: grid; grid-template-columns: minmax(270px, 330px) minmax(0, 1fr); gap: 1rem; width: 100%; }
-.left { position: sticky; top: 44px; align-self: start; max-height: calc(100vh - 52px); overflow-y: auto;
-  padding: 4px 6px 4px 4px; flex-wrap: nowrap; }
-.right { min-width: 0; }
-.section { border: 1px solid #c8c8c8; border-radius: 4px; flex: none; }
-.section .q-item__label { font-weight: 600; }
-.section .nicegui-expansion-content { gap: 0.5rem; padding: 0.5rem 0.75rem 0.75rem; }
-.left .nicegui-expansion-content { display: grid;
-  grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); align-items: start; }
-.section .q-field__messages { line-height: 1.25; }
-.status { font-size: 0.85rem; color: #444; }
-.mistake { color: #8c1c00; font-weight: 600; border-left: 4px solid #8c1c00; padding-left: 0.5rem; }
-.mistake:empty { display: none; }
-.warning { color: #5a4200; border-left: 4px solid #E69F00; padding-left: 0.5rem; }
-.greyed { opacity: 0.45; filter: grayscale(1); }
-.slider { padding: 0 4.5rem; }
-.slider .q-slider__marker-labels { white-space: nowrap; }
-.drawing-frame { overflow-x: auto; }
-.drawing { max-width: 1000px; min-width: 480px; max-height: 72vh; object-fit: contain;
-  object-position: left; }
-:focus-visible { outline: 3px solid #0072B2; outline-offset: 1px; }
-.q-header :focus-visible { outline-color: white; outline-offset: -3px; }
-#popup { top: 0; bottom: auto; left: 0; right: 0; margin: 0; padding: 1rem; border: 0; border-radius: 0;
-  background: #8c1c00; color: white; text-align: center; }
-body:has(#popup[aria-hidden="false"]) #app { opacity: 0.5; pointer-events: none;
-  transition: opacity 0.5s 2s; }
-@media (max-width: 1000px) {
-  .screen { grid-template-columns: minmax(0, 1fr); }
-  .left { position: static; max-height: 42vh; border-bottom: 1px solid #c8c8c8; }
-}
-"""
 # NiceGUI shows its element "popup" while it tries to reach the program; these are other words for it.
 _STOPPED = """<script type="module">
 const notice = document.getElementById("popup");
@@ -72,47 +46,58 @@ class Page:
     ----------
     program : Program
         What it is.
+    solver : TaskTaker
+        What makes the answers.
     """
 
-    def __init__(self, program: Program) -> None:
-        self.program = program
+    def __init__(self, program: Program, solver: TaskTaker) -> None:
+        self.program, self.solver = program, solver
         self.works = {document.name: OpenDocument(document) for document in program.documents}
         self.panels: dict[str, ScreenView] = {}
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
-        self._tabs: dict[str, Any] = {}
+        self._memory = BrowserMemory(program.name)
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
-        ui.add_css(_LAYOUT + STYLE + BOARD)
-        ui.colors(primary="#0072B2", secondary="#444444", negative="#8c1c00")
-        ui.add_body_html(_STOPPED.format(name=program.name))
+        ui.add_css(STYLE)
+        ui.colors(primary=BLUE, secondary="#444444", negative=RED)
+        ui.add_body_html(_STOPPED.format(name=program.name) + self._memory.script)
         ui.page_title(program.title)
-        self._header()
+        self.header = Header(program.title, [*self.places], self._turned, self._files(), self)
+        self._bar = self.header.tabs
         self._body()
+        ui.on("undo", self.undo)
+        ui.on("redo", self.redo)
+        self._bar.client.on_delete(self._close)
 
-    def _header(self) -> None:
-        first: Any = next(iter(self.places))  # a tab goes by its name
-        self._bar: Any
-        with ui.header().classes("items-center gap-2 no-wrap q-py-none"):
-            with ui.tabs(value=first, on_change=self._turned).props(
-                "dense no-caps shrink stretch"
-            ) as self._bar:
-                for name in self.places:
-                    self._tabs[name] = ui.tab(name, label=name)
-            ui.space()
-            with ui.button("File").props("flat no-caps color=white"), ui.menu().props("auto-close"):
-                ui.menu_item("Open a TOML file", self._ask)
-                ui.menu_item("Save as TOML", self.save)
-                ui.menu_item("Report as HTML", self.report)
-                ui.menu_item("Back to the base case", self.reset)
+    def _close(self) -> None:
+        """The page is gone: what it waits for is ended."""
+        for panel in self.panels.values():
+            panel.close()
+
+    def _files(self) -> Mapping[str, Callable[[], object]]:
+        return {
+            "Open a TOML file": self._ask,
+            "Save as TOML": self.save,
+            "Report as HTML": self.report,
+            "Link to this design": self.link,
+            "Back to the base case": self.reset,
+        }
 
     def _body(self) -> None:
         with (
-            ui.tab_panels(self._bar, value=next(iter(self.places))).classes("w-full").props("animated=false")
+            ui.tab_panels(self._bar, value=next(iter(self.places)))
+            .classes("w-full")
+            .props("animated=false role=main")
         ):
             for name, (document, screen) in self.places.items():
-                with ui.tab_panel(name):
-                    self.panels[name] = ScreenView(self.works[document.name], screen, self._edited)
+                with ui.tab_panel(name) as panel:
+                    panel.props["data-document"] = document.name
+                    self.panels[name] = ScreenView(
+                        self.works[document.name], screen, self._edited, self.solver
+                    )
+        self._designs = DesignsDialog(DesignActions(self._keep, self._open_design, self._compare, self._drop))
+        self._link = LinkDialog()
         with ui.dialog() as self._dialog, ui.card():
             ui.label("Open a TOML file, as the commands read it")
             self._upload: Any = ui.upload(
@@ -136,6 +121,11 @@ class Page:
         """The document and screen that are in front."""
         return self.places[self.front]
 
+    @property
+    def work(self) -> OpenDocument:
+        """The document in front, as it is open."""
+        return self.works[self.current[0].name]
+
     def _turned(self) -> None:
         """Another screen has been chosen: scroll to its top."""
         self._entered()
@@ -145,25 +135,49 @@ class Page:
     def _entered(self) -> None:
         self.panels[self.front].enter()
         self._marks()
+        self._compare_in_front()
 
     def _edited(self) -> None:
         """Update which screens are stale after a change."""
         for panel in self.panels.values():
             panel.state()
+        if not any(panel.dragged for panel in self.panels.values()):  # a drag is one step
+            for work in self.works.values():
+                work.history.record(work.entries)
         self._marks()
         self._remember()
 
     def _marks(self) -> None:
-        for name, (document, screen) in self.places.items():
-            stale = self.works[document.name].outdated(screen)
-            self._tabs[name].props["label"] = f"{name} (stale)" if stale else name
-            self._tabs[name].update()
+        stale = {name for name, (d, screen) in self.places.items() if self.works[d.name].outdated(screen)}
+        self.header.mark(stale, self.work.history, self.work.other)
 
     def _rebuild(self, document: Document) -> None:
         for screen in document.screens:
             self.panels[screen.name].rebuild()
+        if self._recalled:
+            self._bar.client.run_javascript(self._memory.forget_typed)
         self.panels[self.front].enter()
         self._edited()
+
+    def _bring(self, document: Document) -> None:
+        if self.current[0] is not document:
+            self._bar.set_value(document.screens[0].name)
+
+    # Undo and redo ----------------------------------------------------------------------------------
+
+    def undo(self) -> None:
+        """Take the last change of the design in front back."""
+        self._go(-1)
+
+    def redo(self) -> None:
+        """Make the change again that was taken back."""
+        self._go(1)
+
+    def _go(self, steps: int) -> None:
+        if self.work.go(steps):
+            self._bar.client.run_javascript(self._memory.forget_typed)
+            self.panels[self.front].enter()
+            self._edited()
 
     # Files ------------------------------------------------------------------------------------------
 
@@ -189,9 +203,8 @@ class Page:
             self.works[document.name].open(text, name)
         except ConfigError as error:
             return self._refuse(str(error))
+        self._bring(document)
         self._rebuild(document)
-        if self.current[0] is not document:
-            self._bar.set_value(document.screens[0].name)
         self._dialog.close()
         ui.notify(f"{name} is open")
 
@@ -210,8 +223,7 @@ class Page:
 
     def save(self) -> None:
         """Download the design in front as TOML."""
-        document = self.current[0]
-        ui.download.content(self.works[document.name].text().encode(), f"{document.name}.toml")
+        ui.download.content(self.work.text().encode(), f"{self.work.document.name}.toml")
 
     async def report(self) -> None:
         """Download the HTML report on the document in front, when all its screens have been solved."""
@@ -221,45 +233,142 @@ class Page:
             await self.panels[screen.name].settled()
         self._marks()
         work = self.works[document.name]
-        title = f"{self.program.title}: {document.name}"
-        ui.download.content(report_of(work, title).encode(), f"{document.name}.html")
+        title = work.entries.get("title", "").strip() or f"{self.program.title}: {document.name}"
+        sweeps = [made for screen in document.screens if (made := self.panels[screen.name].sweep_report())]
+        ui.download.content(report_of(work, title, sweeps).encode(), f"{document.name}.html")
 
     def reset(self) -> None:
         """Return to the base design."""
         document = self.current[0]
-        self.works[document.name].open(document.base, document.name)
+        self.work.open(document.base, document.name)
         self._rebuild(document)
+
+    async def link(self) -> None:
+        """Show a link to the design in front; a design with mistakes has none."""
+        work = self.work
+        try:
+            work.document.opened(work.text(), "this design")
+            options = {path: work.entries[path] for path in work.document.aside}
+            fragment = LinkedDesign(work.document.name, work.text(), options).as_fragment()
+        except ConfigError as error:
+            return self._link.refuse(str(error))
+        await self._link.show(fragment)
+
+    # Designs ----------------------------------------------------------------------------------------
+
+    async def designs(self) -> None:
+        """Show the named designs of this browser, and the examples."""
+        stored = await ui.run_javascript(self._memory.designs, timeout=_ANSWERS)
+        kept = {name: found for name, found in named_designs(stored).items() if found[0] in self.works}
+        self._kept = kept
+        examples = await run.io_bound(examples_of, self.program) or ()
+        self._designs.show(kept, examples, self.current[0].name)
+
+    async def _keep(self, name: str) -> str:
+        sentence = refused_name(name, self._kept)
+        if not sentence:
+            made = self._memory.keep_design(name.strip(), self.work.document.name, self.work.entries)
+            sentence = str(await ui.run_javascript(made, timeout=_ANSWERS))
+        if not sentence:
+            await self.designs()
+        return sentence
+
+    async def _drop(self, name: str) -> None:
+        await ui.run_javascript(self._memory.drop_design(name), timeout=_ANSWERS)
+        await self.designs()
+
+    def _open_design(self, name: str, kind: str, entries: Entries) -> None:
+        work = self.works[kind]
+        work.show(work.document.base_entries | dict.fromkeys(work.entries, "") | entries)
+        self._bring(work.document)
+        self._rebuild(work.document)
+        ui.notify(f"{name} is open")
+
+    def _compare(self, name: str, kind: str, entries: Entries) -> None:
+        self.works[kind].compare(OtherDesign(name, entries))
+        self._entered()
+
+    def stop_comparing(self) -> None:
+        """Show the design in front alone."""
+        self.work.compare(None)
+        for screen in self.current[0].screens:
+            self.panels[screen.name].compare()
+        self._marks()
+
+    def _compare_in_front(self) -> None:
+        """Have the other design solved for the screen in front, and show what differs when it is."""
+        screen, work = self.current[1], self.work
+        if work.wants_other(screen):
+            background_tasks.create(self._solve_other(work, screen))
+
+    async def _solve_other(self, work: OpenDocument, screen: Screen) -> None:
+        other = work.other
+        assert other is not None
+        future = self.solver.submit(tasks.solve, work.document, screen, dict(other.entries))
+        await asyncio.wait([future])
+        if work.other is other:
+            work.keep_other(screen, outcome_of(future, work, screen))
+            self.panels[screen.name].compare()
 
     # Over a reload, or a restart of the program -----------------------------------------------------
 
-    @property
-    def _key(self) -> str:
-        return json.dumps(f"{self.program.name}-page")
-
-    def _remember(self) -> None:
+    def _remember(self, heard: Mapping[str, Mapping[str, str]] | None = None) -> None:
         """Store the entries and the name of the front screen in this tab of the browser."""
         if not self._recalled:
             return
         designs = {name: work.entries for name, work in self.works.items()}
-        stored = json.dumps({"front": self.front, "designs": designs})
+        if heard is None:
+            heard = {self.current[0].name: self.panels[self.front].form.typed}
+        made = self._memory.remember({"front": self.front, "designs": designs}, heard)
         # by the page's own client: the field that has changed may be gone, of a form that was made anew
-        self._bar.client.run_javascript(f"sessionStorage.setItem({self._key}, {json.dumps(stored)})")
+        self._bar.client.run_javascript(made)
 
     async def recall(self) -> None:
         """Restore what the browser stored, and store every change from now on."""
         await ui.context.client.connected()
         try:
-            stored = await ui.run_javascript(f"return sessionStorage.getItem({self._key})", timeout=_ANSWERS)
+            stored = await ui.run_javascript(self._memory.recall, timeout=_ANSWERS)
         except TimeoutError:
             stored = None
-        self._restore(json.loads(stored or "{}"))
+        found = json.loads(stored or "{}")
+        self._restore(found)
         self._recalled = True
-        self._remember()
+        self._remember(found.get("typed"))
 
     def _restore(self, stored: Mapping[str, Any]) -> None:
         """Put stored designs into the forms; a form that shows its design already is left alone."""
+        self.header.show_look(stored.get("look") or "")
+        if stored.get("narrow") is True:
+            for panel in self.panels.values():
+                panel.be_narrow()
+        typed = stored.get("typed", {})
         for name, entries in stored.get("designs", {}).items():
-            if (work := self.works.get(name)) is not None and work.recall(entries):
-                self._rebuild(work.document)
+            if (work := self.works.get(name)) is not None:
+                inputs = work.document.inputs(entries)
+                if work.recall(read_typed(typed.get(name), entries, inputs)):
+                    self._rebuild(work.document)
         if stored.get("front") in self.places:
             self._bar.set_value(stored["front"])
+        if stored.get("link"):
+            self._follow(str(stored["link"]))
+
+    def _follow(self, fragment: str) -> None:
+        """Open the design in a link, which is checked as a file is."""
+        try:
+            design = LinkedDesign.of_fragment(fragment)
+            work = self.works.get(design.document)
+            if work is None:
+                raise ConfigError("the link", [f"{self.program.name} has no {design.document[:40]}"])
+            work.open(design.text, "the link")
+        except ConfigError as error:
+            self._refuse(str(error))
+            self._dialog.open()
+            return
+        for path in work.document.aside:
+            work.put(path, design.options.get(path, work.entries[path]))
+        self._bring(work.document)
+        self._rebuild(work.document)
+
+    def keep_look(self, look: str) -> None:
+        """Store whether the page is light or dark."""
+        self._bar.client.run_javascript(self._memory.keep_look(look))

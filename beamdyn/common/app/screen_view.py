@@ -4,24 +4,33 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from concurrent.futures import Future
+from dataclasses import replace
 from functools import partial
+from html import escape
 from typing import Any
 
-from nicegui import background_tasks, ui
+from nicegui import ui
 
+from beamdyn.common.app import tasks
+from beamdyn.common.app.chart_board import ChartBoard
+from beamdyn.common.app.comparison import with_other_curves
+from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
+from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.draggable_drawing import DraggableDrawing
 from beamdyn.common.app.folded_drawing import FoldedDrawing
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
-from beamdyn.common.app.handles import Place, changed_texts, describe_place, draw_sheet
-from beamdyn.common.app.open_document import OpenDocument, OpenEntries
+from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.list_editor import ListEditor
+from beamdyn.common.app.open_document import Answered, OpenDocument
+from beamdyn.common.app.player import BackAndForth, Player
+from beamdyn.common.app.processes import TaskTaker
+from beamdyn.common.app.refusals import changed, outcome_of
 from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.app.sweep_panel import SweepPanel
-from beamdyn.common.app.threads import in_thread
-from beamdyn.common.edge.rendering import csv_text, html, png
-
-SOON = 0.3  # how long the page waits for an answer before it goes on without [s]
+from beamdyn.common.app.under_way import UnderWay
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
 
 
 class ScreenView:
@@ -35,13 +44,20 @@ class ScreenView:
         Which of its screens.
     edited : callable
         Called after a field of this screen has changed.
+    solver : TaskTaker
+        What makes the answers.
     """
 
-    def __init__(self, work: OpenDocument, screen: Screen, edited: Callable[[], object]) -> None:
-        self.work, self.screen, self._edited = work, screen, edited
+    def __init__(
+        self, work: OpenDocument, screen: Screen, edited: Callable[[], object], solver: TaskTaker
+    ) -> None:
+        self.work, self.screen, self._edited, self._solver = work, screen, edited, solver
         self._drawn = ""
-        self._newest: OpenEntries | None = None  # until it has been solved
-        self._awaits: asyncio.Task[None] | None = None  # an answer that did not come soon
+        self.narrow = False  # the page, so that drawings have narrow paper
+        self._sentences: tuple[list[str], list[str]] = [], []
+        self._way = UnderWay(self._settle, self.state)
+        self._holds = False  # a slider of the form
+        self._partial = False  # whether the tables shown are those of an answer before
         with ui.element("div").classes("screen"):
             self._left: Any = ui.column().classes("left gap-1")
             with ui.column().classes("right gap-2"):
@@ -49,30 +65,47 @@ class ScreenView:
         self.rebuild()
 
     def _results(self) -> None:
-        ui.label(self.screen.purpose).classes("text-body2")
-        self._status: Any = ui.label().classes("status").props('role="status" aria-live="polite"')
-        self._said: Any = ui.column().classes("gap-1 w-full").props('role="alert"')
-        self._good: Any = ui.column().classes("w-full gap-2 shown")
+        with ui.column().classes("head"):
+            ui.html(escape(self.screen.name), tag="h2", sanitize=False)
+            ui.label(self.screen.purpose).classes("text-body2")
+            self._headline: Any = ui.html("", sanitize=False).classes("w-full")
+            with ui.row().classes("items-center gap-2"):
+                self._status: Any = ui.label().classes("status").props('role="status" aria-live="polite"')
+                self._busy: Any = ui.row().classes("items-center gap-2")
+                with self._busy:
+                    ui.spinner(size="sm").props('aria-hidden="true"')
+                    ui.button("Cancel", on_click=self._way.cancel).props("dense outline no-caps size=sm")
+            self._said: Any = ui.column().classes("gap-1 w-full").props('role="alert"')
+        self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
-            self._slider()
-            self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
-            self._tables: Any = ui.html("", sanitize=False).classes("w-full")
-            self._more = [FoldedDrawing(title, draw) for title, draw in self.screen.more]
-        self._exports()
-        sweeps = self.screen.sweeps
-        self._sweep = None if sweeps is None else SweepPanel(self.work, self.screen, sweeps)
+            with ui.column().classes("pictures gap-2"):
+                self._slider()
+                self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
+                self._curves: Any = ui.html("", sanitize=False).classes("w-full drawing-frame curves")
+                self._charts = ChartBoard(f"{self.screen.name}: charts of the result")
+            with ui.column().classes("numbers gap-2"):
+                self.comparison = ComparisonPanel(self.work, self.screen)
+                self._tables: Any = ui.html("", sanitize=False).classes("w-full")
+                self._more = [FoldedDrawing(title, draw) for title, draw in self.screen.more]
+        with ui.column().classes("after w-full gap-2"):
+            self._exports()
+            sweeps = self.screen.sweeps
+            self._sweep = None if sweeps is None else SweepPanel(self.work, self.screen, sweeps, self._solver)
 
     def _slider(self) -> None:
         slider = self.screen.slider
         self._at: Any = None
+        self._player: Player | None = None
         if slider is None:
             return
         marks = ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(slider.marks))
         last = self.screen.last
-        self._at = ui.slider(min=0, max=last, step=slider.step, value=last, on_change=self._draw)
-        self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
-            "slider"
-        )
+        with ui.row().classes("stroke w-full"):
+            self._at = ui.slider(min=0, max=last, step=slider.step, value=last, on_change=self._turn)
+            self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
+                "slider"
+            )
+            self._player = Player(self._at, slider.label, BackAndForth(last, slider.seconds), self._plot)
 
     def _exports(self) -> None:
         with ui.row().classes("gap-2"):
@@ -85,12 +118,31 @@ class ScreenView:
         """Make the form again, for instance after another file has been opened."""
         self._left.clear()
         with self._left:
+            self._lists = self._make_lists()
             self.form = Form(
-                self.work.inputs, self.screen.sections, self.work.entries, self._changed, self.screen.drags
-            )
-        self._shape = [entry.path for entry in self.work.inputs]
+                self._fielded, self.screen.sections, self.work.entries, self._changed, self.screen.drags,
+                self._hold, self.work.document.headings,
+            )  # fmt: skip
+        self._shape = [entry.path for entry in self._fielded]
         self.form.mark(self.work.mistakes.get(self.screen.name, {}))
         self.state()
+
+    def _make_lists(self) -> ListEditor | None:
+        lists = self.screen.lists
+        return None if lists is None else ListEditor(lists, self.work.entries, self._listed)
+
+    @property
+    def _fielded(self) -> list[Input]:
+        """Descriptions of the inputs that have a field of the form: all that are not in lists."""
+        lists = self.screen.lists
+        return [entry for entry in self.work.inputs if lists is None or not lists.covers(entry.path)]
+
+    def _listed(self, entries: Entries) -> None:
+        """Something in the lists has changed."""
+        self.work.show(entries)
+        self.enter()
+        self.solve()
+        self._edited()
 
     def _changed(self, path: str, text: str) -> None:
         if self.work.entries.get(path) == text:
@@ -98,90 +150,128 @@ class ScreenView:
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
-        self.solve()
+        self.solve(held=self._holds)
         self._edited()
+
+    def _hold(self, held: bool) -> None:
+        """A slider of the form has been taken hold of; or let go, and then all is solved."""
+        self._holds = held
+        if not held:
+            self.solve()
+            self._edited()
+
+    @property
+    def dragged(self) -> bool:
+        """Whether a point or a slider of the form is held."""
+        return self._holds or self.board.held is not None
 
     def enter(self) -> None:
         """Come to the front: show what other screens have written, and solve if the answer shown is stale."""
-        if not (self._has_shape and self.form.shows(self.work.entries)):
-            self.rebuild()
-        if self.work.stale(self.screen) or self.work.mistakes.get(self.screen.name) or not self._drawn:
+        self.put_entries()
+        if self._lists is not None:
+            self._lists.show(self.work.entries)
+        stale = self._partial or self.work.stale(self.screen)
+        if stale or self.work.mistakes.get(self.screen.name) or not self._drawn:
             self.solve()
+
+    def put_entries(self) -> None:
+        """Make the entries stand in the form, which is made again only if its fields are others."""
+        if self._has_shape:
+            self.form.put(self.work.entries)
+        else:
+            self.rebuild()
 
     @property
     def _has_shape(self) -> bool:
         """Whether the form has a field for each input that there is now."""
-        return [entry.path for entry in self.work.inputs] == self._shape
+        return [entry.path for entry in self._fielded] == self._shape
 
-    def solve(self) -> None:
-        """Solve and show the answer: at once where it comes soon, else when it comes; the last one is greyed.
+    def solve(self, held: bool = False) -> None:
+        """Have the present entries solved, and the answer shown when it comes; the last one stays until then.
 
         What changes meanwhile is solved next, its last state alone.
-        """
-        self._newest = self.work.attempt(self.screen)
-        if self._awaits is None:
-            future = in_thread(self._newest.solve)
-            try:
-                self._settle(future.result(SOON))
-            except TimeoutError:
-                self._awaits = background_tasks.create(self._await(self._newest, future))
-                self.form.mark({})  # it is no quick mistake
-        self.state()
 
-    async def _await(self, attempt: OpenEntries, future: Future[Any]) -> None:
-        """Show the answer to the newest entries when it comes."""
-        try:
-            outcome = await asyncio.wrap_future(future)
-            while self._newest is not None and self._newest != attempt:
-                attempt = self._newest
-                outcome = await asyncio.wrap_future(in_thread(attempt.solve))
-        finally:
-            self._awaits = None
-            if not self._left.is_deleted:
-                self.state()  # also where a point that was moved has been answered meanwhile
-        if self._newest is not None and not self._left.is_deleted:
-            self._settle(outcome)
-            self._edited()
+        Parameters
+        ----------
+        held : bool
+            Whether something is being dragged: then as far as the drawing shows it.
+        """
+        task = tasks.glance if held and self.work.answered.get(self.screen.name) else tasks.solve
+        document, entries = self.work.document, dict(self.work.entries)
+        self._way.want(lambda: self._solver.submit(task, document, self.screen, entries))
+        self.state()
 
     async def settled(self) -> None:
         """Wait until the present entries have been solved."""
-        if self._awaits is not None:
-            await asyncio.wait([self._awaits])
+        await self._way.done()
 
-    def _settle(self, outcome: Any) -> None:
-        self.work.keep(self.screen, outcome)
-        self._tell()
+    def close(self) -> None:
+        """End what is under way: the page is gone."""
+        self._way.cancel()
+        if self._sweep is not None:
+            self._sweep.close()
 
-    def _tell(self) -> None:
-        """Show the answer; or say why there is none, and leave the last one, greyed."""
-        self._newest = None
-        mistakes = self.work.mistakes[self.screen.name]
+    def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
+        """Show an answer; or say why there is none to the newest entries, and leave the last one, greyed."""
+        if self._left.is_deleted:
+            return
+        outcome = outcome_of(future, self.work, self.screen)
+        if not last and not isinstance(outcome, Answered):
+            return
+        self.work.keep(self.screen, self._complete(outcome))
+        mistakes = self._mistakes()
         self.form.mark(mistakes)
-        if not mistakes:
+        if not mistakes or (not self.dragged and "waits" in self._tables.classes):
             self._show()
         self.state()
         self._say(mistakes)
+        if self.board.held is None:
+            self._edited()
+
+    def _complete(self, outcome: Any) -> Any:
+        """An answer that was made for a drawing alone keeps the tables and notes of the one before it."""
+        before = self.work.answered.get(self.screen.name)
+        if not isinstance(outcome, Answered):
+            return outcome
+        self._partial = False
+        if before is None or outcome.tables:
+            return outcome
+        self._partial = True
+        return replace(outcome, tables=before.tables, notes=before.notes)
+
+    def _mistakes(self) -> dict[str, list[str]]:
+        """What is wrong, by field; what is about no single one is about all that have changed."""
+        mistakes = self.work.mistakes[self.screen.name]
+        about = changed(self.work, self.screen) if "" in mistakes else []
+        return dict.fromkeys(about, mistakes.get("", [])) | mistakes
 
     def state(self) -> None:
-        """Grey the answer shown while it is stale, and say when another is on its way."""
-        stale = self.work.stale(self.screen)
-        self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
+        """Say whether the answer shown is the present one, and grey it where another one takes its time."""
+        busy, held = self._way.busy, self.dragged
+        stale = self.work.stale(self.screen) or (self._partial and not held)
+        grey = stale and (self._way.slow or not busy)
+        self._good.classes(add="greyed" if grey else "", remove="" if grey else "greyed")
+        self._busy.set_visibility(self._way.slow)
         failed = self.work.mistakes.get(self.screen.name)
         words = (
             "Below is the last good result." if self.work.answered.get(self.screen.name) else "No result yet."
         )
         later = "An input has changed since: this result is stale."
-        now = (words if failed else later) if stale else "Up to date."
-        self._status.set_text(f"Computing. {words if stale else ''}".strip() if self._awaits else now)
+        fresh = "The drawing follows; the tables wait." if held else "Up to date."
+        now = (words if failed else later) if stale else fresh
+        self._status.set_text(f"Computing. {words if stale else ''}".strip() if busy else now)
         if self._sweep is not None:
             self._sweep.state()
 
     def _say(self, mistakes: dict[str, list[str]]) -> None:
         """Show the mistakes outside this form, and the warnings of the answer."""
-        self._said.clear()
         answered = self.work.answered.get(self.screen.name)
         elsewhere = [s for path, said in mistakes.items() if path not in self.form.fields for s in said]
         warnings = answered.notes if answered and not mistakes else ()
+        if (elsewhere, [*warnings]) == self._sentences:
+            return
+        self._sentences = elsewhere, [*warnings]
+        self._said.clear()
         with self._said:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
@@ -189,41 +279,94 @@ class ScreenView:
                 ui.label(f"Warning: {sentence}").classes("warning")
 
     def _show(self) -> None:
-        answered = self.work.answered[self.screen.name]
-        self._tables.set_content(html(answered.tables))
-        self._draw()
-        if self.board.held is None:  # while a point is moved, its drawing alone follows
-            for more in self._more:
-                more.show(answered.answer)
-
-    def _draw(self) -> None:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        made = draw_sheet(self.screen, answered.answer, self.progress, self.board.held)
-        self._drawn = made.text
+        self._headline.set_content(headline_of(self.work, self.screen, answered))
+        self._draw()
+        self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
+        if not self.dragged:  # while a point is moved, its drawing alone follows
+            self._plot()
+            self._tables.set_content(html(answered.tables))
+            self.comparison.show(answered)
+            for more in self._more:
+                more.show(answered.answer)
+
+    def be_narrow(self) -> None:
+        """Draw on narrow paper from now on."""
+        self.narrow = True
+        self._draw()
+
+    def compare(self) -> None:
+        """Show the design that this one is compared with, or none."""
+        if self.work.answered.get(self.screen.name):
+            self._show()
+
+    def _turn(self) -> None:
+        """Draw at the slider's new place, to the same scale; curves follow when it rests."""
+        self._draw(self.board.view)
+        if self._player is None or not self._player.plays:
+            self._plot()
+
+    def _draw(self, view: Viewport | None = None) -> None:
+        answered = self.work.answered.get(self.screen.name)
+        if answered is None:
+            return
+        there = self._other_answer()
+        other = () if there is None else self.screen.drawings(there, self.progress)
+        name = self.work.other.name if self.work.other else ""
+        made = draw_sheet(
+            self.screen, answered.answer, self.progress, self.board.held or view, other, name, self.narrow
+        )
+        self._drawn = made.name or self.screen.name
+        self._chart(answered.answer)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
+
+    def _other_answer(self) -> Any:
+        """The answer to the design that this one is compared with, if there is one."""
+        there = self.work.compared.get(self.screen.name)
+        return there.answer if there is not None else None
+
+    def _chart(self, answer: Any) -> None:
+        """Show the charts, also while a point is moved: they are light."""
+        if self.screen.charts is None:
+            return
+        charts, there = self.screen.charts(answer, self.progress), self._other_answer()
+        if there is not None and self.work.other is not None:
+            charts = with_other_curves(charts, self.screen.charts(there, self.progress), self.work.other.name)
+        self._charts.show(charts)
+
+    def _plot(self) -> None:
+        """Show the curves that belong to the drawings, if there are any."""
+        answered = self.work.answered.get(self.screen.name)
+        if answered is None:
+            return
+        answer, progress = answered.answer, self.progress
+        figure = self.screen.curves(answer, progress) if self.screen.drawings(answer, progress) else None
+        made = "" if figure is None else picture(drawing(lambda: figure), f"{self.screen.name}: curves")
+        self._curves.set_content(made)
+        self._curves.set_visibility(bool(made))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
         """Write the new place of a handle into the fields, and solve."""
+        if self._player is not None:
+            self._player.pause()
         texts = changed_texts(handle, target, self.work.entries, self.work.inputs)
-        if texts:
-            self._write(texts)
-        if done and (not texts or self.work.mistakes.get(self.screen.name)):
-            self._show()  # all of what it shows again, where there is no new answer
-
-    def _write(self, texts: Entries) -> None:
-        """Write into several fields and solve once."""
         for path, text in texts.items():
             self.work.put(path, text)
         for path, text in texts.items():
-            self.form.fields[path].set_value(text)
-        self.work.solve(self.screen)  # waited for: the point is held
-        self._tell()
-        mistakes = self.work.mistakes[self.screen.name]
-        if "" in mistakes:  # about no single field: about those written
-            self.form.mark(mistakes | dict.fromkeys(texts, mistakes[""]))
-        self._edited()
+            if path in self.form.fields:
+                self.form.fields[path].set_value(text)
+        if self._lists is not None:  # what is missing is told at rest
+            (self._lists.show if done else self._lists.follow)(self.work.entries)
+        if texts or done:
+            self.solve(held=not done)
+            if done:  # what is written on the way is neither stored nor told to other screens
+                self._edited()
+
+    def sweep_report(self) -> tuple[str, str] | None:
+        """Title and picture of the sweep that is shown; None if there is none."""
+        return None if self._sweep is None else self._sweep.report()
 
     @property
     def progress(self) -> float:
@@ -232,7 +375,10 @@ class ScreenView:
 
     async def _svg(self) -> None:
         await self.settled()
-        ui.download.content(self._drawn.encode(), f"{self._name}.svg")
+        if answered := self.work.answered.get(self.screen.name):
+            ui.download.content(
+                drawn(self.screen, answered.answer, self.progress).encode(), f"{self._name}.svg"
+            )
 
     async def _png(self) -> None:
         await self.settled()

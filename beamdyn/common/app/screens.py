@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from beamdyn.common.app.chart import Chart
 from beamdyn.common.app.form_entries import Entries, entries_of
+from beamdyn.common.app.lists import Lists
 from beamdyn.common.curves import sweep_figure
+from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -55,12 +58,15 @@ class Slider:
     marks : tuple of str
         What its whole numbers from 0 on are.
     step : float
-        Between places that are drawn.
+        Between places that are drawn when it is moved by hand.
+    seconds : float
+        How long it takes to play from one end to the other [s].
     """
 
     label: str
     marks: tuple[str, ...]
     step: float = 0.05
+    seconds: float = 2.5
 
 
 @dataclass(frozen=True)
@@ -84,6 +90,21 @@ class Drag:
     unit: str
 
 
+class KeyResult(NamedTuple):
+    """A result that stands first on a screen, such as ("stopping distance", "13.4 m").
+
+    Parameters
+    ----------
+    words : str
+        What it is.
+    value : str
+        The number with its unit, or a word.
+    """
+
+    words: str
+    value: str
+
+
 @dataclass(frozen=True)
 class Handle:
     """A draggable point of a drawing, which writes into fields of the form.
@@ -98,7 +119,7 @@ class Handle:
         A new place (x, y) [m] in; values by the path of their input out, in SI: a number, or a pair for
         a point.
     scale : float
-        Units of the drawing's first axes in a metre: 1000 where these are in mm.
+        Units of the drawing in a metre: 1000 where it is in mm.
     step : float
         How far an arrow key moves it [m].
     grain : float
@@ -146,7 +167,24 @@ class Screen:
     more : tuple of (title, callable)
         Further drawings: answer in, figure out; drawn when they are wanted.
     handles : callable
-        Answer and place of the slider in; points of the drawing's first axes that can be moved out.
+        Answer and place of the slider in; points of the first drawing that can be moved out.
+    drawings : callable
+        Answer and place of the slider in; rows of drawings out, which are shown in place of the figure. None
+        where the figure is shown.
+    coarser : callable
+        Tables in, those of a question out whose drawing is the same and that is answered sooner: solved while
+        a point is moved.
+    curves : callable
+        Answer and place of the slider in; the figure below the drawings out, or None.
+    lists : Lists, optional
+        Lists of named things that stand above its form.
+    headline : callable
+        Answer in; the two to four results that matter most out, each in a few words.
+    effort : str
+        What makes an answer take long, and what shortens it, in a sentence.
+    charts : callable, optional
+        Answer and place of the slider in; charts out, which are shown below the drawings, and in place of the
+        figure where there are none.
     """
 
     name: str
@@ -163,6 +201,13 @@ class Screen:
     drags: tuple[Drag, ...] = ()
     more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
+    drawings: Callable[[Any, float], Rows] = lambda *_: ()
+    coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
+    curves: Callable[[Any, float], Figure | None] = lambda *_: None
+    lists: Lists | None = None
+    headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
+    effort: str = ""
+    charts: Callable[[Any, float], Sequence[Chart]] | None = None
 
     @property
     def last(self) -> float:
@@ -190,6 +235,8 @@ class Document:
         Initial entries that are not part of the file, such as options of a command.
     in_fields : callable
         The tables of a file as the form has them, each value at the path of its input.
+    headings : mapping
+        Words above the tables of the form; those of a table's name where there are none.
     """
 
     name: str
@@ -199,6 +246,7 @@ class Document:
     screens: tuple[Screen, ...]
     aside: Mapping[str, str] = field(default_factory=dict)
     in_fields: Callable[[dict[str, Any]], dict[str, Any]] = lambda tables: tables
+    headings: Mapping[str, str] = field(default_factory=dict)
 
     def opened(self, text: str, source: str) -> Entries:
         """Entries for the text of a file, which the parser of the commands accepts.

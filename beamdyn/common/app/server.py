@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
+from beamdyn.common.edge.program import examples
+
 if TYPE_CHECKING:
+    from beamdyn.common.app.processes import TaskTaker
     from beamdyn.common.app.screens import Program
 
 MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
 _HOME = "127.0.0.1"
-_TURN = 5e-4  # how long a thread that computes keeps the interpreter from the one that serves [s]
 
 
 def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
@@ -32,7 +33,11 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
     """
     usual = port
 
-    @app.command(name="app", help=f"{about} Ctrl-C ends it.")
+    @app.command(
+        name="app",
+        help=f"{about} Ctrl-C ends it.",
+        help_epilogue=examples(f"{app.name[0]} app", f"{app.name[0]} app --port 8090 --no-browser"),
+    )
     def interactive(
         *,
         port: int = usual,
@@ -54,12 +59,12 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
         serve(program, host, port, browser)
 
 
-def root_of(program: Program) -> Callable[[], Awaitable[None]]:
+def root_of(program: Program, solver: TaskTaker) -> Callable[[], Awaitable[None]]:
     """The function that builds the page for a client."""
     from beamdyn.common.app.page import Page
 
     async def root() -> None:
-        await Page(program).recall()
+        await Page(program, solver).recall()
 
     return root
 
@@ -70,7 +75,8 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     Parameters
     ----------
     program : callable
-        Makes the program; it is called when it is known that it can be shown.
+        Makes the program, here and in each process that makes answers: a function of a module.  It is called
+        when it is known that it can be shown.
     host : str
         Address to listen on.
     port : int
@@ -90,20 +96,25 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     except ImportError:
         raise ValueError(MISSING) from None
     from beamdyn.common.app.own_names import OwnNames
+    from beamdyn.common.app.processes import Processes
+    from beamdyn.common.edge.progress import quiet
 
     _free(host, port)
-    made = program()
+    made, processes = program(), Processes(program)
     app.add_middleware(OwnNames, host=host)
-    sys.setswitchinterval(_TURN)
-    ui.run(
-        root_of(made),
-        host=host,
-        port=port,
-        title=made.title,
-        show=browser,
-        reload=False,
-        reconnect_timeout=30.0,
-    )
+    app.on_startup(processes.start)
+    app.on_shutdown(processes.close)
+    with quiet():
+        ui.run(
+            root_of(made, processes),
+            host=host,
+            port=port,
+            title=made.title,
+            language="en-US",
+            show=browser,
+            reload=False,
+            reconnect_timeout=30.0,
+        )
 
 
 def _free(host: str, port: int) -> None:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import tomllib
 from collections.abc import Mapping
+from concurrent.futures import BrokenExecutor
 from contextlib import suppress
 from typing import Any
 
-from nicegui import run, ui
+from nicegui import ui
 
+from beamdyn.common.app import tasks
 from beamdyn.common.app.form_entries import Entries, in_unit, tables_of
 from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.processes import TakesTooLong, TaskTaker
 from beamdyn.common.app.screens import Screen, Sweeps
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.rendering import csv_text, drawing, picture, png
 
 _USUAL = {"m": "mm", "rad": "deg"}  # where no unit is given
@@ -29,8 +32,9 @@ _Request = tuple[Entries, str, str]  # the design, the input with its values, th
 class SweepPanel:
     """A folded panel below a screen's results."""
 
-    def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps) -> None:
-        self.work, self.screen, self.sweeps = work, screen, sweeps
+    def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: TaskTaker) -> None:
+        self.work, self.screen, self.sweeps, self._solver = work, screen, sweeps, solver
+        self._future: asyncio.Future[tasks.Swept] | None = None  # of a sweep that is under way
         self._found: tuple[_Request, InputSweep] | None = None
         self._shown: Entries | None = None
         path, _, values = sweeps.example.partition("=")
@@ -44,8 +48,13 @@ class SweepPanel:
             self._results: Any = ui.select(
                 sweeps.results.split(","), value=sweeps.results.split(","), multiple=True, label="results"
             ).classes("w-full")
-            with ui.row():
+            with ui.row().classes("items-center"):
                 ui.button("Sweep", on_click=self.show).props("no-caps")
+                self._busy: Any = ui.row().classes("items-center")
+                with self._busy:
+                    ui.spinner(size="sm").props('role="status" aria-label="computing the sweep"')
+                    ui.button("Cancel", on_click=self.close).props("outline no-caps")
+                self._busy.set_visibility(False)
                 for kind in ("CSV", "SVG", "PNG"):
                     ui.button(
                         f"Sweep as {kind}", icon="download", on_click=getattr(self, kind.lower())
@@ -92,16 +101,35 @@ class SweepPanel:
         request = (self.work.needed(self.screen), text, names)
         if self._found is not None and self._found[0] == request:
             return self._found[1]
-        try:
-            swept = await run.io_bound(self.sweeps.run, self._tables(), text, names)
-        except (ValueError, ArithmeticError, NoAnswer) as error:
-            self._say(str(error), "mistake")
-            return None
-        if swept is None:  # the program ends
+        swept = await self._swept(text, names)
+        if isinstance(swept, str):
+            self._say(swept, "mistake")
             return None
         self._say("\n".join(swept.warnings), "warning")
         self._found = request, swept
         return swept
+
+    async def _swept(self, text: str, names: str) -> tasks.Swept:
+        """The sweep, or why there is none; another one that is under way is ended."""
+        self.close()
+        document, entries = self.work.document, dict(self.work.entries)
+        future = self._future = self._solver.submit(tasks.sweep, document, self.screen, entries, text, names)
+        self._busy.set_visibility(True)
+        try:
+            return await future
+        except asyncio.CancelledError:
+            return "Cancelled."
+        except (TakesTooLong, BrokenExecutor) as error:
+            return f"Given up: {error}. Sweep fewer values."
+        finally:
+            if self._future is future:
+                self._future = None
+                self._busy.set_visibility(False)
+
+    def close(self) -> None:
+        """End the sweep that is under way."""
+        if self._future is not None:
+            self._future.cancel()
 
     def _say(self, words: str, kind: str) -> None:
         self._said.set_text(words)
@@ -114,6 +142,14 @@ class SweepPanel:
             self._picture.set_content(picture(drawing(lambda: self.sweeps.draw(swept)), words))
             self._shown = self._found[0][0] if self._found else None
             self.state()
+
+    def report(self) -> tuple[str, str] | None:
+        """Title and picture in HTML of the sweep that is shown; None while there is none, or it is stale."""
+        if self._found is None or self._shown != self.work.needed(self.screen):
+            return None
+        (_, text, names), swept = self._found
+        title = f"Sweep of {self.screen.name}: {names.replace(',', ', ')} over {text}"
+        return title, picture(drawing(lambda: self.sweeps.draw(swept)), title)
 
     async def csv(self) -> None:
         """Download its rows."""
@@ -147,7 +183,7 @@ def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
     if not isinstance(default, int | float) or math.isinf(default):
         return 0.0, unit
     usual = _USUAL.get(unit, unit)
-    number = in_unit(f"{default!r} {unit}", unit, usual).partition(" ")[0] if unit else default
+    number = in_unit(f"{default!r} {unit}", entry.quantity, usual).partition(" ")[0] if unit else default
     return float(number), usual
 
 

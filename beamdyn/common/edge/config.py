@@ -35,6 +35,14 @@ class ConfigError(ValueError):
         One sentence each: the key's path, the value, what is wrong and the remedy.
     paths : sequence of str
         For each mistake the path of the input that it is about, empty for none; all empty if not given.
+
+    Examples
+    --------
+    >>> try:
+    ...     bd.load_scene("examples/no_such_file.toml")
+    ... except bd.ConfigError as mistakes:
+    ...     print("refused")
+    refused
     """
 
     def __init__(self, source: str, mistakes: Sequence[str], paths: Sequence[str] = ()) -> None:

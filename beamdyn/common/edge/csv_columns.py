@@ -12,7 +12,8 @@ from beamdyn.common.edge.data_text import DataText, as_decimal, number_at, plain
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, usual_unit
 
-_HEAD = re.compile(r"\s*([^\[\]()]*?)\s*(?:[\[(]([^\[\]()]*)[\])]\s*)?")
+_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # a unit, such as (m/s2)2/Hz
+_HEAD = re.compile(rf"\s*([^\[\]()]*?)\s*(?:[\[(]({_INNER})[\])]\s*)?")
 _DELIMITERS = ",;\t"
 
 

@@ -12,14 +12,17 @@ from typing import Any, get_args, get_origin
 import numpy as np
 
 from beamdyn.common.designs import Designs, VariedInput
-from beamdyn.common.edge.inputs import Input, parts_of
+from beamdyn.common.edge.inputs import Input, Section, parts_of
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.one_line import counted, warned
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results import Result
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(.*?)\s*")
+_RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(?::?\s*(log)\b)?\s*([^:]*?)\s*")
+_LIST = re.compile(rf"\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(.*?)\s*")
+_MOST_NAMED = 4  # results in a line
 MOST_AT_ONCE = 100_000  # cases at once, of arrays
 MOST_ONE_BY_ONE = 2000  # cases, each solved by itself: minutes
 _CHUNK = 16  # cases of a task, each solved by itself
@@ -104,6 +107,8 @@ class InputSweep(Result):
         Where there is no answer, and why.
     combine : {"product", "zip"}
         Whether the inputs are combined each with each, or taken together.
+    refused : tuple of (int, str)
+        Designs that are refused, by their row (the last input changes fastest), each with the reason.
     """
 
     inputs: tuple[str, ...]
@@ -114,6 +119,13 @@ class InputSweep(Result):
     found: tuple[np.ndarray, ...]
     warnings: tuple[str, ...] = ()
     combine: str = "product"
+    refused: tuple[tuple[int, str], ...] = ()
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        shown = ", ".join(self.results[:_MOST_NAMED]) + ", ..." * (len(self.results) > _MOST_NAMED)
+        yield f"{shown} of {counted(self.designs.count, 'design')} over {', '.join(self.inputs)}"
+        yield warned(self.warnings)
 
     @property
     def designs(self) -> Designs:
@@ -165,8 +177,8 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
     inputs : sequence of Input
         Those that may be varied.
     text : str
-        KEY=start:stop:count unit; the key is a path, or its last part where that is unique, or unique
-        among the inputs that must be given.
+        KEY=start:stop:count unit, at equal steps; start:stop:count:log unit, at equal ratios; or a list,
+        KEY=1,2,5 unit.  The key is a path, or its last part where that is unique.
     option : str
         Its name, for messages.
     most : int
@@ -179,20 +191,35 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
     """
     key, _, rest = text.partition("=")
     words = f'{option} = "{text}"'
-    entry = _find(inputs, key.strip(), words)
-    match = _RANGE.fullmatch(rest)
-    if match is None:
-        form = f"{entry.path}=1:2:11 {entry.quantity.unit}".strip()
-        raise ValueError(f'{words}: give KEY=start:stop:count unit, e.g. "{form}"')
-    start, stop, count = float(match[1]), float(match[2]), int(match[3])
+    entry = find_input(inputs, key.strip(), words)
+    if match := _RANGE.fullmatch(rest):
+        return _range(entry, match, words, most)
+    if match := _LIST.fullmatch(rest):
+        return _list(entry, match[1].split(","), match[2], words)
+    unit = f" {entry.quantity.unit}".rstrip()
+    form = f'"{entry.path}=1:2:11{unit}", at equal ratios "1:2:11:log{unit}", or a list, "1,1.5,2{unit}"'
+    raise ValueError(f"{words}: give KEY=start:stop:count unit, e.g. {form}")
+
+
+def _range(entry: Input, match: re.Match[str], words: str, most: int) -> Axis:
+    """Values at equal steps, or at equal ratios."""
+    start, stop, count, unit = float(match[1]), float(match[2]), int(match[3]), match[5]
     if not 2 <= count <= most or start == stop:
         raise ValueError(f"{words}: give two different ends, and a count from 2 to {most}")
-    low, high = (_in_si(entry, number, match[4], words) for number in (match[1], match[2]))
-    return Axis(entry, match[4], np.linspace(start, stop, count), np.linspace(low, high, count))
+    if match[4] and not start * stop > 0:
+        raise ValueError(f"{words}: equal ratios need two ends of one sign, neither of them 0")
+    low, high = (_in_si(entry, number, unit, words) for number in match.group(1, 2))
+    spaced = np.geomspace if match[4] else np.linspace
+    return Axis(entry, unit, spaced(start, stop, count), spaced(low, high, count))
+
+
+def _list(entry: Input, numbers: Sequence[str], unit: str, words: str) -> Axis:
+    values = [_in_si(entry, number.strip(), unit, words) for number in numbers]
+    return Axis(entry, unit, np.array([*map(float, numbers)]), np.array(values))
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
-    """An end of the range in SI, checked against the bounds of the input."""
+    """A value in SI, checked against the bounds of the input."""
     quantity = entry.quantity
     given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
@@ -201,11 +228,11 @@ def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
         raise ValueError(f"{words}: {replace(error, field=entry.path)}") from None
 
 
-def _find(inputs: Sequence[Input], key: str, words: str) -> Input:
-    """The input of a key."""
+def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
+    """The input of a key; `words` are what was given, for messages."""
     matches = [i for i in inputs if key in (i.path, i.name)]
-    if len(matches) > 1:
-        matches = [i for i in matches if i.required] or matches
+    if all(i.required or i.default is None for i in matches):
+        matches = [i for i in matches if i.required] or matches  # the others follow it, as a second shoe does
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
     if not matches:
@@ -247,7 +274,11 @@ def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
 
 
 def swept(
-    designs: Designs, outputs: Sequence[Output], found: Sequence[Any], warnings: Sequence[str] = ()
+    designs: Designs,
+    outputs: Sequence[Output],
+    found: Sequence[Any],
+    warnings: Sequence[str] = (),
+    refused: Mapping[int, str] | None = None,
 ) -> InputSweep:
     """Results over inputs.
 
@@ -260,8 +291,16 @@ def swept(
     found : sequence of array, shape (N,) or ()
         The values of each output in all designs, as shown.
     warnings : sequence of str
-        Where there is no answer, and why.
+        Further limits of the answers.
+    refused : mapping of int to str
+        Designs that are refused, by row, and why.
+
+    Raises
+    ------
+    NoAnswer
+        If all are refused; the message says why the first is.
     """
+    refused = dict(sorted((refused or {}).items()))
     of_all = (np.broadcast_to(values, (designs.count,)).reshape(designs.shape) for values in found)
     return InputSweep(
         inputs=tuple(each.name for each in designs.inputs),
@@ -270,9 +309,23 @@ def swept(
         results=tuple(output.name for output in outputs),
         result_units=tuple(output.unit for output in outputs),
         found=tuple(of_all),
-        warnings=tuple(warnings),
+        warnings=(*_warn_of_refused(designs, refused), *warnings),
         combine=designs.combine,
+        refused=tuple(refused.items()),
     )
+
+
+def _warn_of_refused(designs: Designs, refused: Mapping[int, str]) -> Iterator[str]:
+    """Yield at how many designs there is no answer, and why at the first; raise NoAnswer if at all."""
+    if not refused:
+        return
+    first = min(refused)
+    where = designs.at(*map(int, np.unravel_index(first, designs.shape)))
+    at = (f"{each.name} = {where[each.name]:.6g} {each.unit}".strip() for each in designs.inputs)
+    said = f"{', '.join(at)}: {refused[first]}"
+    if len(refused) == designs.count:
+        raise NoAnswer(f"at none of {len(refused)} values is there an answer; {said}")
+    yield f"at {len(refused)} of {designs.count} values there is no answer; {said}"
 
 
 @dataclass(frozen=True)
@@ -352,9 +405,10 @@ def one_by_one(
     designs, run = designs_of(axes, combine), run or TaskRunner()
     results, refusals = np.full((len(outputs), designs.count), np.nan), dict[int, str]()
     names = tuple(output.name for output in outputs)
+    sent = tuple(map(_without_section, axes))
 
     def make(rows: slice) -> CaseTask:
-        return CaseTask(tables, tuple(axes), np.stack([*designs.columns(rows).values()], axis=1), names)
+        return CaseTask(tables, sent, np.stack([*designs.columns(rows).values()], axis=1), names)
 
     def keep(rows: slice, found: SolvedCases) -> None:
         results[:, rows] = found.values
@@ -362,15 +416,18 @@ def one_by_one(
 
     tasks = [Task(partial(make, rows), rows.stop - rows.start, rows) for rows in designs.chunks(_CHUNK)]
     run.run(solve, tasks, keep)
-    if not refusals:
-        return swept(designs, outputs, [*results], run.warnings)
-    first = min(refusals)
-    where = designs.at(*map(int, np.unravel_index(first, designs.shape)))
-    said = f"{_at(axes, [*where.values()])}: {refusals[first]}"
-    if len(refusals) == designs.count:
-        raise NoAnswer(f"at none of {len(refusals)} values is there an answer; {said}")
-    none = f"at {len(refusals)} of {designs.count} values there is no answer; {said}"
-    return swept(designs, outputs, [*results], [none, *run.warnings])
+    return swept(designs, outputs, [*results], run.warnings, refusals)
+
+
+def _without_section(axis: Axis) -> Axis:
+    """The axis without the class of its table, which may be made as a file is read: no worker knows it."""
+    entry = replace(axis.input, section=Section)
+    return replace(
+        axis,
+        input=replace(entry, of=replace(entry.of, section=Section))
+        if isinstance(entry, Coordinate)
+        else entry,
+    )
 
 
 def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> SolvedCases:
@@ -387,11 +444,6 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
         except (ValueError, ArithmeticError, NoAnswer) as error:
             refused[case] = str(error)
     return SolvedCases(values, tuple(refused), tuple(refused.values()))
-
-
-def _at(axes: Sequence[Axis], given: Sequence[float]) -> str:
-    parts = (f"{axis.input.path} = {v:.6g} {axis.unit}" for axis, v in zip(axes, given, strict=True))
-    return ", ".join(part.strip() for part in parts)
 
 
 def placed(tables: Mapping[str, Any], axis: Axis, value: float) -> dict[str, Any]:
@@ -425,8 +477,11 @@ def _put(tables: Mapping[str, Any], path: Sequence[str], change: Callable[[Any],
 
 def sweep_csv(swept: InputSweep) -> Iterator[Sequence[object]]:
     """Rows of a sweep's CSV file, with its heads."""
-    yield [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(swept)]
-    yield from sweep_rows(swept)
+    heads = [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(swept)]
+    why = dict(swept.refused)
+    yield heads + ["no_answer"] * bool(why)
+    for row, cells in enumerate(sweep_rows(swept)):
+        yield cells + [why.get(row, "")] * bool(why)
 
 
 def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:

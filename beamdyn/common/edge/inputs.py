@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args, get_origin
+from functools import lru_cache
+from importlib import import_module
+from typing import Any, ClassVar, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic.fields import FieldInfo
@@ -17,9 +19,37 @@ from beamdyn.common.edge.units import InvalidInput, quantity, unit_as_written
 
 
 class Section(BaseModel):
-    """A table of inputs: strict types, no unknown keys, frozen."""
+    """A table of inputs: strict types, no unknown keys, frozen.
+
+    It pickles also where its class was made (`section_of`) and stands in no module under its name.
+    """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **more: Any) -> None:
+        super().__pydantic_init_subclass__(**more)
+        _SECTIONS.setdefault(_known_as(cls), cls)
+
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        known = _known_as(type(self))
+        return (_empty_section, (type(self).__module__, known), self.__getstate__())
+
+
+_SECTIONS: dict[
+    str, type[Section]
+] = {}  # the class of each name and keys: the first, of several that are alike
+
+
+def _known_as(section: type[Section]) -> str:
+    return f"{section.__module__}.{section.__qualname__}({', '.join(section.model_fields)})"
+
+
+def _empty_section(module: str, known: str) -> Section:
+    """A section without its values, for pickle to fill."""
+    import_module(module)  # which defines it, unless what made it has been imported before
+    section = _SECTIONS[known]
+    return section.__new__(section)
 
 
 class SiNumber(float):
@@ -33,6 +63,8 @@ class Quantity(Described):
     A pydantic model takes it as text with a unit ("50 mm"), or bare where its unit is "", and holds the
     value in SI.
     """
+
+    further_units: ClassVar[tuple[str, ...]] = ()  # taken besides those of its kind
 
     def parse(self, given: object) -> float:
         """Convert to SI and check the bounds.
@@ -52,6 +84,10 @@ class Quantity(Described):
             return math.inf
         return quantity(given, self.unit) if self.unit else _plain(given)
 
+    def in_unit(self, value: float, unit: str) -> float:
+        """A value in SI as a number of another unit; raises `InvalidInput` for one of another kind."""
+        return value / quantity(f"1 {unit}", self.unit)
+
     def within_bounds(self, given: object, value: float) -> float:
         """Refuse a value out of bounds."""
         if not self.is_within_bounds(value):
@@ -63,6 +99,25 @@ class Quantity(Described):
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.parse)
+
+
+class SlopeQuantity(Quantity):
+    """The angle of a slope, which may be given by its rise: "5 %" is a rise of 5 in 100 along the level."""
+
+    further_units = ("%",)
+
+    def convert(self, given: object) -> float:
+        """The angle [rad]."""
+        if isinstance(given, str) and given.rstrip().endswith("%"):
+            try:
+                return math.atan(real("", float(given.rstrip()[:-1])) / 100)
+            except ValueError:
+                raise InvalidInput("", given, "not a number in %", 'give e.g. "5 %"') from None
+        return super().convert(given)
+
+    def in_unit(self, value: float, unit: str) -> float:
+        """The angle in another unit, or as a rise in %."""
+        return 100 * math.tan(value) if unit == "%" else super().in_unit(value, unit)
 
 
 class WholeNumber(Quantity):
@@ -124,9 +179,11 @@ class Input:
 Choice = Callable[[str, Sequence[type[BaseModel]]], Sequence[type[BaseModel]]]
 
 
-def describe(
-    model: type[BaseModel], prefix: str = "", choose: Choice = lambda _, models: models
-) -> list[Input]:
+def _each(_: str, models: Sequence[type[BaseModel]]) -> Sequence[type[BaseModel]]:
+    return models
+
+
+def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -> list[Input]:
     """All inputs of a model and of the models within it, in their order.
 
     Parameters
@@ -143,11 +200,18 @@ def describe(
     -------
     list of Input
     """
-    return [
-        entry
-        for name, field in model.model_fields.items()
-        for entry in _describe(model, prefix + name, field, choose)
-    ]
+    made = _described(model, prefix) if choose is _each else _describe_all(model, prefix, choose)
+    return list(made)
+
+
+@lru_cache(maxsize=256)  # forms ask for them at each change of a field
+def _described(model: type[BaseModel], prefix: str) -> tuple[Input, ...]:
+    return tuple(_describe_all(model, prefix, _each))
+
+
+def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> Iterator[Input]:
+    for name, field in model.model_fields.items():
+        yield from _describe(model, prefix + name, field, choose)
 
 
 def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Choice) -> list[Input]:

@@ -125,11 +125,9 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
     """Turn a function that draws on axes into one that makes a figure."""
 
     def made() -> Figure:
-        from matplotlib.figure import Figure
+        from beamdyn.common.pictures import figure_of
 
-        figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-        draw(figure.subplots())
-        return figure
+        return figure_of(draw)
 
     return made
 

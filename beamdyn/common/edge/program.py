@@ -12,7 +12,8 @@ from typing import Any, Literal, get_args, get_origin
 from cyclopts import App, CycloptsError, UnknownOptionError
 
 from beamdyn.common.announced import OutsideLinearTheory
-from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.option_words import TYPED, as_typed
+from beamdyn.common.edge.progress import at_work, quiet
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -22,6 +23,15 @@ EXIT_CODES = (
     "Exit codes: 0 done; 1 the model has no answer (the message says why and where); "
     "2 bad input; 130 interrupted."
 )
+
+
+_EXAMPLES = "{}, in the folder of the source:"
+
+
+def examples(*lines: str) -> str:
+    """What follows the help of a command: lines that may be typed as they stand, and the exit codes."""
+    head = _EXAMPLES.format("Example" if len(lines) == 1 else "Examples")
+    return "\n\n".join([head, *(f"`{line}`" for line in lines), EXIT_CODES])
 
 
 class NoAnswer(Exception):
@@ -49,13 +59,14 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     """
     name = app.name[0]
     given = sys.argv[1:] if arguments is None else list(arguments)
+    TYPED.set((app, given))
     if sys.stdout is None:
         return _complain(name, "the standard output is closed; direct it to a file or a device", BAD_INPUT)
     try:
-        with _as_sentences(name):
+        with _as_sentences(name), at_work(" ".join([name, *given[:1]])):
             _call(app, given)
     except (NoAnswer, ArithmeticError) as error:
-        return _complain(name, f"no answer: {error}", NO_ANSWER)
+        return _complain(name, f"no answer: {as_typed(str(error))}", NO_ANSWER)
     except MemoryError as error:
         return _complain(
             name, f"not enough memory: {error}; ask for a shorter run or for fewer modes", BAD_INPUT
@@ -113,12 +124,16 @@ def _as_sentences(name: str) -> Iterator[None]:
 
 
 def _refused(name: str, error: Exception) -> int:
-    """Exit code of a ValueError: bad input, or no answer if a linear system is singular."""
+    """Exit code of a ValueError: bad input, or no answer, as where a linear system is singular."""
     from numpy.linalg import LinAlgError
 
+    from beamdyn.common.checks import NoModelAnswer
+
+    if isinstance(error, NoModelAnswer):
+        return _complain(name, f"no answer: {as_typed(str(error))}", NO_ANSWER)
     if isinstance(error, LinAlgError):
         return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
-    return _complain(name, f"{error}", BAD_INPUT)
+    return _complain(name, as_typed(str(error)), BAD_INPUT)
 
 
 def _complain(name: str, sentence: str, code: int) -> int:
@@ -129,11 +144,11 @@ def _complain(name: str, sentence: str, code: int) -> int:
 def warn(name: str, sentences: Iterable[str]) -> None:
     """Print a program's warnings on standard error."""
     for warning in sentences:
-        _say(f"{name}: warning: {warning}")
+        _say(f"{name}: warning: {as_typed(warning)}")
 
 
 def _say(sentence: str) -> None:
     """Print on standard error, if it can be written."""
     if sys.stderr is not None:
-        with suppress(OSError):
-            print(as_in_files(sentence), file=sys.stderr, flush=True)
+        with suppress(OSError), quiet():
+            print(sentence, file=sys.stderr, flush=True)

@@ -69,32 +69,46 @@ def data_url(text: str) -> str:
     return f"data:image/svg+xml;base64,{base64.b64encode(text.encode()).decode()}"
 
 
-def html(parts: Iterable[RenderableType]) -> str:
-    """Tables and sentences, as the commands print them, in HTML."""
-    return "\n".join(_html(part) for part in parts)
+def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
+    """Tables and sentences, as the commands print them, in HTML.
+
+    Of a table with more than `most` rows the first and the last ones are shown, and how many there are.
+    """
+    return "\n".join(_html(part, most) for part in parts)
 
 
-def _html(part: RenderableType) -> str:
+def _html(part: RenderableType, most: int | None) -> str:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
     if isinstance(part, Group):
-        return html(part.renderables)
+        return html(part.renderables, most)
     if isinstance(part, Table):
-        return _table(part)
+        return _table(part, most)
     if isinstance(part, Text) and part.style == "bold":
         return f"<h3>{escape(part.plain)}</h3>"
     return f"<p>{escape(str(part))}</p>" if str(part) else ""
 
 
-def _table(made: Table) -> str:
+def _table(made: Table, most: int | None) -> str:
     words = [column.justify == "left" for column in made.columns]
     heads = [str(column.header) for column in made.columns]
-    rows = zip(*(column.cells for column in made.columns), strict=True)
-    body = "".join(_row([_cell(cell) for cell in row], words, "td") for row in rows)
+    cells = zip(*(column.cells for column in made.columns), strict=True)
+    rows = [_row([_cell(cell) for cell in row], words, "td") for row in cells]
     head = _row([escape(head) for head in heads], words, "th")
+    body = "".join(_ends(rows, most, len(heads)))
     return f'<div class="scrolls"><table><thead>{head}</thead><tbody>{body}</tbody></table></div>'
+
+
+def _ends(rows: list[str], most: int | None, columns: int) -> list[str]:
+    """The rows, or the first and the last of many with a row between them that counts those left out."""
+    if most is None or len(rows) <= most:
+        return rows
+    tail = most // 2
+    said = f"... {len(rows) - most} of {len(rows)} rows are not shown"
+    between = f'<tr><td class="words" colspan="{columns}">{said}</td></tr>'
+    return [*rows[: most - tail], between, *rows[-tail:]]
 
 
 def _cell(cell: object) -> str:

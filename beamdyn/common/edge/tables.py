@@ -1,23 +1,22 @@
-"""Tables on the console, and a progress bar."""
+"""Tables on the console."""
 
 from __future__ import annotations
 
 import codecs
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from io import TextIOWrapper
 from typing import Any
 from unicodedata import normalize
 
-from rich import box
 from rich.console import Console, Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from beamdyn.common.comparison import Comparison
 from beamdyn.common.digits import count_sure
+from beamdyn.common.edge.fitted_table import FittedTable
+from beamdyn.common.edge.progress import quiet
 
 _PIPE_WIDTH = 120  # of tables that go to a file or another program
 
@@ -79,7 +78,8 @@ class Terminal(Console):
     def print(self, *objects: Any, **options: Any) -> None:
         """Print; raises an OSError that names the standard output."""
         try:
-            super().print(*objects, **options)
+            with quiet():
+                super().print(*objects, **options)
         except OSError as error:
             raise OSError(f"the standard output cannot be written ({error.strerror or error})") from None
 
@@ -104,21 +104,6 @@ def show(parts: Iterable[RenderableType]) -> None:
         screen.print(part)
 
 
-@contextmanager
-def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar with the remaining time on standard error, if that is a terminal: yields its progress."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    screen = Console(stderr=True)
-    if not screen.is_terminal:  # a disabled bar of rich before 14.3 leaves an empty line
-        yield lambda done, total: None
-        return
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=screen, transient=True) as bar:
-        task = bar.add_task(what)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
 BEYOND = "dim"  # style of the digits of a number that its error does not support
 
 
@@ -129,9 +114,13 @@ def set_apart(text: str, error: float) -> Text:
 
 
 def table(
-    title: str, columns: Sequence[str], rows: Iterable[Sequence[str | Text]], left: Sequence[int] = (0,)
+    title: str,
+    columns: Sequence[str],
+    rows: Iterable[Sequence[str | Text]],
+    left: Sequence[int] = (0,),
+    keys: int = 1,
 ) -> Group:
-    """A table of text.
+    """A table of text; where it is too wide for the screen, several below each other.
 
     Parameters
     ----------
@@ -143,15 +132,15 @@ def table(
         Cells; an empty row draws a line.
     left : sequence of int
         Columns that are flush left, such as words; numbers are flush right.
+    keys : int
+        Number of first columns that say what a row is.
 
     Returns
     -------
     rich.console.Group
         The title and the table.
     """
-    made = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0))
-    for i, heading in enumerate(columns):
-        made.add_column(heading, justify="left" if i in left else "right", no_wrap=i not in left)
+    made = FittedTable(columns, left, keys)
     for row in rows:
         if row:
             made.add_row(*row)

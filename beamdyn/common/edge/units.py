@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Callable
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from beamdyn.common.checks import InvalidValue
@@ -86,6 +86,10 @@ def quantity(text: object, unit: str) -> float:
     InvalidInput
         If it is not a finite number with a unit of the same kind as `unit`; its field is empty.
     """
+    return _known(text, unit) if isinstance(text, str) else _quantity(text, unit)
+
+
+def _quantity(text: object, unit: str) -> float:
     number, given = _split(text, unit)
     kind, wanted = _parse(given), _parse(unit)
     if kind is None or wanted is None:
@@ -98,6 +102,12 @@ def quantity(text: object, unit: str) -> float:
     if not math.isfinite(value):
         raise InvalidInput("", text, "out of range", f"give a finite number in {unit}")
     return value
+
+
+@lru_cache(4096)
+def _known(text: str, unit: str) -> float:
+    """As `quantity`: while a value changes, all others are read again and again."""
+    return _quantity(text, unit)
 
 
 def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], float]]:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import InvalidValue, RefusedCases
 
 
 @contextmanager
@@ -44,4 +44,11 @@ def in_degrees(error: InvalidValue) -> InvalidValue:
     """The same about an angle in degrees."""
     value = math.degrees(error.value) if isinstance(error.value, float) else error.value
     limit = None if error.limit is None else math.degrees(error.limit)
-    return replace(error, value=value, limit=limit, unit="deg")
+    return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
+
+
+def _cases_in_degrees(cases: RefusedCases | None) -> RefusedCases | None:
+    if cases is None:
+        return None
+    limit = None if cases.limit is None else np.degrees(cases.limit)
+    return RefusedCases(cases.bad, np.degrees(cases.value), limit)

@@ -16,6 +16,7 @@ import numpy as np
 from beamdyn.common.files import ASIDE, write_text
 from beamdyn.common.records import DamagedRecord, seal, unseal
 
+_PACKAGES = ("beamdyn", "brakes")  # in whose classes fields that equality leaves out change no result
 _MARKER = "store.json"  # tells a store from a folder with other content
 _REMEDY = "name a folder that does not exist yet, or an earlier store"
 
@@ -101,8 +102,9 @@ def fingerprint(*values: object) -> str:
     Parameters
     ----------
     *values : object
-        Numbers, strings, arrays, containers and dataclasses of them, by content; functions by name
-        and code (of what they call and read by name only); anything else by its pickle.
+        Numbers, strings, arrays, containers and dataclasses of them, by content (of dataclasses of our
+        own not by fields that equality leaves out, such as a label; of others by all fields); functions by
+        name and code (of what they call and read by name only); anything else by its pickle.
 
     Returns
     -------
@@ -149,7 +151,8 @@ def _parts(value: Any) -> list[Any]:
     if isinstance(value, dict):
         return [*value, *value.values()]
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return [getattr(value, f.name) for f in dataclasses.fields(value)]
+        ours = type(value).__module__.partition(".")[0] in _PACKAGES
+        return [getattr(value, f.name) for f in dataclasses.fields(value) if f.compare or not ours]
     try:
         return [pickle.dumps(value, protocol=4)]
     except Exception as error:  # which one depends on the object

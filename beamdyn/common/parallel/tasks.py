@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import islice
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from beamdyn.common.checks import InvalidValue, count, function
 from beamdyn.common.parallel.store import Store, fingerprint
@@ -18,20 +19,23 @@ from beamdyn.common.snapshots import decode, encode
 
 Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]
+Keep = Callable[[Any, Any], None]
 _IN_FLIGHT = 256  # tasks that an executor has at a time: enough for its workers, few for the memory
 _PER_WORKER = 3  # the same for each worker of our own
 
 
-class StudyInterrupted(RuntimeError):
-    """Raised when the executor breaks before all designs are done.
+class RunInterrupted(RuntimeError):
+    """Raised when the executor breaks before all parts of a computation are done.
 
     Parameters
     ----------
     done, total : int
-        Number of designs that are done, and of all.
+        Number of parts that are done, and of all.
     stored : bool
         Whether those that are done are in a store.
     """
+
+    parts = "designs"  # as the message calls them
 
     def __init__(self, done: int, total: int, stored: bool) -> None:
         super().__init__(done, total, stored)
@@ -41,7 +45,18 @@ class StudyInterrupted(RuntimeError):
         hint = "stored; the same call with a working executor resumes"
         if not self.stored:
             hint = "done, but not kept: give a store= and the same call resumes"
-        return f"the executor broke with {self.done} of {self.total} designs {hint}"
+        return f"the executor broke with {self.done} of {self.total} {self.parts} {hint}"
+
+
+class StudyInterrupted(RunInterrupted):
+    """Raised when the executor breaks before all designs are done.
+
+    Examples
+    --------
+    >>> stopped = bd.StudyInterrupted(done=300, total=1000, stored=True)
+    >>> stopped.done, stopped.total
+    (300, 1000)
+    """
 
 
 @dataclass(frozen=True)
@@ -53,7 +68,7 @@ class Task:
     make : callable
         Makes what is to be solved; it is made when its turn comes.
     size : int
-        Number of its designs.
+        Number of its designs or cases.
     place : object
         Where its result belongs.
     """
@@ -66,6 +81,8 @@ class Task:
 @dataclass
 class TaskRunner:
     """Runs tasks, and keeps their results in a store.
+
+    A result depends on its task alone, so that it is the same to the bit for any workers or executor.
 
     Parameters
     ----------
@@ -80,7 +97,9 @@ class TaskRunner:
     versions : tuple of str
         Of the programs on which the bits of a result depend.
     progress : callable, optional
-        Called as progress(done, total) with the numbers of designs.
+        Called as progress(done, total) with the numbers of designs, at the start and after each task.
+    interrupted : type
+        What is raised when the executor breaks; its `parts` say what the sizes of tasks count.
 
     Attributes
     ----------
@@ -99,7 +118,10 @@ class TaskRunner:
     kind: str = "study"
     versions: tuple[str, ...] = ()
     progress: Progress | None = None
+    interrupted: type[RunInterrupted] = StudyInterrupted
     warnings: list[str] = field(default_factory=list)
+    _opened: Store | None = field(default=None, init=False, repr=False)
+    _pool: Workers | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.executor is not None and not hasattr(self.executor, "submit"):
@@ -110,10 +132,33 @@ class TaskRunner:
         if self.store is not None and not isinstance(self.store, str | PathLike):
             raise InvalidValue("store", self.store, "give the name of a folder")
         if self.progress is not None:
-            function("progress", self.progress, "it takes the numbers of finished designs and of all")
-        self._total = self._done = 0
+            parts = self.interrupted.parts
+            function("progress", self.progress, f"it takes the numbers of finished {parts} and of all")
 
-    def run(self, solve: Solve, tasks: Sequence[Task], keep: Callable[[Any, Any], None]) -> None:
+    def open_store(self) -> Store | None:
+        """The store, which is made or, with a ValueError, refused when it is first asked for."""
+        if self._opened is None and self.store is not None:
+            self._opened = Store(Path(self.store), self.kind)
+        return self._opened
+
+    @contextmanager
+    def prepared(self, solve: Solve, tasks: int) -> Iterator[None]:
+        """Let workers of our own import what solves so many tasks, while the caller prepares these.
+
+        With a store, in which all results may be, they start when they are needed.
+        """
+        if self.executor is not None or self.store is not None or min(self.workers, tasks) == 1:
+            yield
+            return
+        with Workers(min(self.workers, tasks)) as self._pool:
+            try:
+                for _ in range(min(self.workers, tasks)):
+                    self._pool.submit(_import, solve)
+                yield
+            finally:
+                self._pool = None
+
+    def run(self, solve: Solve, tasks: Sequence[Task], keep: Keep) -> None:
         """Solve the tasks; `keep` takes the place and the result of each, in the order in which they end.
 
         Parameters
@@ -128,114 +173,132 @@ class TaskRunner:
 
         Raises
         ------
-        StudyInterrupted
-            If the executor breaks.
+        RunInterrupted
+            If the executor breaks: of the kind that `interrupted` is.
         """
-        self._total, self._done = sum(task.size for task in tasks), 0
-        store = None if self.store is None else Store(Path(self.store), self.kind)
-        kept = _Kept(store, self.versions, solve, self.warnings)
-        pending = self._missing(kept, tasks, keep)
-        alone = self.executor is None and (self.workers == 1 or len(tasks) == 1)
-        if alone:
-            for task, made, key in pending:
-                self._finish(kept, task, key, _solve(solve, made), keep)
-            return
-        pool = nullcontext(self.executor) if self.executor else Workers(min(self.workers, len(tasks)))
-        most = _IN_FLIGHT if self.executor else _PER_WORKER * self.workers
-        with pool as executor:
-            assert executor is not None
-            self._run_by(executor, most, solve, kept, pending, keep)
+        run = _TaskRun(self, solve, keep, sum(task.size for task in tasks))
+        if self.executor is not None:
+            run.by(self.executor, _IN_FLIGHT, tasks)
+        elif self.workers == 1 or len(tasks) == 1:
+            run.here(tasks)
+        elif self._pool is not None:
+            run.by(self._pool, _PER_WORKER * self.workers, tasks)
+        else:
+            with Workers(min(self.workers, len(tasks))) as pool:
+                run.by(pool, _PER_WORKER * self.workers, tasks)
 
-    def _missing(
-        self, kept: _Kept, tasks: Sequence[Task], keep: Callable[[Any, Any], None]
-    ) -> Iterator[tuple[Task, Any, str]]:
-        """Yield the tasks that are not in the store, made when they are wanted; keep those that are."""
-        self._report(0)
-        for task in tasks:
-            made = task.make()
-            key = kept.key(made)
-            found = kept.read(key)
-            if found is None:
-                yield task, made, key
-            else:
-                keep(task.place, found)
-                self._report(task.size)
 
-    def _run_by(
-        self,
-        executor: Executor,
-        most: int,
-        solve: Solve,
-        kept: _Kept,
-        pending: Iterator[tuple[Task, Any, str]],
-        keep: Callable[[Any, Any], None],
-    ) -> None:
-        """Have at most so many tasks in flight."""
-        flying: dict[Future[Any], tuple[Task, str]] = {}
+class _Pending(NamedTuple):
+    """A task that is not in the store, what it made, and the key of its result."""
+
+    task: Task
+    made: Any
+    key: str
+
+
+@dataclass
+class _TaskRun:
+    """One run of tasks, and how far it is."""
+
+    runner: TaskRunner
+    solve: Solve
+    keep: Keep
+    total: int
+    done: int = 0
+    flying: dict[Future[Any], _Pending] = field(default_factory=dict)
+
+    def here(self, tasks: Sequence[Task]) -> None:
+        """Solve the tasks one after the other."""
+        for pending in self._missing(tasks):
+            self._finish(pending, _solve(self.solve, pending.made))
+
+    def by(self, executor: Executor, most: int, tasks: Sequence[Task]) -> None:
+        """Have an executor solve the tasks, at most so many at a time."""
+        missing = self._missing(tasks)
         try:
             while True:
-                while len(flying) < most and (following := next(pending, None)) is not None:
-                    task, made, key = following
-                    flying[self._ask(executor.submit, _returning_errors, solve, made)] = task, key
-                if not flying:
+                for pending in islice(missing, most - len(self.flying)):
+                    future = self._ask(executor.submit, _returning_errors, self.solve, pending.made)
+                    self.flying[future] = pending
+                if not self.flying:
                     return
-                for future in wait(flying, return_when=FIRST_COMPLETED).done:
+                for future in wait(self.flying, return_when=FIRST_COMPLETED).done:
                     result = self._ask(future.result)
-                    self._finish(kept, *flying.pop(future), result, keep)
+                    self._finish(self.flying.pop(future), result)
         finally:
-            for future in flying:
-                future.cancel()
+            self._land()
+
+    def _missing(self, tasks: Sequence[Task]) -> Iterator[_Pending]:
+        """Yield the tasks that are not in the store, made when they are wanted; keep those that are."""
+        self._report()
+        for task in tasks:
+            made = task.make()
+            pending = _Pending(task, made, self._key(made))
+            if (found := self._stored(pending.key)) is None:
+                yield pending
+            else:
+                self.done += task.size
+                self.keep(task.place, found)
+                self._report()
+
+    def _key(self, made: Any) -> str:
+        """What names the result of a task: a hash of the versions, of the function and of the task."""
+        stored = self.runner.store is not None
+        return fingerprint(self.runner.versions, self.solve, made) if stored else ""
+
+    def _stored(self, key: str) -> Any:
+        """The result in the store; None if there is none that is whole."""
+        if (store := self.runner.open_store()) is None:
+            return None
+        try:
+            record = store.read(key)
+            return None if record is None else decode(record["result"])
+        except DamagedRecord as error:
+            parts = self.runner.interrupted.parts
+            self.runner.warnings.append(f"{store.file(key)}: {error}; its {parts} were computed again")
+            return None
 
     def _ask(self, action: Callable[..., Any], *arguments: Any) -> Any:
         """Call the executor; an error that it raises is its own, because tasks return theirs."""
         try:
             return action(*arguments)
         except Exception as error:
-            raise StudyInterrupted(self._done, self._total, self.store is not None) from error
+            self._land()
+            stored = self.runner.store is not None
+            raise self.runner.interrupted(self.done, self.total, stored) from error
 
-    def _finish(
-        self, kept: _Kept, task: Task, key: str, result: Any, keep: Callable[[Any, Any], None]
-    ) -> None:
-        """Keep the result of a task, or raise the error that it returned."""
+    def _land(self) -> None:
+        """Cancel the tasks that have not begun, and store the results of those that are done."""
+        for future in self.flying:
+            future.cancel()
+        while self.flying:
+            future, pending = self.flying.popitem()
+            if future.done() and not future.cancelled() and not future.exception():
+                self._store(pending, future.result())
+
+    def _finish(self, pending: _Pending, result: Any) -> None:
+        """Store and keep the result of a task, or raise the error that it returned."""
         if isinstance(result, Exception):
             raise result
-        kept.write(key, result)
-        keep(task.place, result)
-        self._report(task.size)
+        self._store(pending, result)
+        self.keep(pending.task.place, result)
+        self._report()
 
-    def _report(self, more: int) -> None:
-        self._done += more
-        if self.progress is not None:
-            self.progress(self._done, self._total)
+    def _store(self, pending: _Pending, result: Any) -> None:
+        """Store a result, unless it is an error."""
+        if isinstance(result, Exception):
+            return
+        if (store := self.runner.open_store()) is not None:
+            store.write(pending.key, {"result": encode(result)})
+        self.done += pending.task.size
+
+    def _report(self) -> None:
+        if self.runner.progress is not None:
+            self.runner.progress(self.done, self.total)
 
 
-@dataclass(frozen=True)
-class _Kept:
-    """Results of tasks in a store, if there is one."""
-
-    store: Store | None
-    versions: tuple[str, ...]
-    solve: Solve
-    warnings: list[str]
-
-    def key(self, made: Any) -> str:
-        """What names the result of a task: a hash of the versions, of the function and of the task."""
-        return "" if self.store is None else fingerprint(self.versions, self.solve, made)
-
-    def read(self, key: str) -> Any:
-        """The result; None if there is none that is whole."""
-        if self.store is None:
-            return None
-        try:
-            record = self.store.read(key)
-        except DamagedRecord as error:
-            self.warnings.append(f"{self.store.file(key)}: {error}; its designs were computed again")
-            return None
-        return None if record is None else decode(record["result"])
-
-    def write(self, key: str, result: Any) -> None:
-        if self.store is not None:
-            self.store.write(key, {"result": encode(result)})
+def _import(solve: Solve) -> None:
+    """Nothing: whoever is sent this has imported what `solve` needs."""
 
 
 def _solve(solve: Solve, made: Any) -> Any:

@@ -12,6 +12,7 @@ from typing import Self
 import numpy as np
 
 from beamdyn.common.checks import real_array
+from beamdyn.common.one_line import OneLine
 
 _ROUNDING = 1e-12  # relative to the end of a motion: times beyond it by less differ by rounding only
 
@@ -28,6 +29,12 @@ class MotionSample:
         Angle theta about -n3 [rad], speed omega = theta' [rad/s], acceleration omega' [rad/s2].
     carrier_acceleration : ndarray, shape (..., 3)
         Acceleration of the centre of the carrier along the fixed directions n1, n2, n3 [m/s2].
+
+    Examples
+    --------
+    >>> sample = bd.SteadyRotation(50.0).at(np.array([0.0, 0.1]))
+    >>> sample.angle, sample.carrier_acceleration.shape
+    (array([0., 5.]), (2, 3))
     """
 
     angle: np.ndarray
@@ -52,14 +59,20 @@ class Line:
     name : str
         Source of the excitation.
     multiple : float
-        The frequency as a multiple of the speed.
+        The frequency as a multiple of the speed, a ratio.
+
+    Examples
+    --------
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> [(line.name, round(line.multiple, 3)) for line in wheel.lines]
+    [('road +', 7.283), ('road -', 5.283)]
     """
 
     name: str
     multiple: float
 
 
-class Motion(ABC):
+class Motion(OneLine, ABC):
     """Base class of motions; its defaults are those of a smooth, unlimited motion without a road.
 
     In order to add a motion, write a subclass in a module of its own:
@@ -75,6 +88,11 @@ class Motion(ABC):
     5. A translation that lasts at steady speed gives `lines`, `road_multiple`, `road_acceleration` and
        `steady_acceleration`, on which the steady response and the resonance speeds rest.
     6. To be named in files and forms, it stands in `KINDS` of `beamdyn.scene.motion`.
+
+    Examples
+    --------
+    >>> isinstance(bd.SteadyRotation(50.0), bd.Motion)
+    True
     """
 
     @abstractmethod

@@ -46,6 +46,13 @@ class SampledTranslation(Motion):
     ValueError
         If the times do not ascend from 0, samples are missing between two of them, a value is not finite, or
         the numbers of times and accelerations differ.
+
+    Examples
+    --------
+    >>> t = np.linspace(0, 0.1, 101)
+    >>> motion = bd.SampledTranslation(t, along_n2=50.0 * np.sin(100 * t))  # m/s2
+    >>> motion.at(np.array([0.05])).carrier_acceleration.shape
+    (1, 3)
     """
 
     times: Sequence[Annotated[float, Described("s", "t", "times of the record, from 0, evenly spaced")]]

@@ -36,6 +36,12 @@ class RoadWave:
     ------
     ValueError
         If the wavelength is not positive, or none or both of the amplitudes are given.
+
+    Examples
+    --------
+    >>> road = bd.RoadWave(wavelength=0.3, height=0.002)  # m
+    >>> round(road.wavenumber, 4)  # rad/m
+    20.944
     """
 
     wavelength: Annotated[float, Described("m", "lambda", "wavelength of the road", above=0)]
@@ -107,6 +113,13 @@ class RollingWheel(Motion):
     ------
     ValueError
         If the radius is not positive, or the speed is neither a number nor a rotation.
+
+    Examples
+    --------
+    >>> road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
+    >>> motion = bd.RollingWheel(rolling_radius=0.3, speed=55.0, road=road)
+    >>> round(motion.road_multiple, 6)  # the road's frequency over the speed: 2 pi R / lambda
+    6.283185
     """
 
     rolling_radius: Annotated[float, Described("m", "R", "distance travelled per angle turned", above=0)]
@@ -212,6 +225,14 @@ class UserMotion(Motion):
     ValueError
         If the function does not return a `MotionSample` of the right shapes, or speed and acceleration
         are not the derivatives of angle and speed.
+
+    Examples
+    --------
+    >>> def steady(t):
+    ...     zero = np.zeros_like(t)
+    ...     return bd.MotionSample(5.0 * t, 5.0 + zero, zero, np.zeros((*t.shape, 3)))
+    >>> float(bd.UserMotion(steady, t_end=1.0).at(np.array([0.5])).angle[0])
+    2.5
     """
 
     function: Callable[[np.ndarray], MotionSample]

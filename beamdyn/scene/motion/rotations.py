@@ -36,7 +36,13 @@ if TYPE_CHECKING:  # scipy.interpolate is slow to import, and only tables need i
 
 
 class Rotation(Motion):
-    """Base class of rotations about a fixed centre."""
+    """Base class of rotations about a fixed centre.
+
+    Examples
+    --------
+    >>> isinstance(bd.SpinUp(55.0, duration=10.0), bd.Rotation)
+    True
+    """
 
     @abstractmethod
     def kinematics(self, t: np.ndarray) -> Kinematics:
@@ -56,6 +62,12 @@ class SteadyRotation(Rotation):
     ----------
     speed : float
         Speed [rad/s].
+
+    Examples
+    --------
+    >>> motion = bd.SteadyRotation(50.0)  # rad/s
+    >>> float(motion.at(np.array([0.1])).angle[0])  # rad
+    5.0
     """
 
     speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
@@ -102,6 +114,12 @@ class SpinUp(Rotation):
     ------
     ValueError
         If the duration is not positive, the speed is not finite, or the law is unknown.
+
+    Examples
+    --------
+    >>> motion = bd.SpinUp(55.0, duration=10.0)
+    >>> np.round(motion.at(np.array([0.0, 5.0, 10.0])).speed, 2)  # rad/s
+    array([ 0. , 27.5, 55. ])
     """
 
     speed: Annotated[float, Described("rad/s", "omega_s", "angular speed of the carrier")]
@@ -196,6 +214,12 @@ class SampledRotation(Rotation):
     ------
     ValueError
         If the times do not ascend from 0, a value is not finite, or the numbers of times and speeds differ.
+
+    Examples
+    --------
+    >>> motion = bd.SampledRotation([0.0, 1.0, 2.0], [0.0, 30.0, 40.0], interpolation="pchip")
+    >>> np.round(motion.at(np.array([1.0, 2.0])).speed, 6)
+    array([30., 40.])
     """
 
     times: Sequence[Annotated[float, Described("s", "t", "times of the table, from 0")]]
@@ -302,6 +326,14 @@ class RotationFunction(Rotation):
     ValueError
         If a function is not vectorised or not finite, or the speed or the acceleration is not the
         derivative of the function before it.
+
+    Examples
+    --------
+    >>> motion = bd.RotationFunction(
+    ...     angle=lambda t: 5 * t**2, speed=lambda t: 10 * t, acceleration=lambda t: 10 + 0 * t, t_end=2.0
+    ... )
+    >>> float(motion.at(np.array([1.0])).speed[0])  # rad/s
+    10.0
     """
 
     angle: Callable[[np.ndarray], np.ndarray | float]

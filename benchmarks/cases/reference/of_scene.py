@@ -9,7 +9,11 @@ from mpmath import mp, mpc, mpf
 
 import beamdyn as bd
 from beamdyn.scene.profile import Profile
-from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues, critical_speed
+from benchmarks.cases.reference.power_series import (
+    Tip,
+    bending_eigenvalues,
+    critical_speed,
+)
 
 _DIGITS = 40
 

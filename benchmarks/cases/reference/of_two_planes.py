@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 import beamdyn as bd
 from beamdyn.scene.profile import Profile
-from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged
+from beamdyn.sensitivities.interpolation import evaluate_nearby
+from beamdyn.sensitivities.scene_numbers import SceneNumber
+from beamdyn.studies.inputs import scene_of
+from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged, solve
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
-from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies
+from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies, solve_coned
+
+_FINEST = 64  # pieces between breakpoints
+_OF_DERIVATIVES = 1e-10  # convergence of the frequencies that are differenced
+_MARGIN = 4.0  # of their rounding over how far two meshes differ
 
 
 def squared_frequencies(
@@ -29,6 +37,51 @@ def coned_frequencies_of(
     blade, unit = blade_of_scene(scene)
     found, change = coned_frequencies(blade, speed * unit, count, rtol)
     return found / unit, change
+
+
+def squares_on_mesh(scene: bd.Scene, speed: float, count: int, pieces: int) -> np.ndarray:
+    """The lowest lambda^2 [1/s^2], also with precone, on a mesh of so many pieces between breakpoints."""
+    blade, unit = blade_of_scene(scene)
+    if scene.mount.precone:
+        return (solve_coned(blade, speed * unit, count, pieces) / unit) ** 2
+    return solve(blade, speed * unit, count, pieces).quotients / unit**2
+
+
+def pieces_needed(scene: bd.Scene, speed: float, count: int, rtol: float) -> tuple[int, float]:
+    """The fewest pieces whose halving changes no lambda^2 by more than `rtol`, and the change."""
+    pieces, before, change = 1, squares_on_mesh(scene, speed, count, 1), math.inf
+    while pieces < _FINEST:
+        pieces *= 2
+        found = squares_on_mesh(scene, speed, count, pieces)
+        change = float(np.max(np.abs(found / before - 1)))
+        if change <= rtol:
+            return pieces, change
+        before = found
+    raise ArithmeticError(f"not converged: the finest mesh changes lambda^2 by {change:.1e}")
+
+
+def derivatives_by_collocation(
+    scene: bd.Scene, speed: float, numbers: Sequence[SceneNumber], count: int = 3
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Derivatives of frequencies [Hz / unit of each number] from eight frequencies beside each number.
+
+    The second array says what rounds them, told by a mesh twice as fine: the lowest modes of beams that are
+    far stiffer in one direction have few digits.
+    """
+    pieces, _ = pieces_needed(scene, speed, count, _OF_DERIVATIVES)
+    frequency = np.sqrt(squares_on_mesh(scene, speed, count, pieces)) / (2 * np.pi)
+    slopes, sizes = [], []
+    for number in numbers:
+
+        def squares(value: float, name: str = number.name) -> np.ndarray:
+            beside = scene_of(scene, {name: value})
+            return np.stack([squares_on_mesh(beside, speed, count, n) for n in (pieces, 2 * pieces)])
+
+        rows, weights = evaluate_nearby(number, squares)
+        slopes.append(np.tensordot(weights, np.array(rows), 1) / (8 * np.pi**2 * frequency))
+        sizes.append(np.abs(weights).sum())
+    noise = np.max([np.abs(a - b) / size for (a, b), size in zip(slopes, sizes, strict=True)], axis=0)
+    return [(a, _MARGIN * noise * size) for (a, _), size in zip(slopes, sizes, strict=True)]
 
 
 def blade_of_scene(scene: bd.Scene) -> tuple[Blade, float]:

@@ -78,7 +78,7 @@ class Blade:
         Angle of the axis out of the plane of rotation, towards b3 [rad]; `hub` stays the distance of the root
         from the axis of rotation.
     breakpoints
-        Where properties may jump or have a kink.
+        Where properties may jump or have a kink, or where a fast change is to be resolved.
     """
 
     mass: Function = _ONE

@@ -34,9 +34,9 @@ def coned_frequencies(
     blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-10
 ) -> tuple[np.ndarray, float]:
     """The lowest lambda on the first mesh that changes none of them by more than `rtol`, and that change."""
-    before, pieces, change = _solve(blade, gamma, count, 1), 2, np.inf
+    before, pieces, change = solve_coned(blade, gamma, count, 1), 2, np.inf
     while pieces <= _FINEST:
-        found = _solve(blade, gamma, count, pieces)
+        found = solve_coned(blade, gamma, count, pieces)
         change = float(np.max(np.abs(found / before - 1)))
         if change <= rtol:
             return found, change
@@ -44,7 +44,8 @@ def coned_frequencies(
     raise ArithmeticError(f"not converged: the finest mesh changes lambda by {change:.1e}")
 
 
-def _solve(blade: Blade, gamma: float, count: int, pieces: int) -> np.ndarray:
+def solve_coned(blade: Blade, gamma: float, count: int, pieces: int) -> np.ndarray:
+    """The lowest lambda on a mesh of so many pieces between breakpoints."""
     mesh = Mesh.make(blade.breakpoints, pieces, _NODES)
     section = sections_at(blade, mesh)
     still, moving = rates(section, gamma)

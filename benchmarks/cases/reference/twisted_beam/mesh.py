@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -36,6 +36,33 @@ class Mesh:
         whole = self.steps * (values @ self.weights)
         beyond = np.append(np.cumsum(whole[::-1])[::-1], 0.0)
         return beyond[:-1, None] - self.steps[:, None] * (values @ self.inner.T)
+
+
+_RATIO = 4.0  # of a property at the ends of a piece, above which the piece is halved
+_WITHIN = 1e-10  # of a piece: where its ends are read, beside a jump there
+_HALVINGS = 50
+
+
+def graded(functions: Iterable[Callable[[np.ndarray], np.ndarray]], stops: Sequence[float]) -> list[float]:
+    """The stops and further ones between them, so that no positive function changes fast between two.
+
+    The reciprocal of a stiffness that falls linearly by a factor r has a pole at 1/(r - 1) of the segment's
+    length beyond its end: polynomials over the whole segment resolve that slowly.
+    """
+    functions = list(functions)
+
+    def changes_fast(a: float, b: float) -> bool:
+        ends = np.array([a + _WITHIN * (b - a), b - _WITHIN * (b - a)])
+        ratios = [values[0] / values[1] for values in (f(ends) for f in functions)]
+        return any(max(ratio, 1 / ratio) > _RATIO for ratio in ratios)
+
+    def divided(a: float, b: float, halvings: int) -> list[float]:
+        middle = (a + b) / 2
+        if halvings == 0 or not changes_fast(a, b):
+            return [a]
+        return [*divided(a, middle, halvings - 1), *divided(middle, b, halvings - 1)]
+
+    return [x for a, b in pairwise(stops) for x in divided(a, b, _HALVINGS)] + [stops[-1]]
 
 
 def _integration(t: np.ndarray) -> np.ndarray:

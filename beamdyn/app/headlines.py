@@ -1,0 +1,68 @@
+"""What stands first on the beam's screens: the few results that decide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from beamdyn.common.app.screens import KeyResult
+from beamdyn.common.one_line import number
+from beamdyn.model_error.left_out_effects import say_size
+from beamdyn.spectrum.critical import CriticalPoint
+from beamdyn.spectrum.locus import Locus
+from beamdyn.spectrum.modes import Modes
+from beamdyn.steady.response import SteadyResponse
+
+
+def of_locus(locus: Locus, critical: CriticalPoint) -> Iterator[KeyResult]:
+    """First frequency at both ends of the speeds, the critical speed, and its margin."""
+    first, speeds = locus.frequency[:, 0], locus.speeds
+    yield KeyResult("first frequency at rest", _said(first[0], "Hz"))
+    yield KeyResult(f"at {number(speeds[-1], 'rad/s')}", _said(first[-1], "Hz"))
+    if np.isfinite(critical.speed):
+        yield KeyResult("critical speed", number(critical.speed, "rad/s"))
+        yield KeyResult("margin of the top speed", _margin(float(speeds[-1]), critical.speed))
+    else:
+        bound = critical.none_below
+        below = f" below {number(bound, 'rad/s')}" if np.isfinite(bound) else ""
+        yield KeyResult("critical speed", f"none{below}")
+
+
+def of_steady(response: SteadyResponse) -> Iterator[KeyResult]:
+    """The largest deflection of the tip, and the speed at which it is."""
+    amplitude = np.asarray(response.amplitude)
+    if not np.isfinite(amplitude).any():
+        yield KeyResult("largest deflection of the tip", "no steady state")
+        return
+    at = int(np.nanargmax(np.where(np.isfinite(amplitude), amplitude, np.nan)))
+    yield KeyResult("largest deflection of the tip", number(1e3 * amplitude[at], "mm"))
+    yield KeyResult("at the speed", number(response.speeds[at], "rad/s"))
+
+
+def of_modes(modes: Modes) -> Iterator[KeyResult]:
+    """The first frequency, and the largest errors of all modes: of the numbers and of the model."""
+    yield KeyResult("first frequency", _said(modes.frequency[0], "Hz"))
+    yield KeyResult("numerical error at most", f"{float(np.max(modes.error)):.0e}")
+    if np.isfinite(modes.model_error).any():
+        yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))
+
+
+def of_peak(peak: float, at: float) -> Iterator[KeyResult]:
+    """The largest deflection of the tip [m], and its time [s]."""
+    yield KeyResult("largest deflection of the tip", number(1e3 * peak, "mm"))
+    yield KeyResult("at the time", number(at, "s"))
+
+
+def of_trade(modes: Modes, time: float) -> Iterator[KeyResult]:
+    """The time that the chosen model takes [s], and its errors."""
+    yield KeyResult("time of the chosen model", number(1e3 * time, "ms"))
+    yield from [*of_modes(modes)][1:]
+
+
+def _said(frequency: float, unit: str) -> str:
+    return number(frequency, unit) if np.isfinite(frequency) else "diverges"
+
+
+def _margin(top: float, critical: float) -> str:
+    return f"{100 * (1 - top / critical):.3g} %" if top < critical else "none: past it"

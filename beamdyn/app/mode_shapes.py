@@ -1,0 +1,88 @@
+"""The screen of mode shapes at one speed, which move as a slider is played."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.console import RenderableType
+
+from beamdyn import natural_modes
+from beamdyn.app.bent_beam import bent_beam
+from beamdyn.app.headlines import of_modes
+from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_at_speed
+from beamdyn.app.left_out import left_out_table
+from beamdyn.cautions import describe_choice, notes_of, warnings_of
+from beamdyn.common.app.screens import Drag, Screen, Slider
+from beamdyn.common.drawing.shapes import Drawing
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.views import rows_of
+from beamdyn.equations.directions import words_of_directions
+from beamdyn.output.notes import note_below
+from beamdyn.spectrum.modes import Modes
+from beamdyn.tables.results import modes_table
+
+_PLACES = 41  # along the beam
+_LARGEST = 0.22  # deflection drawn, over the length
+_ABREAST = 2  # drawings in a row
+NEEDS = ("options", "operation", *SCENE_TABLES)
+
+
+def solve(tables: Mapping[str, Any]) -> Modes:
+    """The modes at the speed."""
+    scene, speed, modes = read_at_speed(tables)
+    return natural_modes(scene, speed, modes)
+
+
+def drawings(modes: Modes, place: float = 0.0) -> Rows:
+    """Each mode shape at a part of its swing: largest one way at 0, at rest at 1, the other way at 2."""
+    each = [*_drawings(modes, 1.0 - place)]
+    return [each[i : i + _ABREAST] for i in range(0, len(each), _ABREAST)]
+
+
+def _drawings(modes: Modes, swing: float) -> Iterator[Drawing]:
+    length = modes.scene.beam.length
+    x = np.linspace(0.0, length, _PLACES)
+    words = words_of_directions(modes.scene)
+    for i, name in enumerate(modes.labels()):
+        main = int(modes.plane_share[i].argmax()) if words else 0
+        shape = np.real(modes.shape(x, main)[i])
+        shape *= _LARGEST * length / (np.abs(shape).max() or 1.0)
+        said = f"{name}, drawn in {words[main]}" if words else name
+        yield bent_beam(x, swing * shape, said, "", (shape, -shape), _LARGEST * length)
+
+
+def tables(modes: Modes) -> Sequence[RenderableType]:
+    """Frequencies, and what the physics leaves out of them."""
+    return [
+        modes_table(modes),
+        *describe_choice(modes),
+        left_out_table(modes.left_out_effects, "frequencies"),
+    ]
+
+
+def draw(modes: Modes, _: float = 0.0) -> Figure:
+    """All shapes on one pair of axes."""
+    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
+    modes.plot(figure.subplots())
+    return note_below(figure, notes_of(modes))
+
+
+MODE_SHAPES = Screen(
+    "Mode shapes",
+    "How the beam moves in each natural mode at one speed; the sizes of the deflections are arbitrary.",
+    ("operation", "options", *SCENE_TABLES),
+    NEEDS,
+    solve,
+    tables,
+    draw,
+    warnings_of,
+    rows_of,
+    slider=Slider("swing", ("one way", "at rest", "other way"), 0.05),
+    drags=(Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
+    drawings=drawings,
+    headline=lambda modes: [*of_modes(modes)],
+    effort=EFFORT,
+)

@@ -1,0 +1,70 @@
+"""The screen of the rotor: the beam at its angles, whose points can be dragged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from beamdyn import draw as draw_rotor
+from beamdyn.app.inputs import DRAGS, SCENE_TABLES, first_frequency, read_scene
+from beamdyn.common.app.screens import Handle, Screen
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.views import rows_of
+from beamdyn.rotor import RotorDrawing
+from beamdyn.tables.rotor import rotor_table
+
+_STEPS = 200  # lengths are dragged in steps of about so many parts of the beam
+
+
+def solve(tables: Mapping[str, Any]) -> RotorDrawing:
+    """The rotor of a scene that can be solved."""
+    scene = read_scene(tables)
+    first_frequency(scene)  # what cannot be solved is refused here, too
+    return draw_rotor(scene)
+
+
+def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
+    """The rotor along its axis, and the section of its root."""
+    return rotor.drawings()
+
+
+def handles(rotor: RotorDrawing, _: float = 0.0) -> Sequence[Handle]:
+    """Points that set the radius, the setting angle and the length."""
+    r, C = rotor.radius, np.cos(rotor.precone)
+    along = np.array([-np.cos(rotor.setting_angle), np.sin(rotor.setting_angle)])
+    grain = float(10.0 ** np.floor(np.log10(rotor.length / _STEPS)))
+
+    def turn(x: float, y: float) -> dict[str, float]:
+        return {"mount.setting_angle": float(np.arctan2(y, r - x))}
+
+    def stretch(x: float, y: float) -> dict[str, float]:
+        return {"beam.length": max(2 * float(np.hypot(x - r, y)) / C, grain)}
+
+    def place(share: float) -> tuple[float, float]:
+        x, y = np.array([r, 0.0]) + share * rotor.length * C * along
+        return float(x), float(y)
+
+    each = {"step": 10 * grain, "grain": grain}
+    return (
+        Handle("root: radius", (r, 0.0), lambda x, y: {"mount.radius": max(x, 0.0)}, **each),
+        Handle("tip: setting angle", place(1.0), turn, **each),
+        Handle("middle of the beam: length", place(0.5), stretch, **each),
+    )
+
+
+ROTOR = Screen(
+    "Rotor",
+    "The beam on its carrier, seen along the axis of rotation, and the section of its root.",
+    SCENE_TABLES,
+    SCENE_TABLES,
+    solve,
+    lambda rotor: [rotor_table(rotor)],
+    lambda rotor, _: rotor.figure(),
+    lambda rotor: rotor.warnings,
+    rows_of,
+    drags=DRAGS,
+    drawings=drawings,
+    handles=handles,
+)

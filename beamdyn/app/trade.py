@@ -1,0 +1,254 @@
+"""The screen of the trade: what digits of natural frequencies at a speed cost, and which model gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from time import process_time
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.console import RenderableType
+
+from beamdyn import natural_modes
+from beamdyn.app.headlines import of_trade
+from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_aside, read_at_speed
+from beamdyn.app.left_out import left_out_table
+from beamdyn.cautions import notes_of, warnings_of
+from beamdyn.common.app.chart import Chart, ChartAxis, ChartCurve, ChartPoints
+from beamdyn.common.app.screens import Drag, Screen
+from beamdyn.common.edge.tables import table
+from beamdyn.model_error.choice import plain_physics
+from beamdyn.model_error.left_out_effects import say_size
+from beamdyn.output.notes import note_below
+from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.modes import Modes
+from beamdyn.tables.tradeoffs import diagram_csv, diagram_table
+from beamdyn.tradeoffs.frequencies import frequency_diagram
+from beamdyn.tradeoffs.measurements import Diagram, Digit
+from beamdyn.tradeoffs.physics import physics_diagram
+
+_BUDGET = 2.0  # for all measurements of a diagram [s]
+_RUNS = 5  # of the chosen model, the shortest of which counts
+_KEPT = 8  # scenes whose measurements are kept
+_LARGEST, _LEAST = 1.0, 1e-14  # relative errors that are drawn
+_ROUNDING = 1e-9  # relative, of a power of ten
+NEEDS = ("trade", "options", "operation", *SCENE_TABLES)
+
+
+@dataclass(frozen=True)
+class Trade:
+    """The model chosen for a tolerance, and the measurements that it is held against.
+
+    Parameters
+    ----------
+    digits : int
+        Digits to keep.
+    modes : Modes
+        Natural modes by the model that `tolerance` chooses.
+    time : float
+        Shortest processor time of the whole call, with the choice of the model [s].
+    numerical : Diagram
+        Error of the numbers against time.
+    of_physics : Diagram
+        The same, the error of the model included.
+    """
+
+    digits: int
+    modes: Modes
+    time: float
+    numerical: Diagram
+    of_physics: Diagram
+
+    @property
+    def tolerance(self) -> float:
+        """Relative error allowed."""
+        return 10.0**-self.digits
+
+    def cheapest(self, diagram: Diagram) -> Digit | None:
+        """The cheapest measurement with so many digits; None if none has them."""
+        each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _ROUNDING)
+        return next(each, None)
+
+
+def solve(tables: Mapping[str, Any]) -> Trade:
+    """The model chosen, and what others take."""
+    digits = int(read_aside(tables, "trade").digits)
+    scene, speed, modes = read_at_speed(tables)
+    scene = plain_physics(scene)
+    found, time = _timed(lambda: natural_modes(scene, speed, modes, tolerance=10.0**-digits))
+    return Trade(digits, found, time, *_measure(scene, speed, modes))
+
+
+def _timed(run: Callable[[], Modes]) -> tuple[Modes, float]:
+    """What a function returns, and its shortest processor time [s]."""
+    found, times = [], []
+    for _ in range(_RUNS):
+        start = process_time()
+        found.append(run())
+        times.append(process_time() - start)
+    return found[-1], min(times)
+
+
+@lru_cache(maxsize=_KEPT)
+def _measure(scene: Scene, speed: float, modes: int) -> tuple[Diagram, Diagram]:
+    """Errors against times of models of a scene, which do not depend on the digits that are asked for."""
+    return (
+        frequency_diagram(scene, np.array([speed]), modes, _BUDGET),
+        physics_diagram(scene, speed, modes, _BUDGET),
+    )
+
+
+# Charts -------------------------------------------------------------------------------------------
+
+
+def charts(answer: Trade, _: float = 0.0) -> Sequence[Chart]:
+    """Error against time, of the numbers alone and with that of the model."""
+    made = [_chart(answer, answer.numerical, "Error of the numbers")]
+    if answer.of_physics.measurements:
+        made.append(_chart(answer, answer.of_physics, "Error with that of the model"))
+    return made
+
+
+def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
+    families: dict[str, list[tuple[float, float]]] = {}
+    for m in diagram.measurements:
+        if 0 < m.error < np.inf:
+            families.setdefault(m.family, []).append((m.time, m.error))
+    curves = [_curve(family, points) for family, points in families.items()]
+    front = _curve("Pareto front", [(m.time, m.error) for m in diagram.front if m.error > 0])
+    times = [m.time for m in diagram.measurements]
+    limit = ChartCurve(
+        f"tolerance {answer.tolerance:.0e}",
+        1e3 * np.array([min(times), max(times)]),
+        np.full(2, answer.tolerance),
+        dashed=True,
+        pale=True,
+    )
+    return Chart(
+        f"{name}: {diagram.title.removeprefix('physics: ')}",
+        ChartAxis("time", "ms", logarithmic=True),
+        ChartAxis("relative error", logarithmic=True, high=_LARGEST),
+        [*curves, ChartCurve(front.name, front.x, front.y, pale=True), limit],
+        [*_cheapest_point(answer, diagram)],
+    )
+
+
+def _curve(name: str, points: Sequence[tuple[float, float]]) -> ChartCurve:
+    """Errors against times [ms]; those beyond the picture at its edge."""
+    at = np.array(points).reshape(-1, 2)
+    return ChartCurve(name, 1e3 * at[:, 0], np.clip(at[:, 1], _LEAST, _LARGEST), points=True)
+
+
+def _cheapest_point(answer: Trade, diagram: Diagram) -> Iterator[ChartPoints]:
+    digit = answer.cheapest(diagram)
+    for m in diagram.measurements:
+        if digit is not None and (m.family, m.setting, m.time) == (digit.family, digit.setting, digit.time):
+            words = f"{m.family}, {m.setting}\n{1e3 * m.time:.3g} ms, error {m.error:.0e}"
+            place = 1e3 * m.time, float(np.clip(m.error, _LEAST, _LARGEST)), words
+            yield ChartPoints(f"cheapest with {answer.digits} digits", [place])
+            return
+
+
+# Tables and files ---------------------------------------------------------------------------------
+
+
+def tables(answer: Trade) -> Sequence[RenderableType]:
+    """The chosen model and the cheapest ones; then all digits, and what the physics leaves out."""
+    diagrams = [diagram_table(answer.numerical)]
+    if answer.of_physics.measurements:
+        diagrams.append(diagram_table(answer.of_physics))
+    return [
+        _chosen_table(answer),
+        *headline(answer),
+        left_out_table(answer.modes.left_out_effects, "frequencies"),
+        *diagrams,
+    ]
+
+
+def headline(answer: Trade) -> Sequence[str]:
+    """Sentences on the cheapest models that keep the digits."""
+    number, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
+    n = f"{answer.digits} digit{'s' * (answer.digits > 1)}"
+    numerical = "nothing measured keeps them" if number is None else _say(number)
+    said = [f"Cheapest numbers with {n} of this model: {numerical}."]
+    if answer.of_physics.measurements:
+        missed = f"nothing measured has them; the least error is {_best(answer.of_physics)}"
+        said.append(
+            f"Cheapest with {n} in all, the physics included: {missed if physics is None else _say(physics)}."
+        )
+    return said
+
+
+def _say(digit: Digit) -> str:
+    return f"{digit.family}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
+
+
+def _best(diagram: Diagram) -> str:
+    return say_size(min(m.error for m in diagram.measurements))
+
+
+def _chosen_table(answer: Trade) -> RenderableType:
+    """What the tolerance chooses, and its errors, mode by mode."""
+    modes, known = answer.modes, answer.modes.model_error
+    rows = [
+        (
+            str(i),
+            f"{f:.10g}",
+            f"{error:.0e}",
+            say_size(float(of_model)),
+            _worse(error, of_model, answer.tolerance),
+        )
+        for i, (f, error, of_model) in enumerate(zip(modes.frequency, modes.error, known, strict=True), 1)
+    ]
+    title = (
+        f"At {modes.display_units.speed_unit().say(modes.speed)}, tolerance {answer.tolerance:.0e}: "
+        f"{modes.provenance.method}, in {1e3 * answer.time:.3g} ms"
+    )
+    return table(title, ("mode", "frequency [Hz]", "numerical error", "model error", "digits"), rows, (4,))
+
+
+def _worse(error: float, of_model: float, tolerance: float) -> str:
+    """Which error breaks the tolerance, if one does."""
+    if not error <= tolerance:
+        return "the numbers miss the tolerance"
+    if np.isnan(of_model):
+        return "kept by the numbers; that of the model is not known"
+    return "kept" if of_model <= tolerance else "kept by the numbers; the physics misses the tolerance"
+
+
+def rows(answer: Trade) -> Iterator[Sequence[object]]:
+    """All measurements, of the numbers and with the model's error."""
+    for name, diagram in (("numerical", answer.numerical), ("with_model_error", answer.of_physics)):
+        heads, *lines = diagram_csv(diagram)
+        if name == "numerical":
+            yield "error_of", *heads
+        yield from ((name, *line) for line in lines)
+
+
+def draw(answer: Trade, _: float = 0.0) -> Figure:
+    """The diagrams side by side."""
+    known = [d for d in (answer.numerical, answer.of_physics) if d.measurements]
+    figure = Figure(figsize=(6.5 * len(known), 5.0), layout="constrained")
+    for diagram, ax in zip(known, np.atleast_1d(figure.subplots(1, len(known))), strict=True):
+        diagram.plot(ax)
+    return note_below(figure, notes_of(answer.modes))
+
+
+TRADE = Screen(
+    "Trade",
+    "The cheapest model that keeps so many digits of the natural frequencies at a speed.",
+    ("trade", "operation", "options", *SCENE_TABLES),
+    NEEDS,
+    solve,
+    tables,
+    draw,
+    lambda answer: warnings_of(answer.modes, answer.tolerance),
+    rows,
+    drags=(Drag("trade.digits", 1, 10, 1, ""), Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
+    charts=charts,
+    headline=lambda answer: [*of_trade(answer.modes, answer.time)],
+    effort=EFFORT,
+)

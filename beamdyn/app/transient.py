@@ -1,0 +1,248 @@
+"""The screen of a transient: the tip over time beside the moving beam."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.console import RenderableType
+
+from beamdyn import resonance_speeds, simulate
+from beamdyn.app.bent_beam import bent_beam, drawn_larger
+from beamdyn.app.headlines import of_peak
+from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, first_frequency, read_aside, read_scene
+from beamdyn.app.left_out import left_out_table
+from beamdyn.cautions import describe_choice, notes_of, warnings_of
+from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
+from beamdyn.common.app.screens import Screen, Slider
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.drawing.shapes import Drawing
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.config import MissingValue
+from beamdyn.common.edge.views import rows_of
+from beamdyn.equations.directions import modelled_directions
+from beamdyn.output.notes import note_below
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.crossings import label_crossing
+from beamdyn.tables.results import time_of_peak, transient_table
+from beamdyn.transient.transient import Transient
+
+_TOLERANCE = 1e-4
+_MOST_PERIODS = 20_000  # of the first mode at rest in a run
+_PLACES, _TIMES = 41, 201  # along the beam, and in the close-up
+_SAMPLES = 40  # the largest ones, beside which the peak is
+_CLOSE = 4  # periods of the first mode on either side of the present one in the close-up
+_MOST_SENT = 1000  # points of the whole run on the page
+_MODES = 3  # whose resonances are marked
+NEEDS = ("run", *SCENE_TABLES)
+
+
+@dataclass(frozen=True)
+class Playable:
+    """A transient, and what is marked in it.
+
+    Parameters
+    ----------
+    run : Transient
+        The transient.
+    window : (float, float)
+        Where its peak was sought [s].
+    peak, peak_at : float
+        Largest magnitude of the tip deflection in the window [m], and its time [s].
+    passages : tuple of (float, str)
+        When the speed passes a resonance speed [s], and what resonates.
+    period : float
+        Of the first mode at rest [s].
+    """
+
+    run: Transient
+    window: tuple[float, float]
+    peak: float
+    peak_at: float
+    passages: tuple[tuple[float, str], ...]
+    period: float
+
+    def time(self, place: float) -> float:
+        """The time at a place of the slider, 0 to 1 [s]."""
+        return self.run.path.start + place * (self.run.path.end - self.run.path.start)
+
+
+def solve(tables: Mapping[str, Any]) -> Playable:
+    """The motion from rest, its peak, and the resonances that it passes."""
+    given, scene = read_aside(tables, "run"), read_scene(tables)
+    if scene.motion is None:
+        raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
+    period = 2 * np.pi / first_frequency(scene)
+    if given.end > _MOST_PERIODS * period:
+        bound = f"it must be at most {{limit}}, {_MOST_PERIODS} periods of the first mode"
+        raise InvalidValue("run.end", given.end, bound, unit="s", limit=_MOST_PERIODS * period)
+    window = _window(given)
+    run = simulate(scene, given.end, tolerance=_TOLERANCE)
+    return Playable(
+        run,
+        window,
+        run.peak(*window),
+        _time_of_peak(run, *window),
+        tuple(_passages(scene, given.end)),
+        period,
+    )
+
+
+def _time_of_peak(run: Transient, start: float, end: float) -> float:
+    """Time of the largest deflection in a window [s]: beside one of its largest samples."""
+    _, apart = time_of_peak(run, start, end)
+    inside = np.flatnonzero((run.t >= start) & (run.t <= end))
+    largest = inside[np.argsort(np.hypot(run.tip, run.tip_across)[inside])[-_SAMPLES:]]
+    beside = run.t[largest][:, None] + apart * np.linspace(-1, 1, _TIMES)
+    t = np.unique(np.clip(np.append(beside, (start + end) / 2), start, end))
+    return float(t[np.hypot(run.deflection(t, 0), run.deflection(t, 1)).argmax()])
+
+
+def _window(given: Any) -> tuple[float, float]:
+    end = given.end if given.window_end is None else given.window_end
+    if end > given.end:
+        raise InvalidValue(
+            "run.window_end", end, "it is after the end of the run, {limit}", unit="s", limit=given.end
+        )
+    if given.window_start >= end:
+        bound = "it must be before the end of the window, {limit}"
+        raise InvalidValue("run.window_start", given.window_start, bound, unit="s", limit=end)
+    return given.window_start, end
+
+
+def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
+    """When the motion passes speeds at which a line of excitation meets a mode."""
+    assert scene.motion is not None
+    t = np.linspace(0.0, min(end, scene.motion.end), 4001)
+    speed = np.abs(scene.motion.at(t).speed)
+    try:
+        found = resonance_speeds(scene, float(speed.max()), _MODES)
+    except ValueError:  # at rest, or excited by no lines
+        return
+    for c in found:
+        over = speed - c.speed
+        for i in np.flatnonzero(over[:-1] * over[1:] < 0).tolist():
+            words = label_crossing(c.line, c.kind, c.mode, c.second_mode)
+            yield float(t[i] + over[i] / (over[i] - over[i + 1]) * (t[i + 1] - t[i])), words
+
+
+# The moving beam ----------------------------------------------------------------------------------
+
+
+def drawings(answer: Playable, place: float = 1.0) -> Rows:
+    """The beam at a time, in each direction, and how far it swings about then."""
+    return [[_beam(answer, place, direction) for direction in range(answer.run.scene.physics.planes)]]
+
+
+def _beam(answer: Playable, place: float, direction: int) -> Drawing:
+    run, now = answer.run, answer.time(place)
+    length = run.scene.beam.length
+    x = np.linspace(0.0, length, _PLACES)
+    larger = drawn_larger(run.largest, length)
+    around = run.shape(x, _around(answer, now, 1.0), direction)
+    low, high = around[around[:, -1].argmin()], around[around[:, -1].argmax()]
+    shape = run.shape(x, [now], direction)[0]
+    unit = run.display_units.length_unit()
+    words = modelled_directions(run.scene)
+    which = f", {words[direction]}" if len(words) > 1 else ""
+    scale = f"deflection drawn {larger:g} times larger" if larger != 1 else "to scale"
+    title = f"At {now:.4g} s{which}; {scale}"
+    return bent_beam(
+        x,
+        larger * shape,
+        title,
+        unit.say(float(shape[-1]), 3),
+        (larger * low, larger * high),
+        larger * run.largest,
+    )
+
+
+def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
+    """Times about a time, within the run."""
+    path, reach = answer.run.path, periods * answer.period
+    return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
+
+
+# Charts -------------------------------------------------------------------------------------------
+
+
+def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
+    """The tip over the whole run, and over some periods about the present time."""
+    return [_whole(answer, place), _close_up(answer, place)]
+
+
+def _whole(answer: Playable, place: float) -> Chart:
+    run, unit = answer.run, answer.run.display_units.length_unit()
+    tips = (run.tip, run.tip_across)[: run.scene.physics.planes]
+    names = modelled_directions(run.scene) if len(tips) > 1 else ("tip deflection",)
+    curves = [ChartCurve(n, run.t, unit.of(tip), most=_MOST_SENT) for n, tip in zip(names, tips, strict=True)]
+    peak = float(run.deflection([answer.peak_at])[0])
+    said = f"peak {unit.say(answer.peak, 5)} at {answer.peak_at:.5g} s"
+    start, end = run.path.start, run.path.end
+    outside = [
+        ChartBand(start, answer.window[0], "before the window"),
+        ChartBand(answer.window[1], end, "after the window"),
+    ]
+    return Chart(
+        "Tip deflection over time",
+        ChartAxis("time", "s", low=start, high=end),
+        ChartAxis("tip deflection", unit.name),
+        curves,
+        [ChartPoints("peak in the window", [(answer.peak_at, unit.of(peak), said)], "friction")],
+        [ChartMark(t, words) for t, words in answer.passages],
+        [band for band in outside if band.high > band.low],
+        answer.time(place),
+    )
+
+
+def _close_up(answer: Playable, place: float) -> Chart:
+    run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
+    t = _around(answer, now, _CLOSE)
+    names = modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
+    curves = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(names)]
+    return Chart(
+        "Close-up about the present time",
+        ChartAxis("time", "s", low=float(t[0]), high=float(t[-1])),
+        ChartAxis("tip deflection", unit.name),
+        curves,
+        cursor=now,
+    )
+
+
+# Tables and files ---------------------------------------------------------------------------------
+
+
+def tables(answer: Playable) -> Sequence[RenderableType]:
+    """Peaks, resonances passed, and what the physics leaves out."""
+    said = [f"At {t:.5g} s the speed passes a resonance: {words}." for t, words in answer.passages]
+    effects = left_out_table(answer.run.left_out_effects, "largest deflection")
+    return [transient_table(answer.run, answer.window), *said, *describe_choice(answer.run), effects]
+
+
+def draw(answer: Playable, _: float = 1.0) -> Figure:
+    """The tip over time."""
+    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
+    answer.run.plot(figure.subplots())
+    return note_below(figure, notes_of(answer.run))
+
+
+TRANSIENT = Screen(
+    "Transient",
+    "The motion from rest: the beam, and its tip over time.",
+    NEEDS,
+    NEEDS,
+    solve,
+    tables,
+    draw,
+    lambda answer: warnings_of(answer.run),
+    lambda answer: rows_of(answer.run),
+    slider=Slider("time", ("start", "end"), 0.001, 20.0),
+    drags=DRAGS,
+    drawings=drawings,
+    charts=charts,
+    headline=lambda answer: [*of_peak(answer.peak, answer.peak_at)],
+    effort=EFFORT,
+)

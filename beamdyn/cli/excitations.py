@@ -1,0 +1,174 @@
+"""Options of commands that excite the beam: inputs, outputs, and random inputs with their densities."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from cyclopts import Parameter
+
+from beamdyn.cli.values import Text, parse_positive, speed_or_final
+
+if TYPE_CHECKING:
+    from beamdyn.linear_models.excitations import Excitation
+    from beamdyn.linear_models.observations import Observation
+    from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
+    from beamdyn.scene.scene import Scene
+
+RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
+_AT = re.compile(r"(force|deflection|acceleration)@(.+?)( across)?")
+_SQUARED = re.compile(r"\(([^()]*)\)\s*(?:\^|\*\*)?2")
+_POWER = re.compile(r"([A-Za-z]+)(?:\^|\*\*)?(\d?)")
+_STANDARD_GRAVITY = re.compile(r"(?<=\s)g(?=(\^|\*\*)?2\s*/)")
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class RandomInput:
+    """A random input of a turning beam: its density, where it acts, and the speed.
+
+    Parameters
+    ----------
+    psd : Path, optional
+        One-sided density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
+        or [g2/Hz], of a force [N2/Hz].
+    road : str, optional
+        Class of a random road by ISO 8608, from A, very good, to H.
+    roughness : str, optional
+        The same by its density at 0.1 1/m, e.g. "64e-6 m3".
+    highest : str, optional
+        Spatial frequency at which the road ends; default: 2.83 1/m, that of the standard.
+    speed : str, optional
+        Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion.
+    velocity : str, optional
+        Velocity of the rolling wheel in place of its speed, e.g. "90 km/h".
+    input : str, optional
+        bending, across, n1, n2, n3: acceleration of the base; force@20 mm, force@tip, with " across" at the
+        end for that direction; default: bending, of a road n2.
+    """
+
+    psd: Path | None = None
+    road: RoadClass | None = None
+    roughness: Text | None = None
+    highest: Text | None = None
+    speed: Text | None = None
+    velocity: Text | None = None
+    input: Text | None = None
+
+    @property
+    def options(self) -> dict[str, object]:
+        """The options, for the head of a report; None where one is not given."""
+        return dict(vars(self))
+
+    @property
+    def drive(self) -> Excitation | None:
+        """Where the input acts; None for what its density suggests."""
+        return None if self.input is None else parse_input(self.input)
+
+    @property
+    def density(self) -> PowerSpectrum | RoadRoughness:
+        """The density, from a file or as a road.
+
+        Raises
+        ------
+        ValueError
+            If not exactly one of the three is given, or the end of a road without a road.
+        """
+        from beamdyn.linear_models.spectra import RoadRoughness
+
+        if sum(given is not None for given in (self.psd, self.road, self.roughness)) != 1:
+            raise ValueError("--psd, --road, --roughness: give one of the three")
+        if self.psd is not None:
+            if self.highest is not None:
+                raise ValueError(
+                    f'--highest = "{self.highest}": it is that of a road; leave it out with --psd'
+                )
+            drive = self.drive
+            return read_spectrum(self.psd, "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz")
+        limit = {} if self.highest is None else {"highest": parse_positive("--highest", self.highest, "1/m")}
+        return RoadRoughness(self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit)
+
+    def speed_of(self, scene: Scene) -> float:
+        """The speed that is given [rad/s], that of a wheel which rolls at the velocity, or the scene's."""
+        from beamdyn.scene.motion import RollingWheel
+
+        if self.velocity is None:
+            return speed_or_final(scene, self.speed)
+        if self.speed is not None:
+            raise ValueError("--speed, --velocity: give one of the two")
+        if not isinstance(scene.motion, RollingWheel):
+            raise ValueError(
+                '--velocity: the scene has no rolling wheel; give --speed, or motion.kind = "rolling"'
+            )
+        return parse_positive("--velocity", self.velocity, "m/s") / scene.motion.rolling_radius
+
+
+NO_RANDOM_INPUT = RandomInput()
+
+
+def parse_input(text: str) -> Excitation:
+    """The excitation of ``--input``: a word, or a force at a position with its unit."""
+    from beamdyn.linear_models.excitations import PointForce, as_excitation
+
+    match = _AT.fullmatch(text.strip())
+    if match is None or match[1] != "force":
+        return as_excitation("--input", text.strip())
+    return PointForce(_position("--input", match[2]), "across" if match[3] else "bending")
+
+
+def parse_output(text: str) -> Observation:
+    """The observation of ``--output``: a word, or a deflection or an acceleration at a position."""
+    from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, as_observation
+
+    match = _AT.fullmatch(text.strip())
+    if match is None or match[1] == "force":
+        return as_observation("--output", text.strip())
+    made = AccelerationAt if match[1] == "acceleration" else DeflectionAt
+    return made(_position("--output", match[2]), "across" if match[3] else "bending")
+
+
+def _position(option: str, text: str) -> float | None:
+    """A position on the beam [m]; None for the word "tip"."""
+    return None if text.strip() == "tip" else parse_positive(option, text.strip(), "m")
+
+
+def read_spectrum(path: Path, unit: str) -> PowerSpectrum:
+    """Read a density from a CSV file with the columns f [Hz] and psd, in a unit such as m2/s4/Hz or g2/Hz.
+
+    Raises
+    ------
+    ConfigError
+        If a head lacks its unit, a column is missing or a cell is no number: with the line.
+    InvalidValue
+        If the frequencies do not ascend, or a density is not above 0.
+    """
+    from beamdyn.common.edge.csv_columns import read_csv
+    from beamdyn.common.edge.data_text import read_data
+    from beamdyn.common.edge.inputs import Quantity
+    from beamdyn.linear_models.spectra import PowerSpectrum
+
+    text = read_data(path)
+
+    class Density(Quantity):
+        """A density, also per square of an acceleration in brackets or in standard gravities."""
+
+        def convert(self, given: object) -> float:
+            return super().convert(spell_density(given) if isinstance(given, str) else given)
+
+    known = {"f": Quantity("Hz", meaning="frequency"), "psd": Density(unit, meaning="density")}
+    table = read_csv(text, known, {"f": "f", "frequency": "f", "psd": "psd"})
+    columns = table.named()
+    if len(columns) != 2:
+        raise text.refusal(table.head_line, f"expected the columns f [Hz] and psd [{unit}]")
+    return PowerSpectrum(columns["f"].values, columns["psd"].values)
+
+
+def spell_density(text: str) -> str:
+    """A density with its unit in the words of `quantity`: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
+
+    def squared(unit: re.Match[str]) -> str:
+        return _POWER.sub(lambda factor: f"{factor[1]}{2 * int(factor[2] or 1)}", unit[1])
+
+    return _STANDARD_GRAVITY.sub("gravity", _SQUARED.sub(squared, text))

@@ -1,0 +1,431 @@
+"""Curves as data, and as options of the chart component of the page: hover, zoom, saving as a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.drawing.style import INKS, PAPER
+
+_MOST_POINTS = 400  # of a curve: more are not seen, and take time to send
+_DIGITS = 5  # of numbers on the page; of places on an axis, over its length
+_WIDE = 0.15  # of the axis: a narrower band has no room for its text
+_COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  # roles of curves, in turn
+# Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
+_MORE = {"chart-4": "#a3527f", "chart-5": "#8a6100", "chart-6": "#1b7fb0"}
+_MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f0b429", "chart-6": "#8ad0f5"}
+_NAMED, _PALE = 12, 11  # sizes of letters [px]
+
+
+@dataclass(frozen=True)
+class ChartAxis:
+    """An axis of a chart.
+
+    Parameters
+    ----------
+    name : str
+        What it shows.
+    unit : str
+        Unit of its numbers; "" for none.
+    logarithmic : bool
+        Whether it has decades.
+    low, high : float, optional
+        Its ends; by the curves if not given.
+    """
+
+    name: str
+    unit: str = ""
+    logarithmic: bool = False
+    low: float | None = None
+    high: float | None = None
+
+    @property
+    def title(self) -> str:
+        """Name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True, eq=False)
+class ChartCurve:
+    """A curve.
+
+    Parameters
+    ----------
+    name : str
+        In the legend and when pointed at.
+    x, y : ndarray, shape (n,)
+        Its points, in the units of the axes; a gap where y is not finite.
+    dashed : bool
+        Whether it is dashed.
+    pale : bool
+        Whether it is grey and thin, as what is only compared with.
+    points : bool
+        Whether its points are marked, too.
+    most : int
+        How many points are drawn: least and largest of parts, where there are more.
+    """
+
+    name: str
+    x: Any
+    y: Any
+    dashed: bool = False
+    pale: bool = False
+    points: bool = False
+    most: int = _MOST_POINTS
+
+
+@dataclass(frozen=True)
+class ChartPoints:
+    """Points with a word each.
+
+    Parameters
+    ----------
+    name : str
+        In the legend.
+    at : sequence of (x, y, words)
+        Where they are, and what is said when one is pointed at.
+    role : str
+        Its colour: a name in `beamdyn.common.drawing.style`.
+    """
+
+    name: str
+    at: Sequence[tuple[float, float, str]]
+    role: str = "mark"
+
+
+@dataclass(frozen=True)
+class ChartMark:
+    """An upright line with a text."""
+
+    at: float
+    text: str
+
+
+@dataclass(frozen=True)
+class ChartBand:
+    """A stretch of x, greyed, with a text."""
+
+    low: float
+    high: float
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """Curves over a common x.
+
+    Parameters
+    ----------
+    title : str
+        What it shows.
+    x, y : ChartAxis
+        Its axes.
+    curves : sequence of ChartCurve
+        Curves.
+    points : sequence of ChartPoints
+        Single points.
+    marks : sequence of ChartMark
+        Upright lines.
+    bands : sequence of ChartBand
+        Greyed stretches.
+    cursor : float, optional
+        Where a player is.
+    """
+
+    title: str
+    x: ChartAxis
+    y: ChartAxis
+    curves: Sequence[ChartCurve]
+    points: Sequence[ChartPoints] = ()
+    marks: Sequence[ChartMark] = ()
+    bands: Sequence[ChartBand] = ()
+    cursor: float | None = None
+
+    @property
+    def words(self) -> str:
+        """What it shows, for those who do not see it."""
+        names = ", ".join(each.name for each in (*self.curves, *self.points))
+        marks = "; ".join(mark.text.replace("\n", " ") for mark in self.marks)
+        return f"{self.title}: {self.y.title} over {self.x.title}; {names}" + (f"; {marks}" if marks else "")
+
+
+def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """At most so many points of a curve, which reach as far: its ends, and least and largest of its parts.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+        The curve; x ascends.
+    most : int
+        How many points may stay.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if len(x) <= most:
+        return x, y
+    parts = np.array_split(np.arange(len(x)), most // 2 - 1)
+    low = [part[np.argmin(np.where(np.isfinite(y[part]), y[part], np.inf))] for part in parts]
+    high = [part[np.argmax(np.where(np.isfinite(y[part]), y[part], -np.inf))] for part in parts]
+    kept = np.unique([0, *low, *high, len(x) - 1])
+    return x[kept], y[kept]
+
+
+def chart_colours(selector: str, dark: bool = False) -> str:
+    """Style rules for the colours that charts have beside those of drawings."""
+    values = _MORE_DARK if dark else _MORE
+    return f"{selector}{{{''.join(f'--{role}:{colour};' for role, colour in values.items())}}}"
+
+
+def options_of(chart: Chart) -> dict[str, Any]:
+    """The options of the chart component.
+
+    Its colours are those of the page; no text is taken for HTML, and no option is a script.
+    """
+    return {
+        "animation": False,
+        "textStyle": {"color": _paint("text"), "fontFamily": "inherit"},
+        "grid": {"left": 64, "right": 28, "top": 58, "bottom": 50 + 24 * _legend_rows(chart)},
+        "legend": _legend(chart),
+        "tooltip": _tooltip(chart),
+        "toolbox": _toolbox(chart),
+        "dataZoom": [{"type": "inside", "zoomOnMouseWheel": "ctrl", "moveOnMouseMove": "ctrl",
+                      "moveOnMouseWheel": False, "preventDefaultMouseMove": False,
+                      "filterMode": "none"}],
+        "xAxis": _axis(chart.x, 28, "middle"),
+        "yAxis": _axis(chart.y, 12, "end"),
+        "series": [*_series(chart)],
+    }  # fmt: skip
+
+
+def _paint(role: str, area: bool = False) -> str:
+    """A colour of the page, by its role; that on light ground in a picture without the page."""
+    if role in _MORE:
+        return f"var(--{role},{_MORE[role]})"
+    ink = PAPER if role == "paper" else INKS[role]
+    return f"var(--{role}{'-area' if area else ''},{ink.area if area else ink.line})"
+
+
+# Frame ------------------------------------------------------------------------------------------------
+
+
+def _axis(axis: ChartAxis, gap: float, place: str) -> dict[str, Any]:
+    upright = place == "end"
+    letters = {"color": _paint("text"), "fontSize": _NAMED}
+    made: dict[str, Any] = {
+        "type": "log" if axis.logarithmic else "value",
+        "name": axis.title,
+        "nameLocation": place,
+        "nameGap": gap,
+        "nameTextStyle": letters | ({"align": "left", "padding": [0, 0, 0, -56]} if upright else {}),
+        "axisLabel": {"color": _paint("text"), "fontSize": _PALE, "hideOverlap": True},
+        "axisLine": {"show": True, "onZero": False, "lineStyle": {"color": _paint("axis")}},
+        "axisTick": {"show": True, "lineStyle": {"color": _paint("axis")}},
+        "splitLine": {"show": True, "lineStyle": {"color": _paint("ghost"), "width": 0.6}},
+        "minorTick": {"show": axis.logarithmic},
+        "axisPointer": {"label": {"show": False}, "lineStyle": {"color": _paint("axis")}},
+        "scale": upright,
+    }
+    return made | {"min": axis.low, "max": axis.high}
+
+
+def _legend(chart: Chart) -> dict[str, Any]:
+    return {
+        "bottom": 0,
+        "itemWidth": 22,
+        "itemHeight": 10,
+        "textStyle": {"color": _paint("text"), "fontSize": _NAMED},
+        "inactiveColor": _paint("ghost"),
+        "data": [each.name for each in (*chart.curves, *chart.points)],
+    }
+
+
+def _legend_rows(chart: Chart) -> int:
+    """Rows of the legend on a narrow page."""
+    letters = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))
+    return min(math.ceil(letters / 52), 5)
+
+
+def _tooltip(chart: Chart) -> dict[str, Any]:
+    """What is said at the pointer: all curves at its x; of curves over decades, one point."""
+    return {
+        "trigger": "item" if chart.x.logarithmic else "axis",
+        "renderMode": "richText",  # not HTML: names are shown as they are
+        "confine": True,
+        "order": "seriesDesc",
+        "backgroundColor": _paint("paper", area=True),
+        "borderColor": _paint("axis"),
+        "textStyle": {"color": _paint("text"), "fontSize": _NAMED},
+    }
+
+
+def _toolbox(chart: Chart) -> dict[str, Any]:
+    name = "-".join("".join(c if c.isalnum() else " " for c in chart.title.lower()).split())
+    return {
+        "right": 12,
+        "top": 0,
+        "iconStyle": {"borderColor": _paint("dimension")},
+        "emphasis": {"iconStyle": {"borderColor": _paint("normal"), "textFill": _paint("text")}},
+        "feature": {
+            "dataZoom": {"title": {"zoom": "zoom: draw a box", "back": "zoom back"}},
+            "restore": {"title": "all of it"},
+            "saveAsImage": {
+                "title": "save as picture",
+                "name": name or "chart",
+                "backgroundColor": PAPER.area,
+            },
+        },
+    }
+
+
+# What is drawn ----------------------------------------------------------------------------------------
+
+
+def _series(chart: Chart) -> Iterator[dict[str, Any]]:
+    """Marks and bands first, in a series of their own, which a moving cursor alone replaces."""
+    yield marks_of(chart)
+    roles = iter(range(len(chart.curves)))
+    for i, curve in enumerate(chart.curves):
+        role = "ground" if curve.pale else _COLOURS[next(roles) % len(_COLOURS)]
+        yield _line(i, curve, role)
+    yield from map(_points, chart.points)
+
+
+def marks_of(chart: Chart) -> dict[str, Any]:
+    """The series of marks, bands and cursor; there is always one, so that another replaces it."""
+    return {
+        "id": "marks",
+        "name": "marks",
+        "type": "line",
+        "data": [],
+        "silent": True,
+        "tooltip": {"show": False},
+        "markLine": _marks(chart),
+        "markArea": _bands(chart),
+    }
+
+
+def _line(i: int, curve: ChartCurve, role: str) -> dict[str, Any]:
+    x, y = thinned(curve.x, curve.y, curve.most)
+    alone = _alone(y)
+    kind = "dashed" if curve.dashed or i >= len(_COLOURS) else "solid"
+    return {
+        "id": f"curve {i}",
+        "name": curve.name,
+        "type": "line",
+        "data": [_dotted(pair) if dot else pair for pair, dot in zip(_pairs(x, y), alone, strict=True)],
+        "showSymbol": curve.points or bool(alone.any()),
+        "symbol": "circle" if curve.points or not alone.any() else "none",
+        "symbolSize": 5,
+        "connectNulls": False,
+        "itemStyle": {"color": _paint(role)},
+        "lineStyle": {"color": _paint(role), "width": 1.2 if curve.pale else 2, "type": kind},
+        "emphasis": {"disabled": True},
+    }
+
+
+def _alone(y: np.ndarray) -> np.ndarray:
+    """Whether each value lies between gaps: a line does not show it (n,)."""
+    known = np.pad(np.isfinite(y), 1)
+    return known[1:-1] & ~known[:-2] & ~known[2:]
+
+
+def _dotted(pair: list[float | None]) -> dict[str, Any]:
+    """A point with a dot."""
+    return {"value": pair, "symbol": "circle"}
+
+
+def _points(points: ChartPoints) -> dict[str, Any]:
+    at = [{"value": [_place(x), _short(y)], "name": words} for x, y, words in points.at if _is_number(x, y)]
+    return {
+        "id": f"points {points.name}",
+        "name": points.name,
+        "type": "scatter",
+        "data": at,
+        "symbolSize": 9,
+        "z": 5,
+        "itemStyle": {
+            "color": _paint("paper", area=True),
+            "borderColor": _paint(points.role),
+            "borderWidth": 1.8,
+        },
+        "tooltip": {"trigger": "item", "formatter": "{b}"},
+        "emphasis": {"disabled": True},
+    }
+
+
+def _marks(chart: Chart) -> dict[str, Any]:
+    """Upright lines, their texts at different heights where they are near one another."""
+    each = [
+        {"xAxis": _place(mark.at), "name": mark.text, "label": {"formatter": "{b}"}}
+        for mark in chart.marks
+        if math.isfinite(mark.at)
+    ]
+    if chart.cursor is not None and math.isfinite(chart.cursor):
+        now = {"color": _paint("friction"), "width": 2, "type": "solid"}
+        each.append({"xAxis": _place(chart.cursor), "lineStyle": now, "label": {"show": False}})
+    return {
+        "symbol": "none",
+        "animation": False,
+        "lineStyle": {"color": _paint("dimension"), "type": "dashed", "width": 1.2},
+        "label": {
+            "color": _paint("text"),
+            "fontSize": _PALE,
+            "position": "insideEndBottom",
+            "textBorderColor": _paint("paper", area=True),
+            "textBorderWidth": 3,
+        },
+        "data": each,
+    }
+
+
+def _bands(chart: Chart) -> dict[str, Any]:
+    length = _length(chart)
+    areas = [
+        [
+            {"xAxis": _place(band.low), "name": band.text if band.high - band.low > _WIDE * length else ""},
+            {"xAxis": _place(band.high)},
+        ]
+        for band in chart.bands
+    ]
+    return {
+        "itemStyle": {"color": _paint("ground", area=True), "opacity": 0.16},
+        "label": {
+            "color": _paint("text"),
+            "fontSize": _PALE,
+            "position": "insideBottom",
+            "overflow": "break",
+        },
+        "data": areas,
+    }
+
+
+def _length(chart: Chart) -> float:
+    """Length of the axis of x, as far as it is known."""
+    ends = [end for end in (chart.x.low, chart.x.high) if end is not None]
+    ends += [float(x) for curve in chart.curves for x in np.asarray(curve.x)[[0, -1]]]
+    return max(ends, default=0.0) - min(ends, default=0.0)
+
+
+def _pairs(x: np.ndarray, y: np.ndarray) -> Iterator[list[float | None]]:
+    """Points of a line, as exact as they are seen."""
+    span = float(np.ptp(x)) if len(x) else 0.0
+    decimals = _DIGITS - math.floor(math.log10(span)) if span > 0 else 12
+    for a, b in zip(x.tolist(), y.tolist(), strict=True):
+        yield [round(a, decimals), _short(b) if math.isfinite(b) else None]
+
+
+def _is_number(*values: float) -> bool:
+    return all(map(math.isfinite, values))
+
+
+def _place(value: float) -> float:
+    """A place on the axis of x, as exact as it is seen with a close-up of that axis."""
+    return float(f"{value:.{2 * _DIGITS}g}")
+
+
+def _short(value: float) -> float:
+    """A number with the digits that are shown."""
+    return float(f"{value:.{_DIGITS}g}")

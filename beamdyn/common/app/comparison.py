@@ -1,0 +1,174 @@
+"""Two designs compared: which inputs and results differ, and the other one's drawing beneath this one's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from typing import TYPE_CHECKING, NamedTuple
+
+from beamdyn.common.app.chart import Chart, ChartCurve
+from beamdyn.common.app.form_entries import Entries
+from beamdyn.common.app.history import differing
+from beamdyn.common.app.input_words import given_or_default, label
+from beamdyn.common.app.screens import KeyResult
+from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.inputs import Input
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.table import Table
+
+_MOST = 60  # differences of results that are listed
+_DASH = (4.0, 2.5)
+
+
+@dataclass(frozen=True)
+class OtherDesign:
+    """A design that the open one is compared with.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    entries : mapping
+        Its entries.
+    """
+
+    name: str
+    entries: Entries
+
+
+class Difference(NamedTuple):
+    """Something that differs: what it is, its value here, and that of the other design."""
+
+    words: str
+    here: str
+    there: str
+
+
+def input_differences(
+    here: Mapping[str, str], there: Mapping[str, str], inputs: Sequence[Input]
+) -> Iterator[Difference]:
+    """Inputs whose texts differ, in their order; a default stands for what is not given."""
+    differ = differing(here, there)
+    known = {entry.path: entry for entry in inputs}
+    for path in (*known, *sorted(differ - {*known})):
+        if path in differ:
+            words = label(known[path]) if path in known else path
+            values = (_value(entries, path, known.get(path)) for entries in (here, there))
+            yield Difference(words, *values)
+
+
+def _value(entries: Mapping[str, str], path: str, entry: Input | None) -> str:
+    text = entries.get(path, "").strip()
+    return text or ("not given" if entry is None else given_or_default(entry, ""))
+
+
+def result_differences(
+    here: Iterable[RenderableType], there: Iterable[RenderableType]
+) -> Iterator[Difference]:
+    """Numbers that differ in tables which both designs have, as they are shown."""
+    for one, other in zip(_tables(here), _tables(there), strict=False):
+        if [c.header for c in one.columns] == [c.header for c in other.columns]:
+            yield from _cells_that_differ(one, other)
+
+
+def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
+    from rich.console import Group
+    from rich.table import Table
+
+    for part in parts:
+        if isinstance(part, Group):
+            yield from _tables(part.renderables)
+        elif isinstance(part, Table):
+            yield part
+
+
+def _cells_that_differ(one: Table, other: Table) -> Iterator[Difference]:
+    """Cells of the same row and column; a row goes by its words and, where it has none, by its number."""
+    theirs = dict(_rows(other))
+    for name, cells in _rows(one):
+        there = theirs.get(name, cells)
+        yield from (Difference(name + head, a, there[head]) for head, a in cells.items() if a != there[head])
+
+
+def _rows(table: Table) -> Iterator[tuple[str, dict[str, str]]]:
+    """What each row is, and its numbers by the heads of their columns: "" of a single one."""
+    heads = [str(column.header) for column in table.columns]
+    words = {head for head, column in zip(heads, table.columns, strict=True) if column.justify == "left"}
+    single = len(heads) - len(words) == 1
+    for number, row in enumerate(zip(*(column.cells for column in table.columns), strict=True), 1):
+        cells = {head: str(cell) for head, cell in zip(heads, row, strict=True)}
+        name = ", ".join(cells[head] for head in heads if head in words - {"unit"} and cells[head])
+        unit = f" [{cells['unit']}]" if cells.get("unit") else ""
+        yield (
+            f"{name or f'row {number}'}{unit}",
+            {"" if single else f", {head}": cells[head] for head in heads if head not in words},
+        )
+
+
+def differences_html(differences: Sequence[Difference], what: str, other: str) -> str:
+    """A table of differences in HTML, the first of many; a sentence where there is none."""
+    if not differences:
+        return f"<p>The {escape(what)} are the same.</p>"
+    rows = "".join(
+        f'<tr><td class="words">{escape(d.words)}</td><td class="number">{escape(d.here)}</td>'
+        f'<td class="number">{escape(d.there)}</td></tr>'
+        for d in differences[:_MOST]
+    )
+    more = len(differences) - _MOST
+    said = f"<p>{more} more differ.</p>" if more > 0 else ""
+    return (
+        f'<div class="scrolls"><table><thead><tr><th class="words">{escape(what)}</th>'
+        f'<th class="number">here</th><th class="number">{escape(other)}</th></tr></thead>'
+        f"<tbody>{rows}</tbody></table></div>{said}"
+    )
+
+
+def headline_html(results: Sequence[KeyResult], other: Sequence[KeyResult] = (), name: str = "") -> str:
+    """The most important results in HTML, with those of another design beside them."""
+    theirs = dict(other)
+    parts = []
+    for words, value in results:
+        said = f"{name}: {theirs[words]}" if words in theirs and theirs[words] != value else ""
+        beside = f'<span class="other">{escape(said)}</span>' if said else ""
+        parts.append(f"<div><dt>{escape(words)}</dt><dd>{escape(value)}{beside}</dd></div>")
+    return f'<dl class="headline">{"".join(parts)}</dl>' if parts else ""
+
+
+def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str) -> Sequence[Chart]:
+    """Charts with the curves of another design's, pale and dashed, where these have the same axes."""
+    if [chart.x.title + chart.y.title for chart in charts] != [c.x.title + c.y.title for c in other]:
+        return charts
+    return [
+        replace(
+            chart, curves=[*chart.curves, *(_pale(curve, name) for curve in there.curves if not curve.pale)]
+        )
+        for chart, there in zip(charts, other, strict=True)
+    ]
+
+
+def _pale(curve: ChartCurve, name: str) -> ChartCurve:
+    return replace(curve, name=f"{curve.name}, {name[:30]}", pale=True, dashed=True, points=False)
+
+
+def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
+    """Drawings with the outlines of another design's beneath them."""
+    if [len(row) for row in rows] != [len(row) for row in other]:
+        return rows
+    return [
+        [_with_ghost(*pair, name) for pair in zip(row, there, strict=True)]
+        for row, there in zip(rows, other, strict=True)
+    ]
+
+
+def _with_ghost(drawing: Drawing, other: Drawing, name: str) -> Drawing:
+    ghosts = [_ghost(s) for s in other.shapes if isinstance(s, Outline | Disc)]
+    key = {**drawing.key, "other": name[:40]}
+    return replace(drawing, shapes=[*ghosts, *drawing.shapes], key=key)
+
+
+def _ghost(shape: Outline | Disc) -> DrawnShape:
+    return replace(shape, role="other", width=max(shape.width, 1.0), dash=_DASH, filled=False)

@@ -1,0 +1,80 @@
+"""The examples that come with the packages, as designs to begin with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import shorten
+
+from beamdyn.common.app.screens import Document, Program
+from beamdyn.common.edge.config import ConfigError
+
+_LONGEST = 110  # characters of a title
+_SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # its end
+
+
+@dataclass(frozen=True)
+class Example:
+    """An example of a program.
+
+    Parameters
+    ----------
+    name : str
+        Name of its file, without the suffix.
+    title : str
+        What it is, in a sentence.
+    document : Document
+        The kind of file.
+    text : str
+        The file.
+    """
+
+    name: str
+    title: str
+    document: Document
+    text: str
+
+
+_KNOWN: dict[str, tuple[Example, ...]] = {}  # by program: it takes a second to check them
+
+
+def examples_of(program: Program) -> tuple[Example, ...]:
+    """The examples that one of a program's documents accepts, by the order of their names."""
+    if program.name not in _KNOWN:
+        _KNOWN[program.name] = tuple(_accepted(program))
+    return _KNOWN[program.name]
+
+
+def _accepted(program: Program) -> Iterator[Example]:
+    for file in sorted(_texts(), key=lambda file: file.name):
+        text, name = file.read_text(encoding="utf-8"), file.name.removesuffix(".toml")
+        for document in program.documents:
+            try:
+                document.opened(text, file.name)
+            except ConfigError:
+                continue
+            yield Example(name, _title(text, name), document, text)
+            break
+
+
+def _texts() -> Iterator[Path]:
+    """The TOML files among the examples: those of the package, or of the checkout that it stands in."""
+    packed = Path(__file__).with_name("shipped_examples")
+    folder = packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
+    for place in (folder, folder / "calipers"):
+        if place.is_dir():
+            yield from (file for file in place.iterdir() if file.name.endswith(".toml"))
+
+
+def _title(text: str, name: str) -> str:
+    """The first sentence of the comment at the head of a file; its name where there is none."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.lstrip("# "))
+    words = _SENTENCE.split(" ".join(lines))[0]
+    sentence = words.partition(": ")[0] if len(words) > _LONGEST else words
+    return shorten(sentence, _LONGEST, placeholder=" ...").rstrip(" .:") or name

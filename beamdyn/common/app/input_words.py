@@ -1,0 +1,67 @@
+"""What the form says of an input: its name, meaning, choices and default, in words."""
+
+from __future__ import annotations
+
+import math
+
+from beamdyn.common.app.form_entries import toml_value
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.units import show
+
+NOT_GIVEN = "not given"
+
+
+def label(entry: Input) -> str:
+    """Name and symbol of an input."""
+    symbol = entry.quantity.symbol
+    return f"{name_words(entry)}, {symbol}" if symbol and symbol != entry.name else name_words(entry)
+
+
+def help_of(entry: Input) -> str:
+    """Meaning, unit and bounds, and whether it may be left out."""
+    return entry.help if entry.required else f"{entry.help}; not required"
+
+
+def given_or_default(entry: Input, text: str) -> str:
+    """What is given for an input, or its default in brackets."""
+    default = default_words(entry)
+    return text.strip() or (default if default == NOT_GIVEN else f"({default})")
+
+
+def name_words(entry: Input) -> str:
+    """Its name, after that of the tables within its table."""
+    return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
+
+
+def table_of(path: str) -> str:
+    """The table that an input stands in; "" outside any."""
+    return path.partition(".")[0] if "." in path else ""
+
+
+def options_of(entry: Input) -> tuple[str, ...]:
+    """The words or numbers among which an input is chosen; none where it is typed."""
+    if entry.kind is bool:
+        return ("true", "false")
+    few = all(isinstance(choice, str | int) for choice in entry.choices)
+    return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
+
+
+def default_words(entry: Input) -> str:
+    """The default value, as a user would type it."""
+    if entry.default is None or entry.default in ("", [], ()):
+        return NOT_GIVEN
+    value, unit = entry.default, entry.quantity.unit
+    if value == math.inf and entry.quantity.infinite:
+        return entry.quantity.infinite
+    if isinstance(value, tuple):
+        return toml_value([_said(number, unit) for number in value])
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return show(value).strip('"')
+    return _said(value, unit)
+
+
+def _said(number: float, unit: str) -> str:
+    """A number with its unit; short lengths in millimetres."""
+    if unit == "m" and abs(number) < 1:
+        number, unit = 1e3 * number, "mm"
+    return f"{number:.6g} {unit}".rstrip()

@@ -1,0 +1,172 @@
+"""A button that plays a slider, such as the stroke of a brake or the time of a motion."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from nicegui import background_tasks, ui
+
+STYLE = """
+.stroke { flex-wrap: nowrap; align-items: center; gap: 0; }
+.stroke .player { order: -1; margin-bottom: 1.5rem; }
+"""
+_LEAST = 0.03  # between two pictures [s]
+_LONGEST = 0.2  # what a picture that takes longer counts as: what is played goes on, and does not jump [s]
+_STILL = 1.0  # how long each picture stays for those who want no motion [s]
+_STILLS = 4  # pictures for them on the way from one end to the other
+_PATIENCE = 3.0  # a page that paints nothing for so long is not looked at [s]
+
+# What has been sent is there when the script runs, and painted before the second of two frames.
+_PAINTED = """return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {{
+  const seen = getHtmlElement({id})?.offsetParent;
+  done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");
+}})))"""
+
+
+class Course(Protocol):
+    """How the place of a slider follows from the time that it has been played [s]."""
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes from one end to the other [s]."""
+        ...
+
+    def place(self, elapsed: float) -> float:
+        """The place after a time [s]."""
+        ...
+
+    def elapsed(self, place: float) -> float:
+        """A time at which it is at a place [s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class BackAndForth:
+    """From 0 to the last place and back again, slowly at both ends; each way takes so many seconds."""
+
+    last: float
+    seconds: float = 2.5
+
+    def place(self, elapsed: float) -> float:
+        """The place after a time [s]."""
+        return self.last * (1 - math.cos(math.pi * elapsed / self.seconds)) / 2
+
+    def elapsed(self, place: float) -> float:
+        """When it is at a place on its way there [s]."""
+        if place >= self.last:
+            return self.seconds
+        return self.seconds / math.pi * math.acos(1 - 2 * max(place, 0.0) / self.last)
+
+
+@dataclass(frozen=True)
+class Onward:
+    """From 0 to the last place at one pace, then from 0 again; each time it takes so many seconds."""
+
+    last: float
+    seconds: float = 10.0
+
+    def place(self, elapsed: float) -> float:
+        """The place after a time [s]."""
+        return self.last * (elapsed / self.seconds % 1.0)
+
+    def elapsed(self, place: float) -> float:
+        """When it is at a place [s]."""
+        return self.seconds * place / self.last
+
+
+class Player:
+    """A button before a slider, which plays it and pauses it; so does the space bar on the slider.
+
+    The next place is taken when the page has painted the last one, so that pictures never pile up.  Moving
+    the slider by hand pauses it, and so does a page that is not looked at.  Those who want less motion, as
+    their browser says, are shown stills.
+
+    Parameters
+    ----------
+    slider : ui.slider
+        The slider; whoever draws follows its changes.
+    label : str
+        What is played, such as "stroke".
+    course : Course
+        How the place follows from the time.
+    rested : callable
+        Called when it has been paused.
+    """
+
+    def __init__(
+        self, slider: Any, label: str, course: Course, rested: Callable[[], object] = lambda: None
+    ) -> None:
+        self._slider, self._label, self._course, self._rested = slider, label, course, rested
+        self._task: asyncio.Task[None] | None = None
+        self._sets = False
+        self._button: Any = ui.button(on_click=self.toggle).props("flat round dense").classes("player")
+        slider.on("keydown.space.prevent", self.toggle)
+        slider.on_value_change(self._by_hand)
+        self._show()
+
+    @property
+    def plays(self) -> bool:
+        """Whether it plays."""
+        return self._task is not None
+
+    def toggle(self) -> None:
+        """Play; or pause."""
+        if self.plays:
+            self.pause()
+        else:
+            self._task = background_tasks.create(self._play())
+            self._show()
+
+    def pause(self) -> None:
+        """Stay at the present place."""
+        task, self._task = self._task, None
+        if task is not None:
+            self._show()
+            self._rested()
+
+    def _by_hand(self) -> None:
+        if not self._sets:
+            self.pause()
+
+    def _show(self) -> None:
+        words = f"{'pause' if self.plays else 'play'} {self._label}"
+        self._button.props["icon"] = "pause" if self.plays else "play_arrow"
+        self._button.props["aria-label"] = self._button.props["title"] = words
+        self._button.update()
+
+    async def _play(self) -> None:
+        task = asyncio.current_task()
+        elapsed, last = self._course.elapsed(self._slider.value), time.monotonic()
+        while self._task is task and not self._slider.is_deleted:
+            seen = await self._painted()
+            if self._task is not task:
+                return
+            if seen == "away":
+                return self.pause()
+            still = seen == "still"
+            await asyncio.sleep(max((_STILL if still else _LEAST) - (time.monotonic() - last), 0.0))
+            now = time.monotonic()
+            elapsed += self._course.seconds / _STILLS if still else min(now - last, _LONGEST)
+            last = now
+            if self._task is task:
+                self._put(self._course.place(elapsed))
+
+    def _put(self, place: float) -> None:
+        self._sets = True
+        try:
+            self._slider.set_value(place)
+        finally:
+            self._sets = False
+
+    async def _painted(self) -> str:
+        """Wait until the page has painted what it was sent; say how it is looked at."""
+        code = _PAINTED.format(id=self._button.id)
+        try:
+            return str(await self._button.client.run_javascript(code, timeout=_PATIENCE))
+        except TimeoutError:
+            return "away"

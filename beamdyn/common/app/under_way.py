@@ -1,0 +1,97 @@
+"""What a page has asked for and waits for: one computation at a time, and of those that wait the newest."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from time import monotonic
+from typing import Any
+
+from nicegui import background_tasks
+
+SOON = 0.3  # after which the page says that it computes [s]
+_PATIENCE = 2.0  # after which what is no longer wanted is ended [s]; to start another process costs one
+
+
+class UnderWay:
+    """The computation that is under way, and what is wanted next.
+
+    Parameters
+    ----------
+    settle : callable
+        Called with the future of each that is done, and whether nothing newer is wanted.
+    tell : callable
+        Called when `slow` or `busy` has changed.
+
+    Attributes
+    ----------
+    slow : bool
+        Whether something has been under way for so long that the page should say so.
+    """
+
+    def __init__(
+        self, settle: Callable[[asyncio.Future[Any], bool], object], tell: Callable[[], object]
+    ) -> None:
+        self.slow = False
+        self._settle, self._tell = settle, tell
+        self._wanted: Callable[[], asyncio.Future[Any]] | None = None
+        self._future: asyncio.Future[Any] | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is under way."""
+        return self._task is not None
+
+    def want(self, start: Callable[[], asyncio.Future[Any]]) -> None:
+        """Start something, or have it started after what is under way, in place of what waited for that."""
+        self._wanted = start
+        if self._task is None and not self._next():
+            self._task = background_tasks.create(self._follow())
+
+    def cancel(self) -> None:
+        """End what is under way; nothing else starts."""
+        self._wanted = None
+        if self._future is not None:
+            self._future.cancel()
+
+    async def done(self) -> None:
+        """Wait until nothing is under way."""
+        if self._task is not None:
+            await asyncio.wait([self._task])
+
+    def _next(self) -> bool:
+        """Start what is wanted; whether that is done already."""
+        assert self._wanted is not None
+        start, self._wanted = self._wanted, None
+        self._future = start()
+        if at_once := self._future.done():
+            self._settle(self._future, True)
+        return at_once
+
+    async def _follow(self) -> None:
+        try:
+            future = await self._wait()
+            while self._wanted is not None:
+                if not future.cancelled():
+                    self._settle(future, False)
+                if self._next():
+                    return
+                future = await self._wait()
+        finally:
+            self._task, self.slow = None, False
+        self._settle(future, True)
+
+    async def _wait(self) -> asyncio.Future[Any]:
+        """Wait for what is under way, and end it where it takes long and is no longer wanted."""
+        future, start = self._future, monotonic()
+        assert future is not None
+        await asyncio.wait([future], timeout=SOON)
+        while not future.done():
+            if not self.slow:
+                self.slow = True
+                self._tell()
+            if self._wanted is not None and monotonic() - start > _PATIENCE:
+                future.cancel()
+            await asyncio.wait([future], timeout=SOON)
+        return future

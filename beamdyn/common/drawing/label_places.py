@@ -1,0 +1,362 @@
+"""Free places for labels: none covers another, a sign or the end of a line, and none leaves the frame.
+
+Each label has candidates around its anchors.  What is drawn is entered into a grid of small cells, whose sums
+over rectangles say at once how much of it a candidate would cover.  Labels choose in turn, the most
+important first, the cheapest candidate that is free; one that finds none displaces others if these find
+another place.  Nothing is random: the same drawing gives the same places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+_CELL = 2.5  # of the grid [pt]
+_APART = 2.0  # least distance of two texts [pt]
+_GAP = 5.0  # from an anchor to its label [pt]
+FAR = 18.0  # from here on a line leads from the label to its anchor [pt]
+_STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])  # more than the gap [pt]
+_TURNS = 12  # directions around an anchor
+_TURNED = 9.0  # cost of standing at a right angle to where a label should stand [pt]
+_NEXT = 5.0  # cost of the next anchor [pt]
+_COVERED = 120.0  # cost of standing on lines over the whole of its area [pt]
+_FIRST = 40  # candidates that are looked at before all others
+_TRIED = 30  # places of others that are tried
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """A label that wants a place, on paper: y points down, all lengths in [pt].
+
+    Parameters
+    ----------
+    size : tuple of float
+        Width and height of its text.
+    anchors : ndarray, shape (k, 2)
+        Points at one of which it may stand, the best first.
+    towards : tuple of float
+        Direction in which it should stand from its anchor; (0, 0) on it.
+    priority : int
+        Labels of higher priority choose first.
+    """
+
+    size: tuple[float, float]
+    anchors: np.ndarray
+    towards: tuple[float, float] = (0.0, 0.0)
+    priority: int = 0
+
+
+class Place(NamedTuple):
+    """Where a label stands: centre (2,), its anchor (2,), distance to it, and cost [pt]."""
+
+    centre: np.ndarray
+    anchor: np.ndarray
+    distance: float
+    cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What is drawn, on paper: y points down, all lengths in [pt].
+
+    Parameters
+    ----------
+    frame : tuple of float
+        Left, top, right, bottom: within these labels stand.
+    lines : ndarray, shape (n, 4)
+        Segments x, y, x, y that labels should not cover.
+    points : ndarray, shape (m, 2)
+        Signs and ends of lines that labels must not cover.
+    reach : float
+        How far such a sign reaches.
+    """
+
+    frame: tuple[float, float, float, float]
+    lines: np.ndarray
+    points: np.ndarray
+    reach: float = 3.5
+
+    @cached_property
+    def _covered(self) -> np.ndarray:
+        """Sums from the upper left corner over cells with lines, shape (rows + 1, columns + 1)."""
+        return self._summed(_along(self.lines), 1)
+
+    @cached_property
+    def _forbidden(self) -> np.ndarray:
+        """Sums over cells with signs."""
+        side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
+        dx, dy = (d.ravel() for d in np.meshgrid(side, side))
+        around = self.points[:, None] + np.stack([dx, dy], axis=-1)[np.hypot(dx, dy) <= self.reach + 0.5]
+        return self._summed(around.reshape(-1, 2), 1)
+
+    def _summed(self, points: np.ndarray, weight: int) -> np.ndarray:
+        left, top, right, bottom = self.frame
+        shape = (int((bottom - top) / _CELL) + 2, int((right - left) / _CELL) + 2)
+        cells = np.zeros((shape[0] + 1, shape[1] + 1), dtype=np.int32)
+        column, row = np.floor((points - (left, top)) / _CELL).astype(int).T
+        inside = (column >= 0) & (row >= 0) & (column < shape[1]) & (row < shape[0])
+        cells[row[inside] + 1, column[inside] + 1] = weight
+        return cells.cumsum(axis=0, out=cells).cumsum(axis=1, out=cells)
+
+    def judge(self, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Part of boxes (k, 4) that lines cross, and whether they lie within the frame and cover no sign."""
+        x0, y0, x1, y1 = boxes.T
+        corners = self._corners(boxes)
+        lines = _difference(self._covered, corners)
+        return lines * _CELL**2 / ((x1 - x0) * (y1 - y0)), self._is_free(boxes, corners)
+
+    def is_free(self, boxes: np.ndarray) -> np.ndarray:
+        """Whether boxes (k, 4) lie within the frame and cover no sign."""
+        return self._is_free(boxes, self._corners(boxes))
+
+    def _is_free(self, boxes: np.ndarray, corners: tuple[np.ndarray, ...]) -> np.ndarray:
+        left, top, right, bottom = self.frame
+        x0, y0, x1, y1 = boxes.T
+        inside = (x0 >= left) & (y0 >= top) & (x1 <= right) & (y1 <= bottom)
+        return inside & (_difference(self._forbidden, corners) == 0)
+
+    def _corners(self, boxes: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Indices of the sums at the corners of boxes."""
+        left, top, right, bottom = self.frame
+        x0, y0, x1, y1 = boxes.T
+        columns, rows = (int((size) / _CELL) + 3 for size in (right - left, bottom - top))
+        c0, c1 = (_cells(x - left, columns - 1, add) for x, add in ((x0, 0), (x1, 1)))
+        r0, r1 = (_cells(y - top, rows - 1, add) * columns for y, add in ((y0, 0), (y1, 1)))
+        return r1 + c1, r0 + c1, r1 + c0, r0 + c0
+
+
+def _cells(lengths: np.ndarray, last: int, add: int) -> np.ndarray:
+    """Indices of cells at lengths from the edge of a grid."""
+    return np.clip((lengths / _CELL).astype(np.intp) + add, 0, last)
+
+
+def _difference(sums: np.ndarray, corners: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Sums over rectangles, from the sums at their corners."""
+    all_of, above, beside, both = (sums.ravel().take(corner) for corner in corners)
+    return all_of - above - beside + both
+
+
+def _along(lines: np.ndarray) -> np.ndarray:
+    """Points along segments, no farther apart than a cell."""
+    start, way = lines[:, :2], lines[:, 2:] - lines[:, :2]
+    counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1
+    which = np.repeat(np.arange(len(lines)), counts)
+    step = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    part = step / np.maximum(counts[which] - 1, 1)
+    return start[which] + part[:, None] * way[which]
+
+
+@dataclass(eq=False)
+class _Candidates:
+    """Candidates of a label, the cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,)."""
+
+    boxes: np.ndarray
+    anchors: np.ndarray
+    distances: np.ndarray
+    costs: np.ndarray
+
+    @cached_property
+    def leaders(self) -> np.ndarray:
+        """Lines from the boxes to their anchors, shape (k, 4)."""
+        nearest = np.clip(self.anchors, self.boxes[:, :2], self.boxes[:, 2:])
+        return np.concatenate([nearest, self.anchors], axis=1)
+
+    def place(self, i: int) -> Place:
+        box = self.boxes[i]
+        return Place((box[:2] + box[2:]) / 2, self.anchors[i], float(self.distances[i]), float(self.costs[i]))
+
+
+_ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
+_WAYS = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=-1)
+_SPREAD = 1 / np.abs(_WAYS).clip(1e-9)
+_CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])  # of a box, at the anchor
+_AWAY = np.concatenate([_WAYS, _CORNERS / np.sqrt(2.0)])
+_BESIDE = np.repeat(
+    [0.0, 12.0], [_TURNS, len(_CORNERS)]
+)  # cost of standing beside where it should stand on [pt]
+
+
+def _candidates(wishes: Sequence[Wish], ground: Ground) -> list[_Candidates]:
+    """Candidates of all labels: around each anchor by direction and distance."""
+    counts = [len(wish.anchors) for wish in wishes]
+    anchors = np.concatenate([wish.anchors for wish in wishes])
+    half = np.repeat([wish.size for wish in wishes], counts, axis=0) / 2
+    wanted = np.repeat(np.array([wish.towards for wish in wishes], dtype=float), counts, axis=0)
+    on_it: np.ndarray = np.hypot(*wanted.T) == 0
+    reach = (half[:, None] * _SPREAD).min(axis=2)  # from the centre to the edge of the box, (anchors, turns)
+    out = np.where(on_it[:, None, None], _STEPS[:, None], _GAP + _STEPS[:, None] + reach[:, None])
+    distances = np.where(on_it[:, None, None], np.maximum(out - reach[:, None], 0.0), _STEPS[:, None])
+    aside = np.broadcast_to(_STEPS[:, None], (len(anchors), len(_STEPS), len(_CORNERS)))
+    distances = np.concatenate([distances, aside], axis=2)
+    corners = (half[:, None, None] + (_GAP + _STEPS[:, None, None]) / np.sqrt(2.0)) * _CORNERS
+    offsets = np.concatenate([out[..., None] * _WAYS, corners], axis=2)
+    wanted[~on_it] /= np.hypot(*wanted[~on_it].T)[:, None]
+    turned = np.where(on_it[:, None], _BESIDE, _TURNED * (1 - wanted @ _AWAY.T))
+    nth = np.concatenate([np.arange(count) for count in counts])
+    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).reshape(len(anchors), -1)
+    centres = (anchors[:, None, None] + offsets).reshape(len(anchors), -1, 2)
+    boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2)
+    covered, free = ground.judge(boxes.reshape(-1, 4))
+    costs = costs + _COVERED * covered.reshape(costs.shape)
+    ends = np.cumsum(counts)
+    made = []
+    for start, end in zip(ends - counts, ends, strict=True):
+        part = slice(start, end)
+        which = np.flatnonzero(free.reshape(costs.shape)[part])
+        cost = costs[part].ravel()[which]
+        order = np.argsort(cost, kind="stable")
+        which, of_anchor = which[order], which[order] // costs.shape[1] + start
+        made.append(
+            _Candidates(
+                boxes[part].reshape(-1, 4)[which],
+                anchors[of_anchor],
+                distances[part].ravel()[which],
+                cost[order],
+            )
+        )
+    return made
+
+
+class _Chosen:
+    """Labels that have a place: which candidate each has, by its index."""
+
+    def __init__(self, candidates: Sequence[_Candidates]) -> None:
+        self._of = candidates
+        self._boxes = np.full((len(candidates), 4), np.nan)
+        self._leaders = np.full((len(candidates), 4), np.nan)
+        self.choice: dict[int, int] = {}
+
+    def take(self, label: int, candidate: int) -> None:
+        of = self._of[label]
+        self.choice[label] = candidate
+        self._boxes[label] = of.boxes[candidate] + (-_APART, -_APART, _APART, _APART)
+        far = of.distances[candidate] > FAR
+        self._leaders[label] = of.leaders[candidate] if far else np.nan
+
+    def leave(self, label: int) -> None:
+        del self.choice[label]
+        self._boxes[label] = self._leaders[label] = np.nan
+
+    def in_the_way(self, label: int, count: int | None) -> np.ndarray:
+        """Labels (n,) with which the first candidates (k,) of a label collide, shape (k, n)."""
+        of = self._of[label]
+        boxes = of.boxes[:count]
+        found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
+        others = np.array([other for other in self.choice if other != label], dtype=int)
+        found[:, others] = _overlap(boxes, self._boxes[others])
+        led = others[np.isfinite(self._leaders[others, 0])]
+        if len(led):
+            found[:, led] |= _crossing(self._leaders[led], boxes).T
+        far = np.flatnonzero(of.distances[:count] > FAR)
+        if len(far):
+            found[np.ix_(far, others)] |= _crossing(of.leaders[far], self._boxes[others])
+        return found
+
+    def best(self, label: int, before: int | None = None) -> int | None:
+        """The cheapest candidate of a label that is free, among those before one."""
+        for count in (_FIRST, None) if before is None else (before,):
+            free = ~self.in_the_way(label, count).any(axis=1)
+            if free.any():
+                return int(free.argmax())
+        return None
+
+
+def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Whether boxes (k, 4) and others (n, 4) overlap, shape (k, n)."""
+    x0, y0, x1, y1 = boxes.T[..., None]
+    left, top, right, bottom = others.T[:, None]
+    return (x0 < right) & (left < x1) & (y0 < bottom) & (top < y1)
+
+
+def _crossing(segments: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """Whether segments (k, 4) pass through boxes (n, 4), shape (k, n)."""
+    ax, ay, bx, by = segments.T[..., None]
+    left, top, right, bottom = boxes.T[:, None]
+    across, down = (np.where(way == 0, 1e-12, way) for way in (bx - ax, by - ay))
+    one, two = (left - ax) / across, (right - ax) / across
+    three, four = (top - ay) / down, (bottom - ay) / down
+    enter = np.maximum(np.maximum(np.minimum(one, two), np.minimum(three, four)), 0.0)
+    leave = np.minimum(np.minimum(np.maximum(one, two), np.maximum(three, four)), 1.0)
+    return enter < leave
+
+
+def place_labels(wishes: Sequence[Wish], ground: Ground) -> list[Place | None]:
+    """Find free places for labels; None for a label for which there is none.
+
+    Parameters
+    ----------
+    wishes : sequence of Wish
+        The labels.
+    ground : Ground
+        What is drawn.
+    """
+    if not wishes:
+        return []
+    candidates = _candidates(wishes, ground)
+    chosen = _Chosen(candidates)
+    order = sorted(range(len(wishes)), key=lambda i: (-wishes[i].priority, len(candidates[i].costs), i))
+    for label in order:
+        if (best := chosen.best(label)) is not None:
+            chosen.take(label, best)
+        else:
+            _displace(label, chosen, candidates)
+    for label in order:  # those before it have moved, perhaps
+        now = chosen.choice.get(label, 0)
+        if now and (best := chosen.best(label, now)) is not None:
+            chosen.take(label, best)
+    return [candidates[i].place(chosen.choice[i]) if i in chosen.choice else None for i in range(len(wishes))]
+
+
+def keep_places(
+    before: Sequence[Place | None], wishes: Sequence[Wish], ground: Ground
+) -> list[Place | None] | None:
+    """Places beside the anchors as before, while these move; None where one is not free any more.
+
+    Parameters
+    ----------
+    before : sequence of Place
+        Where the labels stood; with one that had no place, all are to be found anew.
+    wishes : sequence of Wish
+        The same labels now.
+    ground : Ground
+        What is drawn now.
+    """
+    pairs = zip(before, wishes, strict=True)
+    places = [_beside(place, wish) for place, wish in pairs if place is not None]
+    if not places or len(places) < len(wishes):
+        return None if wishes else []
+    half = np.array([wish.size for wish in wishes]) / 2
+    centres, anchors = (np.array([getattr(p, key) for p in places]) for key in ("centre", "anchor"))
+    boxes = np.hstack([centres - half, centres + half])
+    apart = boxes + _APART * np.array([-1, -1, 1, 1])
+    far = np.array([place.distance > FAR for place in places])
+    leaders = np.hstack([np.clip(anchors, boxes[:, :2], boxes[:, 2:]), anchors])[far]
+    meets = _overlap(boxes, apart)
+    meets[far] |= _crossing(leaders, apart)
+    np.fill_diagonal(meets, False)
+    return [*places] if ground.is_free(boxes).all() and not meets.any() else None
+
+
+def _beside(place: Place, wish: Wish) -> Place:
+    """A place as far from the anchor that is now nearest to its own."""
+    anchor = wish.anchors[np.hypot(*(wish.anchors - place.anchor).T).argmin()]
+    return place._replace(centre=anchor + place.centre - place.anchor, anchor=anchor)
+
+
+def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:
+    """Take the place of another label that finds a new one; none if there is no such label."""
+    found = chosen.in_the_way(label, None)
+    for candidate in np.flatnonzero(found.sum(axis=1) == 1)[:_TRIED]:
+        other = int(found[candidate].argmax())
+        before = chosen.choice[other]
+        chosen.leave(other)
+        chosen.take(label, int(candidate))
+        if (best := chosen.best(other)) is not None:
+            chosen.take(other, best)
+            return
+        chosen.leave(label)
+        chosen.take(other, before)

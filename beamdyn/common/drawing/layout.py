@@ -1,0 +1,417 @@
+"""A drawing on paper: its scale and place, and every text with its place; lengths in [pt], y downwards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beamdyn.common.drawing.label_places import FAR, Ground, Place, Wish, keep_places, place_labels
+from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, points_of_shape
+from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size, wrapped
+
+Frame = tuple[float, float, float, float]  # left, top, right, bottom
+_HEADING = 11.0  # size of the title's letters
+_SMALL = 8.5  # of the key's
+_EDGE = 4.0  # between the frame and texts
+_MARGINS = (14.0, 36.0, 60.0, 90.0)  # between the frame and what is drawn, tried one by one
+_CROWDED = 30.0  # a label farther than this from its point asks for a larger margin
+_SWATCH, _SPACE = 16.0, 14.0  # length of a line in the key, and what follows its text
+_BAR = 0.22  # longest scale bar over the width of the frame
+_SMALL_DISC = 30.0  # radius up to which labels should not stand on it
+_PADDING = (4.0, 1.0)  # around the measured text: letters are drawn with hints, and slanted
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Where the machine's coordinates are on paper.
+
+    Parameters
+    ----------
+    scale : float
+        Points of paper in a unit of the drawing.
+    left, top : float
+        Where the origin is on paper.
+    """
+
+    scale: float
+    left: float
+    top: float
+
+    def to_paper(self, points: Any) -> np.ndarray:
+        """Points (..., 2) on paper."""
+        return np.asarray(points, dtype=float) * (self.scale, -self.scale) + (self.left, self.top)
+
+    def from_paper(self, places: Any) -> np.ndarray:
+        """Points (..., 2) of the machine."""
+        return (np.asarray(places, dtype=float) - (self.left, self.top)) / (self.scale, -self.scale)
+
+    @classmethod
+    def of(cls, low: np.ndarray, high: np.ndarray, frame: Frame, margin: float) -> Fit:
+        """The largest scale at which a rectangle of the machine lies within a frame, in its middle."""
+        left, top, right, bottom = frame
+        room = np.array([right - left, bottom - top])
+        margin = min(margin, 0.3 * float(room.min()))
+        size = np.maximum(high - low, 1e-9 * float(np.abs([low, high]).max()) + 1e-300)
+        scale = float(np.min((room - 2 * margin) / size))
+        middle = (np.asarray(low) + high) / 2
+        return cls(scale, (left + right) / 2 - scale * middle[0], (top + bottom) / 2 + scale * middle[1])
+
+
+class Text(NamedTuple):
+    """A text with its place: centre, width and height of its box, lines, symbol, role, size of letters."""
+
+    centre: np.ndarray
+    size: tuple[float, float]
+    lines: tuple[str, ...]
+    symbol: str
+    role: str
+    letters: float
+
+    @property
+    def box(self) -> np.ndarray:
+        """Left, top, right, bottom."""
+        half = np.array(self.size) / 2
+        return np.concatenate([self.centre - half, self.centre + half])
+
+    @property
+    def baselines(self) -> list[float]:
+        """Height of each line."""
+        height = self.letters * LINE_HEIGHT
+        first = float(self.centre[1]) - height * len(self.lines) / 2 + 0.5 * height + 0.36 * self.letters
+        return [first + height * i for i in range(len(self.lines))]
+
+
+class Rule(NamedTuple):
+    """A straight line on paper: its ends (2, 2), role, width."""
+
+    ends: np.ndarray
+    role: str
+    width: float
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A drawing with a place for everything.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        The drawing.
+    frame : tuple of float
+        Left, top, right, bottom.
+    fit : Fit
+        Where the machine's coordinates are.
+    texts : tuple of Text
+        All texts.
+    rules : tuple of Rule
+        Lines from labels to their points, of the key and of scales.
+    numbered : tuple of str
+        Labels without a free place: they have a number, and stand in a list.
+    places : tuple
+        Of the labels, None for one without.
+    """
+
+    drawing: Drawing
+    frame: Frame
+    fit: Fit
+    texts: tuple[Text, ...]
+    rules: tuple[Rule, ...]
+    numbered: tuple[str, ...] = ()
+    places: tuple[Place | None, ...] = ()
+
+
+def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
+    """Find a place for everything in a drawing.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        The drawing.
+    frame : tuple of float
+        Left, top, right, bottom.
+    fit : Fit, optional
+        Where its coordinates are; by what is drawn if not given.
+    """
+    chosen, places = min(_tries(drawing, _inner(drawing, frame), fit), key=lambda found: _trouble(found[1]))
+    return _composed(drawing, frame, chosen, places, fit)
+
+
+def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
+    """Lay out a drawing that has changed a little: coordinates stay, and labels beside what they name.
+
+    Only where one of them would cover another, a sign or the frame are places found anew.
+    """
+    if len(before.places) == len(drawing.labels):
+        wishes = [_wish(label, before.fit) for label in drawing.labels]
+        ground = _ground(drawing, _inner(drawing, frame), before.fit)
+        if (kept := keep_places(before.places, wishes, ground)) is not None:
+            return _composed(drawing, frame, before.fit, kept, before.fit)
+    return arrange(drawing, frame, before.fit)
+
+
+def _inner(drawing: Drawing, frame: Frame) -> Frame:
+    """What title and key leave of a frame."""
+    left, top, right, bottom = frame
+    below = top + heading(drawing.title, right - left, bottom - top).height
+    return (left, below, right, bottom - _key_height(drawing, frame))
+
+
+def _composed(
+    drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
+) -> Layout:
+    """The layout with these places of the labels."""
+    inner = _inner(drawing, frame)
+    numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
+    key_texts, key_rules = _key(drawing, frame, fit, inner[3])
+    above = _heading(drawing, frame)
+    shown = (*above, *texts, *key_texts), (*rules, *key_rules)
+    return Layout(drawing, frame, fit, *shown, numbered, tuple(places))
+
+
+def _tries(drawing: Drawing, inner: Frame, fit: Fit | None) -> Iterator[tuple[Fit, list[Place | None]]]:
+    """Places of the labels with growing margins, until none stands far from its point."""
+    low, high = drawing.extent()
+    for margin in _MARGINS[1:] if drawing.points else _MARGINS:  # points need room to be moved outwards
+        found = fit or Fit.of(low, high, inner, margin)
+        places = place_labels(
+            [_wish(label, found) for label in drawing.labels], _ground(drawing, inner, found)
+        )
+        yield found, places
+        if fit is not None or _trouble(places) == 0:
+            return
+
+
+def _trouble(places: Sequence[Place | None]) -> float:
+    """How much labels lack a place near their points."""
+    return sum(1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places)
+
+
+def _wish(label: Label, fit: Fit) -> Wish:
+    width, height = text_size(label.text, label.size, label.symbol)
+    (x, y), anchors = label.towards, fit.to_paper(np.reshape(label.anchors, (-1, 2)))
+    return Wish((width + _PADDING[0], height + _PADDING[1]), anchors, (x, -y), label.priority)
+
+
+def _ground(drawing: Drawing, inner: Frame, fit: Fit) -> Ground:
+    """What labels should not and must not cover."""
+    segments, points = [np.empty((0, 4))], [np.empty((0, 2))]
+    for shape in drawing.shapes:
+        along = fit.to_paper(points_of_shape(shape))
+        if isinstance(shape, Symbol):
+            points.append(along + _marks(shape))
+            continue
+        if isinstance(shape, Disc) and shape.filled:
+            segments.append(_chords(shape, fit))
+        closed = isinstance(shape, Outline) and shape.closed
+        pairs = np.vstack([along, along[:1]]) if closed else along
+        lines = np.concatenate([pairs[:-1], pairs[1:]], axis=1)
+        segments.append(lines[np.isfinite(lines).all(axis=1)])
+        whole = along[np.isfinite(along).all(axis=1)]
+        if len(whole) and not closed and not np.array_equal(whole[0], whole[-1]):
+            points.append(whole[[0, -1]])
+    left, top, right, bottom = inner
+    within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
+    return Ground(within, _clipped(np.vstack(segments), inner), np.vstack(points))
+
+
+def _marks(sign: Symbol) -> np.ndarray:
+    """Points (k, 2) that cover a sign, from its place on paper [pt]."""
+    if sign.kind != "ground":
+        return np.zeros((1, 2))
+    w, h = sign.size / 2, 0.85 * sign.size
+    return np.array(
+        [(0.0, -0.2 * w), (0.0, 0.0), (0.0, 0.5 * h), (-0.7 * w, 0.9 * h), (0.0, 0.9 * h), (0.7 * w, 0.9 * h)]
+    )
+
+
+def _chords(disc: Disc, fit: Fit) -> np.ndarray:
+    """Lines (k, 4) across a small disc that is filled: labels stand beside it, where there is room."""
+    (x, y), r = fit.to_paper(disc.centre), disc.radius * fit.scale
+    heights = np.linspace(-0.8, 0.8, 9) * r
+    half = np.sqrt(r**2 - heights**2)
+    lines = np.stack([x - half, y + heights, x + half, y + heights], axis=-1)
+    return lines if r < _SMALL_DISC else lines[:0]
+
+
+def _clipped(lines: np.ndarray, frame: Frame) -> np.ndarray:
+    """Segments whose ends are not far out of the frame: of a picture that a point was moved out of."""
+    left, top, right, bottom = frame
+    reach = 3 * max(right - left, bottom - top)
+    return lines[(np.abs(lines - np.tile([(left + right) / 2, (top + bottom) / 2], 2)) < reach).all(axis=1)]
+
+
+def _text(label: Label, place: Place) -> Text:
+    size = text_size(label.text, label.size, label.symbol)
+    return Text(place.centre, size, tuple(label.text.split("\n")), label.symbol, label.role, label.size)
+
+
+def _leader(place: Place, text: Text) -> Rule:
+    nearest = np.clip(place.anchor, text.box[:2], text.box[2:])
+    return Rule(np.array([nearest, place.anchor]), "axis", 0.7)
+
+
+# Labels without a place ---------------------------------------------------------------------------
+
+
+def _with_list(
+    drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
+) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
+    """Texts and leaders of the labels; those without a place get a number, and a list at the bottom.
+
+    The list takes room from the drawing, which is made smaller; so that what had a place may have none then,
+    and the list is made again with those.
+    """
+    labels, listed = list(drawing.labels), [i for i, place in enumerate(places) if place is None]
+    size, inside = _SMALL, inner
+    while listed:
+        lines = _list_lines([labels[i].said for i in listed], inner, size)
+        inside = (*inner[:3], inner[3] - LINE_HEIGHT * size * len(lines))
+        fit = held or Fit.of(*drawing.extent(), inside, _MARGINS[-1])
+        wishes = [_wish(label, fit) for label in labels]
+        for number, i in enumerate(listed, 1):
+            width, height = text_size(f"({number})", size)
+            wishes[i] = Wish((width + 2, height), wishes[i].anchors, wishes[i].towards, 10)
+        places = place_labels(wishes, _ground(drawing, inside, fit))
+        more = [i for i, place in enumerate(places) if place is None and i not in listed]
+        if not more:
+            break
+        listed = sorted({*listed, *more})
+    numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
+    texts, rules = [], []
+    for i, (label, place) in enumerate(zip(labels, places, strict=True)):
+        if place is None:  # a number for which there is no room either stands in the list alone
+            continue
+        shown = Label(numbers[i], label.anchors, label.role, size=size) if i in numbers else label
+        texts.append(_text(shown, place))
+        if place.distance > FAR:
+            rules.append(_leader(place, texts[-1]))
+    said = tuple(labels[i].said.replace("\n", ", ") for i in listed)
+    if listed:
+        texts += _rows(_list_lines(said, inner, size), inner[0] + _EDGE, inside[3], size, "text")
+    return said, texts, rules, fit
+
+
+def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
+    """Lines of the list, as many as fit on half the frame's height."""
+    words = "; ".join(f"({i}) {text}" for i, text in enumerate((s.replace("\n", ", ") for s in said), 1))
+    lines = wrapped(words, inner[2] - inner[0] - 2 * _EDGE - _PADDING[0], size)
+    most = max(1, int((inner[3] - inner[1]) / 2 / (size * LINE_HEIGHT)))
+    return lines if len(lines) <= most else [*lines[: most - 1], "…"]
+
+
+def _rows(lines: Sequence[str], left: float, top: float, size: float, role: str) -> Iterator[Text]:
+    """Lines of text below one another, from the left."""
+    for i, line in enumerate(lines):
+        width, height = text_size(line, size)
+        yield Text(
+            np.array([left + width / 2, top + height * (i + 0.5)]), (width, height), (line,), "", role, size
+        )
+
+
+# Title, key and scales ----------------------------------------------------------------------------
+
+
+class Heading(NamedTuple):
+    """Lines of a title, the size of their letters, and the height that they take."""
+
+    lines: tuple[str, ...]
+    letters: float
+    height: float
+
+
+def heading(title: str, width: float, height: float) -> Heading:
+    """A title in a frame of this width, on a third of its height at most [pt]."""
+    if not title:
+        return Heading((), NORMAL, 0.0)
+    room = width - 2 * _EDGE - 2 * _PADDING[0]
+    letters = max(NORMAL, min(_HEADING, room / max(map(line_width, title.split("\n")))))
+    lines = wrapped(title, room, letters)[: max(1, int(height / 3 / (letters * LINE_HEIGHT)))]
+    return Heading(tuple(lines), letters, _EDGE + letters * LINE_HEIGHT * len(lines))
+
+
+def _heading(drawing: Drawing, frame: Frame) -> list[Text]:
+    """Lines of the title with their places."""
+    left, top, right, bottom = frame
+    lines, letters, _ = heading(drawing.title, right - left, bottom - top)
+    boxes = [text_size(line, letters) for line in lines]
+    places = [((left + right) / 2, top + _EDGE + box[1] * (i + 0.5)) for i, box in enumerate(boxes)]
+    return [
+        Text(np.array(at), box, (line,), "", "text", letters)
+        for at, box, line in zip(places, boxes, lines, strict=True)
+    ]
+
+
+class _KeyItem(NamedTuple):
+    """An entry of the key: length of its line, words, role, and whether it is a scale."""
+
+    length: float
+    words: str
+    role: str
+    is_scale: bool
+
+
+def _entries(drawing: Drawing, frame: Frame, scale: float) -> list[_KeyItem]:
+    known = [_KeyItem(_SWATCH, words, role, False) for role, words in drawing.legend.items()]
+    longest = _BAR * (frame[2] - frame[0])
+    if scale > 0:
+        metres = {"m": 1.0, "mm": 1e-3}[drawing.unit]
+        size = round_below(longest / scale * metres)
+        known.append(_KeyItem(size / metres * scale, length_text(size), "dimension", True))
+    if scale * drawing.newton > 0:
+        size = round_below(longest / (scale * drawing.newton))
+        known.append(_KeyItem(size * scale * drawing.newton, _force(size), "force", True))
+    return known
+
+
+def round_below(value: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above; its reciprocal is one of these, too."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(power * max(factor for factor in (1, 2, 5) if factor * power <= value * (1 + 1e-9)))
+
+
+def length_text(size: float) -> str:
+    """A length [m] with its unit, in metres or millimetres."""
+    return f"{size:.4g} m" if size >= 1 else f"{1e3 * size:.4g} mm"
+
+
+def _force(size: float) -> str:
+    return f"{size / 1e3:g} kN" if size >= 1e3 else f"{size:g} N"
+
+
+def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tuple[float, _KeyItem]]]:
+    """Entries of each line of the key with their places from the left."""
+    room = frame[2] - frame[0] - 2 * _EDGE
+    lines: list[list[tuple[float, _KeyItem]]] = []
+    at = np.inf
+    for entry in _entries(drawing, frame, scale):
+        width = entry.length + 4 + text_size(entry.words, _SMALL)[0] + _PADDING[0]
+        if at + width > room:
+            lines.append([])
+            at = 0.0
+        lines[-1].append((at, entry))
+        at += width + _SPACE
+    return lines
+
+
+def _key_height(drawing: Drawing, frame: Frame) -> float:
+    """Room for the key: its colours, and a line more for scales."""
+    return 3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * (1 + len(_lines_of_key(drawing, frame, 0.0)))
+
+
+def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:
+    """Texts and lines of the key below the drawing: meaning of colours, scales of lengths and forces."""
+    texts, rules = [], []
+    height = _SMALL * LINE_HEIGHT + 3
+    for row, line in enumerate(_lines_of_key(drawing, frame, fit.scale)):
+        y = top + 2 * _EDGE + height * (row + 0.5)
+        for at, entry in line:
+            x = frame[0] + _EDGE + at
+            rules.append(Rule(np.array([(x, y), (x + entry.length, y)]), entry.role, 2.6))
+            if entry.is_scale:
+                ends = ((x, y), (x + entry.length, y))
+                rules += [Rule(np.array([(a, y - 3), (a, y + 3)]), entry.role, 1.2) for a, _ in ends]
+            texts += _rows([entry.words], x + entry.length + 4, y - height / 2 + 1.5, _SMALL, "text")
+    return texts, rules

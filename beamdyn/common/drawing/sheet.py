@@ -1,0 +1,88 @@
+"""Drawings beside one another, row by row, and the size of their paper; lengths in [pt]."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, follow
+from beamdyn.common.drawing.shapes import Drawing
+
+Rows = Sequence[Sequence[Drawing]]
+WIDTH = 680.0  # of a sheet
+_LOWEST, _HIGHEST = 300.0, 600.0  # heights of a row
+_AROUND = 100.0  # room for title, key and labels around what is drawn
+
+
+@dataclass(frozen=True)
+class Paper:
+    """Width of a sheet, and the height of each of its rows."""
+
+    width: float
+    heights: tuple[float, ...]
+
+    @property
+    def height(self) -> float:
+        """Of all rows."""
+        return sum(self.heights)
+
+    @classmethod
+    def of(cls, rows: Rows, width: float = WIDTH) -> Paper:
+        """Paper for drawings: rows as high as what is drawn in them asks for, within bounds."""
+        return cls(width, tuple(_height(row, width / max(len(row), 1)) for row in rows))
+
+
+def _height(row: Sequence[Drawing], width: float) -> float:
+    """Height of a row of drawings of this width each."""
+    highest = 0.0
+    for drawing in row:
+        low, high = drawing.extent()
+        across, up = high - low
+        highest = max(highest, width * up / across if across else _HIGHEST)
+    return min(max(highest + _AROUND, _LOWEST), _HIGHEST)
+
+
+def frames_of(row: Sequence[Drawing], paper: Paper, number: int) -> list[Frame]:
+    """Frames of the drawings of a row, which share its width evenly."""
+    top, part = sum(paper.heights[:number]), paper.width / max(len(row), 1)
+    return [(i * part, top, (i + 1) * part, top + paper.heights[number]) for i in range(len(row))]
+
+
+def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layout]:
+    """Layouts of drawings on paper; those of a row have one scale.
+
+    Parameters
+    ----------
+    rows : sequence of sequences of Drawing
+        The drawings.
+    paper : Paper
+        The paper.
+    before : Layout, optional
+        Of the first drawing, a little earlier while something moves: its coordinates stay where they are, and
+        its labels where they are free.
+    """
+    layouts: list[Layout] = []
+    for number, row in enumerate(rows):
+        frames = frames_of(row, paper, number)
+        held = [before if not layouts and i == 0 else None for i in range(len(row))]
+        made = [_arranged(*given) for given in zip(row, frames, held, strict=True)]
+        layouts += made if held[0] is not None else _to_one_scale(made)
+    return layouts
+
+
+def _arranged(drawing: Drawing, frame: Frame, before: Layout | None) -> Layout:
+    return arrange(drawing, frame) if before is None else follow(drawing, frame, before)
+
+
+def _to_one_scale(layouts: Sequence[Layout]) -> list[Layout]:
+    """The same layouts, all at the least of their scales."""
+    scale = min((layout.fit.scale for layout in layouts), default=0.0)
+    return [layout if layout.fit.scale == scale else _at_scale(layout, scale) for layout in layouts]
+
+
+def _at_scale(layout: Layout, scale: float) -> Layout:
+    """A layout at another scale, what is drawn about the same middle."""
+    low, high = layout.drawing.extent()
+    middle = (low + high) / 2
+    x, y = layout.fit.to_paper(middle)
+    return arrange(layout.drawing, layout.frame, Fit(scale, x - scale * middle[0], y + scale * middle[1]))

@@ -1,0 +1,210 @@
+"""Spreads as tables for reading and as rows of CSV files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from rich.console import Group
+from rich.text import Text
+
+from beamdyn.common.digits import percent, supported
+from beamdyn.common.edge.tables import table
+from beamdyn.common.spreading.result import Spread
+from beamdyn.common.spreading.tolerances import Normal
+
+_DIGITS = 6  # most of an answer
+_WIDTH, _GAP, _OF_SHARES = 119, 3, 20  # characters of a table, between columns, of two shares
+_HEADLINES = 6
+_SMALL = 0.01  # share of a variance that is not told from others below it
+
+
+def spread_table(result: Spread) -> Group:
+    """What holds of the answers in a sentence each, their ranges and scatter, and what the inputs do."""
+    said = [Text(headline(result, k)) for k in _told(result)[:_HEADLINES]]
+    return Group(*said, _ranges(result), _scatter(result), *_inputs(result), Text(_note(result)))
+
+
+def _told(result: Spread) -> list[int]:
+    """The answers that some design has."""
+    return [k for k in range(len(result.answers)) if result.scatter.no_answer[k] < 1]
+
+
+def headline(result: Spread, answer: int) -> str:
+    """An answer in a sentence: nominal value, worst cases, standard deviation, what matters most."""
+    k, unit = answer, f" {result.units[answer]}".rstrip()
+    (low, high), scatter, nominal = _worst(result, k), result.scatter, result.nominal[k]
+    deviation = _number(*_deviation(result, k))
+    parts = [f"{result.answers[k]}: {_number(nominal, _numerical(result, k)(nominal))}{unit}"]
+    worst = f"{low} to {high}{unit}"
+    if scatter.no_answer[k]:
+        none = f"no answer at worst, in {percent(scatter.no_answer[k])} of the random designs"
+        parts.append(f"{none}, of the others {worst}")
+    else:
+        parts.append(f"{worst} at worst")
+    parts.append(f"standard deviation {deviation}{unit}")
+    return "; ".join([*parts, *_most(result, k)]) + "."
+
+
+def _most(result: Spread, answer: int) -> list[str]:
+    """What matters most, in words."""
+    names = result.matters_most(answer)
+    if not names or len(result.inputs) == 1:
+        return []
+    if len(names) > 1:
+        return [f"{' and '.join(names)} matter most, and are not told apart by {result.samples} samples"]
+    row = int(result.indices.total[:, answer].argmax())
+    total, error = result.indices.total[row, answer], result.indices.total_error[row, answer]
+    share = _share(total, error)
+    words = "" if "±" in share else f", with {share} of the variance"
+    return [f"{result.inputs[row].name} matters most{words}"]
+
+
+def _numerical(result: Spread, answer: int) -> Callable[[float], float]:
+    """The absolute numerical error of an answer."""
+    error = result.error[answer]
+    return lambda value: abs(value) * (0.0 if np.isnan(error) else error)
+
+
+def _deviation(result: Spread, answer: int) -> tuple[float, float]:
+    """The standard deviation of an answer, and its error: the errors of the answers may add up to theirs."""
+    found, values = result.scatter, result.sampled_answers[:, answer]
+    largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    return found.deviation[answer], found.deviation_error[answer] + _numerical(result, answer)(largest)
+
+
+def _worst(result: Spread, answer: int) -> tuple[str, str]:
+    """The worst cases of an answer, each with the digits that its own error supports."""
+    found, k = result.worst, answer
+    errors = np.nan_to_num([found.smallest_error[k], found.largest_error[k]], posinf=np.inf)
+    return _number(found.smallest[k], errors[0]), _number(found.largest[k], errors[1])
+
+
+def _worst_at(result: Spread, answer: int) -> str:
+    """Where the worst cases were found."""
+    found, k = result.worst, answer
+    if np.isinf([found.smallest_error[k], found.largest_error[k]]).any():
+        return "unresolved"
+    where = "search" if found.searched[k] else "corner"
+    return f"{where}, or no answer" if result.scatter.no_answer[k] else where
+
+
+def _largest_error(result: Spread, answer: int) -> str:
+    """The largest relative error of an answer, those of its worst cases among them."""
+    found, k = result.worst, answer
+    values, errors = (found.smallest[k], found.largest[k]), (found.smallest_error[k], found.largest_error[k])
+    each = [result.error[k], *(e / abs(v) for v, e in zip(values, errors, strict=True) if v)]
+    known = [error for error in each if not np.isnan(error)]
+    return f"{max(known):.0e}" if known else "-"
+
+
+def _number(value: float, error: float) -> str:
+    return supported(value, error, _DIGITS).replace("none", "-")
+
+
+def _share(value: float, error: float) -> str:
+    """A share of a variance; only that it is small, where it is within three standard errors."""
+    if abs(value) + 3 * error < _SMALL:
+        return f"< {_SMALL:g}"
+    return supported(value, error, 3).replace("none", "-")
+
+
+def _heads(result: Spread) -> list[str]:
+    return [
+        f"{name} [{unit}]" if unit else name for name, unit in zip(result.answers, result.units, strict=True)
+    ]
+
+
+def _ranges(result: Spread) -> Group:
+    """Nominal values, ranges to first order, and worst cases."""
+    first, rows = result.first_order, []
+    for k, head in enumerate(_heads(result)):
+        wrong = _numerical(result, k)
+        nominal = _number(result.nominal[k], wrong(result.nominal[k]))
+        ends = (
+            _number(value, first.error[k] + wrong(value)) for value in (first.smallest[k], first.largest[k])
+        )
+        rows.append(
+            (head, nominal, *ends, *_worst(result, k), _worst_at(result, k), _largest_error(result, k))
+        )
+    heads = ("answer", "nominal", "first order from", "to", "worst from", "to", "worst at", "error")
+    return table(f"Ranges, by {result.provenance.method}", heads, rows, (0, 6))
+
+
+def _scatter(result: Spread) -> Group:
+    """Mean, standard deviation and percentiles, with the digits that their standard errors support."""
+    found, rows = result.scatter, []
+    for k, head in enumerate(_heads(result)):
+        pairs = [(found.percentile[i, k], found.percentile_error[i, k]) for i in (1, 2, 3)]
+        none = percent(found.no_answer[k]) if found.no_answer[k] else f"0 of {2 * result.samples}"
+        wrong = _numerical(result, k)
+        mean, *cells = (
+            _number(value, error + wrong(value))
+            for value, error in [(found.mean[k], found.mean_error[k]), *pairs]
+        )
+        rows.append((head, mean, _number(*_deviation(result, k)), *cells, none))
+    title = f"Scatter of {2 * result.samples} random designs, seed {result.seed}"
+    heads = ("answer", "mean", "standard deviation", "5 %", "50 %", "95 %", "no answer")
+    return table(title, heads, rows, (0,))
+
+
+def _inputs(result: Spread) -> Iterator[Group]:
+    """Inputs with their tolerances and shares of the variance of some answers, a table after the other."""
+    told = _told(result)
+    firsts = [(each.name, f"{each.nominal:.6g} {each.unit}".rstrip(), each.text) for each in result.inputs]
+    beside = _fitting(firsts, [result.answers[k] for k in told])
+    for start in range(0, len(told), beside):
+        shown = told[start : start + beside]
+        rows = ((*first, *(_both_shares(result, i, k) for k in shown)) for i, first in enumerate(firsts))
+        heads = ("input", "value", "tolerance", *(result.answers[k] for k in shown))
+        yield table("Share of the variance: with other inputs (alone)", heads, rows, (0, 2))
+
+
+def _fitting(firsts: Sequence[Sequence[str]], answers: Sequence[str]) -> int:
+    """How many answers stand in a table beside the first columns of the inputs."""
+    left = sum(max(map(len, column)) + _GAP for column in zip(*firsts, ("", "", "tolerance"), strict=True))
+    return max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, answers), 0) + _GAP))
+
+
+def _both_shares(result: Spread, row: int, answer: int) -> str:
+    found = result.indices
+    total = _share(found.total[row, answer], found.total_error[row, answer])
+    return f"{total} ({_share(found.first[row, answer], found.first_error[row, answer])})"
+
+
+def _note(result: Spread) -> str:
+    is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
+    normal = ", of normal ones three standard deviations either way" if is_normal else ""
+    said = (
+        f"{result.designs} random designs, {result.worst.designs} for worst cases.",
+        "Digits are as far as errors stand behind them.",
+        f"First order: slopes at the nominal design, from {_source_of_slopes(result)}.",
+        f"Worst: within the ends of all tolerances{normal};",
+        f"at corners as far as {result.samples} pairs of designs show.",
+    )
+    return " ".join(said)
+
+
+def _source_of_slopes(result: Spread) -> str:
+    """Where the slopes of the answers come from, naming the inputs that have no derivatives."""
+    first, told = result.first_order, _told(result)
+    exact = np.all((first.exact | ~np.isfinite(first.slope))[:, told], axis=1).tolist()
+    if all(exact):
+        return "derivatives"
+    others = [each.name for each, known in zip(result.inputs, exact, strict=True) if not known]
+    if not first.exact[:, told].any():
+        return "designs about it"
+    return f"derivatives, but by {', '.join(others)} from designs about it"
+
+
+def spread_csv(result: Spread) -> Iterator[Sequence[object]]:
+    """Inputs in SI and answers of the random designs, a row each."""
+    inputs = [_head(each.name.replace(".", "_"), each.unit) for each in result.inputs]
+    yield *inputs, *map(_head, result.answers, result.units)
+    yield from np.hstack([result.sampled_inputs, result.sampled_answers]).tolist()
+
+
+def _head(name: str, unit: str) -> str:
+    plain = re.sub(r"[^0-9A-Za-z+.-]+", "_", name).strip("_")
+    return f"{plain}_{unit.replace('/', '_per_').replace(' ', '_')}" if unit else plain

@@ -1,0 +1,270 @@
+"""What a result looks like: table and picture in a notebook, columns of a data frame, text."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import io
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console, Group, RenderableType
+
+from beamdyn.common.described import descriptions
+from beamdyn.common.display_units import in_display_units
+from beamdyn.common.edge.rendering import html, png
+from beamdyn.common.edge.tables import table
+from beamdyn.common.one_line import brief, spanned
+from beamdyn.common.pictures import figure_of
+from beamdyn.common.results import Result, plain
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+_PLACES = {"beamdyn": "beamdyn.views", "brakes": "brakes.views"}  # of `VIEWS`, by package
+_MOST_ROWS = 30  # of a table in a notebook
+_WIDTH = 120  # letters of a table as text
+_UNIT = re.compile(r"\[([^\[\]]*)\]")
+_NOT_SHOWN = ("provenance", "warnings")
+_DEEPEST = 1  # level of objects within a result whose fields are shown
+
+Rows = Iterable[Sequence[object]]
+
+
+@dataclass(frozen=True)
+class View:
+    """How results of a class are shown; what is not given is made from their fields and their `plot`.
+
+    Parameters
+    ----------
+    tables : callable, optional
+        Makes the tables and sentences for people.
+    rows : callable, optional
+        Yields the rows of the CSV file, heads first.
+    index : int
+        How many of the first columns the others are given over.
+    figure : callable, optional
+        Draws the picture.
+    """
+
+    tables: Callable[[Any], RenderableType] | None = None
+    rows: Callable[[Any], Rows] | None = None
+    index: int = 0
+    figure: Callable[[Any], Figure] | None = None
+
+
+def view_of(result: Result) -> View:
+    """The view of a result's class, or of the nearest class that it derives from."""
+    for kind in type(result).__mro__:
+        place = _PLACES.get(kind.__module__.partition(".")[0])
+        found = import_module(place).VIEWS.get(kind.__name__) if place else None
+        if found is not None:
+            return found
+    return View()
+
+
+def tables_of(result: Result) -> RenderableType:
+    """Tables and sentences on a result, as its command prints them."""
+    view = view_of(result)
+    if view.tables is not None:
+        return view.tables(result)
+    return _fields_table(result) if view.rows is None else _rows_table(result)
+
+
+def rows_of(result: Result) -> Iterator[Sequence[object]]:
+    """Rows of the CSV file of a result, heads first, in its display units."""
+    made = view_of(result).rows
+    return in_display_units(_fields_rows(result) if made is None else made(result), result.display_units)
+
+
+def figure_from(result: Result) -> Figure | None:
+    """The picture of a result, with the axes that only it has; None if there is none."""
+    made = view_of(result).figure
+    if made is not None:
+        return made(result)
+    plot = getattr(result, "plot", None)
+    return None if plot is None else figure_of(plot)
+
+
+# Text and data frames -------------------------------------------------------------------------------
+
+
+def text_of(result: Result) -> str:
+    """The tables as text."""
+    page = Console(file=io.StringIO(), width=_WIDTH, markup=False, highlight=False, emoji=False)
+    with page.capture() as captured:
+        page.print(tables_of(result))
+    return _in_python("\n".join(line.rstrip() for line in captured.get().splitlines()).strip("\n"))
+
+
+def _in_python(text: str) -> str:
+    """What tables say of the options of a command, in terms of Python."""
+    return text.replace("--json and --csv", "to_dict and to_pandas").replace("--csv", "to_pandas")
+
+
+def frame_of(result: Result) -> DataFrame:
+    """The rows of the CSV file as a data frame.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise ImportError("to_pandas needs pandas: pip install 'beamdyn[pandas]'") from None
+    heads, *rows = rows_of(result)
+    names = [str(head) for head in heads]
+    frame = DataFrame(rows, columns=names)  # pyright: ignore[reportArgumentType]  (a list of names)
+    index = view_of(result).index
+    frame = frame.set_index(names[:index]) if index else frame
+    frame.attrs = {"result": type(result).__name__, "label": result.plot_label}
+    for name in ("warnings", "provenance"):
+        frame.attrs[name] = plain(getattr(result, name, None))
+    return frame
+
+
+# Notebooks ------------------------------------------------------------------------------------------
+
+# Colours are those of the page, so that dark ones are as legible; a picture brings its own white ground.
+_STYLE = """
+.beamdyn-result { overflow-x: auto; }
+.beamdyn-result h3 { font-size: 1em; font-weight: 600; margin: 0.8em 0 0.3em; }
+.beamdyn-result p { margin: 0.3em 0; }
+.beamdyn-result table { border-collapse: collapse; font-size: 0.9em; margin: 0; }
+.beamdyn-result th { border-bottom: 1px solid currentColor; font-weight: 600; vertical-align: bottom; }
+.beamdyn-result td, .beamdyn-result th { padding: 0.15em 1em 0.15em 0; background: none; color: inherit; }
+.beamdyn-result tbody tr:nth-child(even) { background: rgba(128, 128, 128, 0.12); }
+.beamdyn-result .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.beamdyn-result .words { text-align: left; }
+.beamdyn-result .beyond { opacity: 0.6; }
+.beamdyn-result .warning { border-left: 4px solid #E69F00; padding-left: 0.5em; }
+.beamdyn-result img { display: block; max-width: 100%; width: 45em; height: auto; margin: 0.6em 0; }
+"""
+
+
+def html_of(result: Result) -> str:
+    """Headline, warnings, tables and picture of a result as a piece of a page, which needs no other file.
+
+    The picture is an image of its own: it shares no names with others on the page, and runs no scripts.
+    """
+    said = [_warning(str(each)) for each in getattr(result, "warnings", ())]
+    shown = _in_python(html([tables_of(result)], _MOST_ROWS))
+    title = f"<p><strong>{escape(repr(result))}</strong></p>"
+    return (
+        f'<div class="beamdyn-result"><style>{_STYLE}</style>\n'
+        f"{title}{''.join(said)}\n{shown}\n{_picture(result)}</div>"
+    )
+
+
+def _warning(sentence: str) -> str:
+    return f'<p class="warning">{escape(sentence)}</p>'
+
+
+def _picture(result: Result) -> str:
+    """The picture as an image in the page, or why it cannot be drawn; nothing where there is none."""
+    try:
+        figure = figure_from(result)
+        if figure is None:
+            return ""
+        content = base64.b64encode(png(figure)).decode()
+    except (ValueError, ArithmeticError, LookupError) as error:  # numbers too large, nothing that is finite
+        return f"<p>{escape(f'There is no picture: {error}')}</p>"
+    return f'<img alt="{escape(repr(result))}" src="data:image/png;base64,{content}">'
+
+
+# Results without a table of their own ---------------------------------------------------------------
+
+
+def _rows_table(result: Result) -> Group:
+    """The columns of the CSV file."""
+    heads, *rows = rows_of(result)
+    cells = [[_cell(value) for value in row] for row in rows]
+    return table(_first_sentence(result), [str(head) for head in heads], cells, ())
+
+
+def _fields_table(result: Result) -> Group:
+    """The public fields of a result, with their units."""
+    rows = [(name.replace("_", " "), _cell(value), unit) for name, value, unit in _named_fields(result)]
+    return table(_first_sentence(result), ("", "value", "unit"), rows, (0, 1, 2))
+
+
+def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
+    """Names, values and units of the public fields; arrays entry by entry."""
+    yield "name", "value", "unit"
+    for name, value, unit in _named_fields(result):
+        if isinstance(value, np.ndarray) and value.size > 1:
+            for place, entry in np.ndenumerate(value):
+                yield f"{name}[{','.join(map(str, place))}]", plain(entry), unit
+        else:
+            yield (
+                name,
+                plain(np.ravel(value)[0] if isinstance(value, np.ndarray) and value.size else value),
+                unit,
+            )
+
+
+def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]:
+    """Name, value and unit of each public field that is a number, a text, or an array or mapping of them.
+
+    Those of results and other objects within it follow; inputs, which are `Described`, are left out.
+    """
+    units = _units_of(type(result))
+    for each in dataclasses.fields(result):
+        if each.repr and each.name not in _NOT_SHOWN:
+            for name, value in _parts(each.name, getattr(result, each.name)):
+                if isinstance(value, bool | int | float | str | np.generic | np.ndarray):
+                    yield name, value, units.get(each.name, "")
+                elif depth < _DEEPEST and dataclasses.is_dataclass(value) and not descriptions(type(value)):
+                    within = _named_fields(value, depth + 1)
+                    yield from ((f"{name}, {inner}", item, unit) for inner, item, unit in within)
+
+
+def _parts(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """A value, or those of a mapping or of a sequence of objects, each with its name."""
+    if isinstance(value, dict):
+        yield from ((f"{name}, {key}", item) for key, item in value.items())
+    elif isinstance(value, tuple | list):
+        yield from ((f"{name}[{k}]", item) for k, item in enumerate(value))
+    else:
+        yield name, value
+
+
+def _units_of(kind: type) -> dict[str, str]:
+    """Units of the fields of a class, which stand in brackets in its docstring (numpydoc), by their names."""
+    found: dict[str, str] = {}
+    for base in kind.__mro__:
+        parts = re.split(r"^ {4}(\w+(?:, \w+)*) : .*$", base.__doc__ or "", flags=re.MULTILINE)
+        for names, text in zip(parts[1::2], parts[2::2], strict=True):
+            found = dict(_units_in(text, names.split(", "))) | found
+    return found
+
+
+def _units_in(text: str, names: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """The unit of each name: that in brackets, or one for each; none where it is not clear which is whose."""
+    units = [unit.strip() for bracket in _UNIT.findall(text) for unit in bracket.split(",")]
+    if len(units) == len(names):
+        yield from zip(names, units, strict=True)
+    elif len(set(units)) == 1:
+        yield from ((name, units[0]) for name in names)
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, np.ndarray) and 1 < value.size <= 6 and value.dtype.kind in "iuf":
+        return ", ".join(f"{number:.6g}" for number in value.ravel().tolist())
+    if isinstance(value, np.ndarray) and value.size > 1 and value.dtype.kind in "iuf":
+        return f"{spanned(value)}, {' x '.join(map(str, value.shape))} values"
+    if isinstance(value, bool | np.bool_):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else brief(value)
+
+
+def _first_sentence(result: Result) -> str:
+    return (type(result).__doc__ or type(result).__name__).partition("\n")[0].rstrip(".:;")

@@ -1,0 +1,257 @@
+"""A spread from the answers of designs, whatever answers them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.digits import percent
+from beamdyn.common.results import Provenance
+from beamdyn.common.spreading.first_order import first_order_of
+from beamdyn.common.spreading.result import Spread
+from beamdyn.common.spreading.sampling import SpreadDesigns
+from beamdyn.common.spreading.slopes import KnownDerivatives, slopes_from
+from beamdyn.common.spreading.statistics import Scatter, indices_of, scatter_of
+from beamdyn.common.spreading.tolerances import SpreadInput
+from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
+
+_FEW = 3  # reasons that a warning lists
+_NUMBER = re.compile(r"[-+]?\d[\d.]*(?:e[-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class SpreadAnswers:
+    """Answers of N designs.
+
+    Parameters
+    ----------
+    answers, units : tuple of str, length k
+        What each is, and its unit.
+    value : ndarray, shape (N, k)
+        Answers; not finite where there is none.
+    error : ndarray, shape (N, k)
+        Their estimated relative errors; nan where none is known.
+    status : ndarray of str, shape (N, k)
+        Their states.
+    warnings : tuple of str
+        What limits them.
+    method, compared_with : str
+        As of `Provenance`.
+    """
+
+    answers: tuple[str, ...]
+    units: tuple[str, ...]
+    value: np.ndarray
+    error: np.ndarray
+    status: np.ndarray
+    warnings: tuple[str, ...]
+    method: str
+    compared_with: str
+
+    @property
+    def absolute_error(self) -> np.ndarray:
+        """Absolute errors (N, k); nan where none is known."""
+        with np.errstate(invalid="ignore"):
+            size = np.abs(self.value) * self.error
+        size = np.where(np.isinf(self.error), np.inf, size)  # also of an answer that is 0
+        return np.where(np.isfinite(self.value), size, np.nan)
+
+    @property
+    def size_of_error(self) -> np.ndarray:
+        """Absolute errors (N, k); 0 where none is known."""
+        return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
+
+
+# Inputs of N designs by name, each (N,), in; their answers out, or a ValueError where none has one.
+Evaluate = Callable[[dict[str, np.ndarray]], SpreadAnswers]
+Derivatives = Callable[[], KnownDerivatives]
+
+
+def solve_spread(
+    what: str,
+    inputs: Sequence[SpreadInput],
+    samples: int,
+    seed: int,
+    evaluate: Evaluate,
+    derivatives: Derivatives = KnownDerivatives,
+    cautions: Sequence[str] = (),
+) -> Spread:
+    """Ranges of answers over tolerances of inputs.
+
+    Parameters
+    ----------
+    what : str
+        What is asked for.
+    inputs : sequence of SpreadInput
+        The d inputs.
+    samples, seed : int
+        As `check_samples` and `check_seed` return them.
+    evaluate : callable
+        Answers designs.
+    derivatives : callable
+        Derivatives of the answers at the nominal design, as far as they are known.
+    cautions : sequence of str
+        Warnings that stand before those of the answers.
+    """
+    start = perf_counter()
+    designs = SpreadDesigns(inputs, samples, seed)
+    found = evaluate(_columns(inputs, designs.table))
+    further = _FurtherAnswers(evaluate, inputs, np.any(np.isfinite(found.value), axis=0))
+    nominal, beside, random = designs.part(found.value)
+    errors = designs.part(found.size_of_error)
+    worst_error = found.size_of_error.max(axis=0)
+    near_error = np.maximum(errors[0], errors[1].max(axis=(0, 1)))
+    known = derivatives()
+    slopes = slopes_from(nominal, beside, designs.steps, near_error).replaced(known.rows)
+    sampled = designs.table[1 + 4 * len(inputs) :][: 2 * samples]
+    trends = trends_of(random, errors[2], sampled[:samples], sampled[samples:])
+    worst = worst_cases(inputs, trends, designs.table, found.value, found.absolute_error, further)
+    scatter, indices = scatter_of(random[:2]), indices_of(random, worst_error)
+    states = _states(designs.part(found.status)[2][:2])
+    notes = _notes(found.answers, inputs, trends, worst, scatter, states, worst_error)
+    wall = perf_counter() - start
+    return Spread(
+        what=what,
+        answers=found.answers,
+        units=found.units,
+        inputs=tuple(inputs),
+        nominal=nominal,
+        error=_largest_error(found),
+        first_order=first_order_of(inputs, nominal, slopes),
+        worst=worst,
+        trends=trends,
+        scatter=scatter,
+        indices=indices,
+        states=states,
+        samples=samples,
+        seed=seed,
+        sampled_inputs=sampled,
+        sampled_answers=random[:2].reshape(2 * samples, -1),
+        warnings=(*cautions, *known.warnings, *notes, *found.warnings, *further.warnings(found.warnings)),
+        provenance=Provenance(__version__, found.method, found.compared_with, wall),
+    )
+
+
+def _columns(inputs: Sequence[SpreadInput], designs: np.ndarray) -> dict[str, np.ndarray]:
+    return {each.name: designs[:, i] for i, each in enumerate(inputs)}
+
+
+@dataclass
+class _FurtherAnswers:
+    """Answers the designs of worst cases, and keeps what is to be said of them.
+
+    Designs that are refused, as inputs that are good alone may be wrong together, have no answer.
+    """
+
+    evaluate: Evaluate
+    inputs: Sequence[SpreadInput]
+    wanted: Any  # which answers some design has
+    _count: int = 0
+    _without: dict[str, int] = field(default_factory=dict)
+    _said: list[str] = field(default_factory=list)
+
+    def __call__(self, designs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Answers (N, k) of designs (N, d), and their absolute errors."""
+        self._count += len(designs)
+        value, error = zip(*self._parts(designs), strict=True)
+        return np.concatenate(value), np.concatenate(error)
+
+    def _parts(self, designs: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield answers of all designs, or, where one is refused, of each half."""
+        try:
+            found = self.evaluate(_columns(self.inputs, designs))
+        except ValueError as error:
+            if isinstance(error, InvalidValue) and len(designs) > 1:
+                for half in np.array_split(designs, 2):
+                    yield from self._parts(half)
+                return
+            self._without[str(error)] = self._without.get(str(error), 0) + len(designs)
+            nothing = np.full((len(designs), len(self.wanted)), np.nan)
+            yield nothing, nothing
+            return
+        self._said += found.warnings
+        for missing, status in zip(~np.isfinite(found.value) & self.wanted, found.status, strict=True):
+            if missing.any():
+                state = str(status[missing][0])
+                self._without[state] = self._without.get(state, 0) + 1
+        yield found.value, found.absolute_error
+
+    def warnings(self, before: Sequence[str]) -> Iterator[str]:
+        """Yield how many designs have no answer, and what limits the others and was not said before."""
+        if self._without:
+            why = [f"{reason}: {number}" for reason, number in self._without.items()]
+            parts = "; ".join([*why[:_FEW], *(["..."] if why[_FEW:] else [])])
+            number = f"{sum(self._without.values())} of {self._count}"
+            yield f"worst cases: {number} designs have no answer ({parts})"
+        said = {_NUMBER.sub("", sentence) for sentence in before}
+        for sentence in self._said:
+            if (words := _NUMBER.sub("", sentence)) not in said:
+                said.add(words)
+                yield f"worst cases: {sentence}"
+
+
+def _largest_error(found: SpreadAnswers) -> np.ndarray:
+    """Largest relative error of each answer (k,); nan where none is known."""
+    known = np.where(np.isfinite(found.value), found.error, np.nan)
+    largest = np.where(np.isnan(known), -np.inf, known).max(axis=0)
+    return np.where(largest < 0, np.nan, largest)
+
+
+def _states(status: np.ndarray) -> tuple[dict[str, float], ...]:
+    """Share of the designs (2, n, k) in each state, of each answer; the most frequent first."""
+    made = []
+    for column in status.reshape(-1, status.shape[-1]).T:
+        words, counts = np.unique(column, return_counts=True)
+        order = np.argsort(-counts, kind="stable")
+        made.append({str(words[i]): float(counts[i] / len(column)) for i in order})
+    return tuple(made)
+
+
+# Warnings ---------------------------------------------------------------------------------------
+
+
+def _notes(
+    answers: Sequence[str],
+    inputs: Sequence[SpreadInput],
+    trends: np.ndarray,
+    worst: WorstCases,
+    scatter: Scatter,
+    states: Sequence[dict[str, float]],
+    error: np.ndarray,
+) -> Iterator[str]:
+    """Yield what limits the statistics of each answer."""
+    yield from _without_answer(answers, scatter.no_answer, states)
+    for k, name in enumerate(answers):
+        if worst.searched[k]:
+            turning = [each.name for each, trend in zip(inputs, trends[:, k], strict=True) if trend == BOTH]
+            why = f"it rises and falls with {', '.join(turning)}" if turning else "a corner is not the worst"
+            ended = (
+                f"a search that was ended after {worst.designs} designs" if worst.cut_short[k] else "a search"
+            )
+            yield f"{name}: {why}, so that its worst cases come from {ended}: there may be worse"
+        if scatter.deviation[k] <= error[k]:
+            yield f"{name}: it scatters by no more than its numerical error, {error[k]:.1g}: no indices"
+
+
+def _without_answer(
+    answers: Sequence[str], shares: np.ndarray, states: Sequence[dict[str, float]]
+) -> Iterator[str]:
+    """Yield of which answers some designs have none, those of which the same is said together."""
+    said: dict[str, list[str]] = {}
+    for name, share, parts in zip(answers, shares, states, strict=True):
+        why = ", ".join(f"{state} {percent(part)}" for state, part in parts.items())
+        if share == 1:
+            said.setdefault(f"no random design has an answer ({why})", []).append(name)
+        elif share:
+            rest = "the statistics are of the others, and there are no indices"
+            sentence = f"{percent(share)} of the random designs have no answer ({why}); {rest}"
+            said.setdefault(sentence, []).append(name)
+    for sentence, names in said.items():
+        yield f"{'; '.join(names)}: {sentence}"

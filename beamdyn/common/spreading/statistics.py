@@ -1,0 +1,200 @@
+"""Statistics of the answers of random designs, with their standard errors.
+
+Samples come in blocks whose points were scrambled independently, so that the scatter over blocks says how far
+a mean is from the truth: no assumption on the answers is made, and what the even distribution of the points
+gains is in it.  A statistic is a mean or a ratio of means over blocks, and its error that of its linear part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.spreading.sampling import BLOCKS
+
+PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
+_LEAST_BLOCKS = 8  # with answers, from whose scatter an error follows
+_ROUNDING = 1e-12  # relative scatter that is no scatter
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Scatter of k answers over the random designs that have them.
+
+    Parameters
+    ----------
+    mean, mean_error : ndarray, shape (k,)
+        Mean [units of the answers], nan where no design has an answer; and its standard error, inf where
+        fewer than 8 of the 16 blocks of samples hold answers.
+    deviation, deviation_error : ndarray, shape (k,)
+        Standard deviation and its standard error, likewise [same units].
+    percentile : ndarray, shape (5, k)
+        Answers below which `PERCENTS` of all lie [same units].
+    percentile_error : ndarray, shape (5, k)
+        Their standard errors [same units]; inf as those of the mean.
+    no_answer : ndarray, shape (k,)
+        Share of designs without an answer.
+    no_answer_error : ndarray, shape (k,)
+        Standard error of that share.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.spread(bd.Scene(strip), {"beam.thickness": "+-2%"}, modes=1, samples=128)
+    >>> found.scatter.mean.shape, found.scatter.percentile.shape
+    ((1,), (5, 1))
+    """
+
+    mean: np.ndarray
+    mean_error: np.ndarray
+    deviation: np.ndarray
+    deviation_error: np.ndarray
+    percentile: np.ndarray
+    percentile_error: np.ndarray
+    no_answer: np.ndarray
+    no_answer_error: np.ndarray
+
+
+def scatter_of(random: np.ndarray) -> Scatter:
+    """Scatter of answers.
+
+    Parameters
+    ----------
+    random : ndarray, shape (2, n, k)
+        Answers of the samples A and B; not finite where there is none.
+    """
+    blocks = _in_blocks(random)
+    return Scatter(*(np.stack(each, axis=-1) for each in zip(*map(_scatter_of_one, blocks), strict=True)))
+
+
+def _in_blocks(random: np.ndarray) -> np.ndarray:
+    """Answers by block, shape (k, BLOCKS, 2 n / BLOCKS)."""
+    two, n, k = random.shape
+    blocks = random.reshape(two, BLOCKS, n // BLOCKS, k)
+    return np.moveaxis(blocks, -1, 0).transpose(0, 2, 1, 3).reshape(k, BLOCKS, -1)
+
+
+def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
+    """The fields of `Scatter` for one answer, values (BLOCKS, m)."""
+    known = np.isfinite(values)
+    none, none_error = mean_of_blocks(~known, np.ones(values.shape))
+    if not known.any():
+        nothing, nowhere = np.full(len(PERCENTS), np.nan), np.full(len(PERCENTS), np.inf)
+        return np.nan, np.inf, np.nan, np.inf, nothing, nowhere, none, none_error
+    filled = np.where(known, values, 0.0)
+    mean, mean_error = mean_of_blocks(filled, known)
+    variance, variance_error = mean_of_blocks((filled - mean) ** 2, known)
+    deviation = float(np.sqrt(variance))
+    deviation_error = variance_error / (2 * deviation) if deviation else 0.0
+    found = np.array([_percentile(filled, known, percent / 100) for percent in PERCENTS])
+    if known.any(axis=1).sum() < _LEAST_BLOCKS:
+        mean_error = deviation_error = found[:, 1] = np.inf
+    return mean, mean_error, deviation, deviation_error, *found.T, none, none_error
+
+
+def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
+    """Weighted mean of values (BLOCKS, m), and its standard error from the scatter over the blocks."""
+    total = weights.sum()
+    mean = float((weights * values).sum() / total)
+    parts = (weights * (values - mean)).sum(axis=1) * (len(values) / total)
+    return mean, float(parts.std(ddof=1) / np.sqrt(len(values)))
+
+
+def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[float, float]:
+    """The answer below which a share lies, and its standard error.
+
+    The share of each block below it scatters; the answers at shares that differ by this, and by half a
+    sample, are what the percentile may be as well.
+    """
+    ordered = values[known]
+    found = float(np.quantile(ordered, share))
+    _, below = mean_of_blocks(values <= found, known)
+    below = np.hypot(below, 0.5 / len(ordered))
+    near = np.quantile(ordered, np.clip([share - below, share + below], 0.0, 1.0))
+    return found, float(np.abs(near - found).max())
+
+
+# Indices of Sobol' --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class SobolIndices:
+    """Shares of the variance of k answers that come from d inputs.
+
+    Parameters
+    ----------
+    first, total : ndarray, shape (d, k)
+        Indices of the first order, by the input alone, and total ones, also by what it does together with
+        others; nan where a design has no answer, or the answer scatters by no more than its numerical error.
+    first_error, total_error : ndarray, shape (d, k)
+        Standard errors of the indices.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> tolerances = {"beam.thickness": "+-2%", "beam.density": "+-1%"}
+    >>> found = bd.spread(bd.Scene(strip), tolerances, modes=1, samples=128)
+    >>> bool(found.indices.total[0, 0] > found.indices.total[1, 0])
+    True
+    """
+
+    first: np.ndarray
+    total: np.ndarray
+    first_error: np.ndarray
+    total_error: np.ndarray
+
+
+def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndices:
+    """Sobol' indices by the estimators of `scipy.stats.sobol_indices`, with the scatter over blocks.
+
+    Parameters
+    ----------
+    random : ndarray, shape (2 + d, n, k)
+        Answers of A, of B, and of A with each input of B.
+    error : ndarray, shape (k,)
+        Largest absolute error of each answer.
+    """
+    d, k = len(random) - 2, random.shape[2]
+    found = np.full((2, d, k), np.nan)
+    wrong = np.full((2, d, k), np.inf)
+    with np.errstate(invalid="ignore"):
+        scale = np.abs(random).max(axis=(0, 1))
+        varied = random[:2].std(axis=(0, 1)) > np.maximum(_ROUNDING * scale, error)
+    sure = np.isfinite(random).all(axis=(0, 1)) & varied
+    if not sure.any():
+        return SobolIndices(*found, *wrong)
+    known = random[..., sure] / scale[sure]
+    known = known - known[:2].mean(axis=(0, 1))
+    found[..., sure] = _indices(known)
+    wrong[..., sure] = _errors_of_indices(known, found[..., sure])
+    return SobolIndices(*found, *wrong)
+
+
+def _indices(random: np.ndarray) -> np.ndarray:
+    """Indices of first order and total ones, shape (2, d, k)."""
+    from scipy.stats import sobol_indices  # it takes long to load
+
+    d, n, k = len(random) - 2, random.shape[1], random.shape[2]
+    if d == 1:
+        return np.ones((2, 1, k))  # by definition
+    a, b, *mixed = np.moveaxis(random, -1, 1)
+    found = sobol_indices(func={"f_A": a, "f_B": b, "f_AB": np.array(mixed)}, n=n)
+    shapes = (np.reshape(order, (k, d)).T for order in (found.first_order, found.total_order))
+    return np.stack([*shapes])
+
+
+def _errors_of_indices(random: np.ndarray, indices: np.ndarray) -> np.ndarray:
+    """Standard errors (2, d, k): each index is the quotient of two means, whose linear part scatters.
+
+    The means are those of `scipy.stats.sobol_indices`, of answers about their mean: f_B (f_AB - f_A) and
+    (f_A - f_AB)^2 / 2, over the variance.
+    """
+    if len(random) == 3:
+        return np.zeros(indices.shape)
+    blocks = random.reshape(len(random), BLOCKS, -1, random.shape[2])
+    a, b, mixed = blocks[0], blocks[1], blocks[2:]
+    variance = (a**2 + b**2).mean(axis=1) / 2
+    parts = np.stack([b * (mixed - a), (a - mixed) ** 2 / 2]).mean(axis=3)
+    linear = parts - indices[:, :, None] * variance
+    return linear.std(axis=2, ddof=1) / variance.mean(axis=0) / np.sqrt(BLOCKS)

@@ -1,0 +1,1 @@
+"""Ranges of answers of a scene over tolerances of its inputs."""

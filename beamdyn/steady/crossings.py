@@ -1,0 +1,157 @@
+"""Crossings of lines of the excitation with natural frequencies, and the list of them that is the result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.common.one_line import error_at_most, listed, warned
+from beamdyn.common.results import Provenance
+from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.scene.motion import Line
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Speed at which a line of the excitation equals a natural frequency.
+
+    Parameters
+    ----------
+    line : Line
+        Line of the excitation.
+    mode : int
+        Number of the mode, from 1, in the order at rest.
+    speed : float
+        Speed [rad/s].
+    frequency : float
+        Natural frequency of the mode [Hz].
+    kind : {"forced", "parametric"}
+        "forced": natural frequency = line.  "parametric": twice the natural frequency, or the sum of the
+        frequencies of `mode` and `second_mode`, = line; the periodic stiffness makes the beam unstable.
+    error : float
+        Estimated relative error of the speed.
+    second_mode : int or None
+        Number of the other mode of a combination resonance.
+    plane_share : tuple of float
+        Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
+    second_plane_share : tuple of float or None
+        The same of the other mode of a combination resonance.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> found = bd.resonance_speeds(bd.Scene(strip, bd.Mount(radius=0.215), wheel), top_speed=150.0, modes=1)
+    >>> first = found.crossings[0]
+    >>> first.mode, first.kind, round(first.frequency, 3)
+    (1, 'forced', 61.535)
+    """
+
+    line: Line
+    mode: int
+    speed: float
+    frequency: float
+    kind: str
+    error: float
+    second_mode: int | None = None
+    plane_share: tuple[float, float] = (1.0, 0.0)
+    second_plane_share: tuple[float, float] | None = None
+
+
+def label_crossing(line: Line, kind: str, mode: int, second_mode: int | None = None) -> str:
+    """What tells a crossing from others, for tables and pictures: its modes, line and kind."""
+    modes = f"mode {mode}" if second_mode is None else f"modes {mode} and {second_mode}"
+    return f"{modes}, {line.name} ({kind})"
+
+
+@dataclass(frozen=True)
+class Crossings(StatesModelError, Sequence[Crossing]):
+    """Sequence of crossings, by ascending speed.
+
+    Parameters
+    ----------
+    crossings : tuple of Crossing
+        The crossings.
+    lines : tuple of Line
+        The lines that force the beam.
+    speeds : ndarray, shape (S,)
+        Speeds of the locus [rad/s], up to the top speed or the critical one.
+    frequency : ndarray, shape (S, m)
+        Natural frequencies [Hz], numbered at rest.
+    order : int
+        Highest order of the lines that were sought.
+    unlisted : int
+        Number of crossings of the next order, which are weaker and not listed; those of still higher
+        order are not counted.
+    warnings : tuple of str
+        Limitations of the result, and why there is no crossing.
+    provenance : Provenance
+        How the result was computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> wheel = bd.RollingWheel(0.3, 55.0, bd.RoadWave(0.3, velocity_amplitude=0.01))
+    >>> found = bd.resonance_speeds(bd.Scene(strip, bd.Mount(radius=0.215), wheel), top_speed=150.0, modes=1)
+    >>> [line.name for line in found.lines]
+    ['road -', 'road +']
+    """
+
+    crossings: tuple[Crossing, ...]
+    lines: tuple[Line, ...]
+    speeds: np.ndarray
+    frequency: np.ndarray
+    order: int
+    unlisted: int
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self)} up to {self.say_speed(self.speeds[-1])}"
+        unit, factor = self.display_units.speed_unit()
+        yield listed([c.speed * factor for c in self], unit)
+        yield from (error_at_most([c.error for c in self]) if len(self) else "", warned(self.warnings))
+
+    def __getitem__(self, index):  # pyright: ignore[reportIncompatibleMethodOverride]
+        return self.crossings[index]
+
+    def __len__(self) -> int:
+        return len(self.crossings)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in the speed of each crossing (k,)."""
+        return left_out_of_resonances(self.scene, self.crossings, self.frequency.shape[1])
+
+    @property
+    def extent(self) -> str:
+        """What was sought, and what is left out, as a sentence."""
+        sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
+        if not self.unlisted:
+            return f"{sought}; there are none of order {self.order + 1}."
+        crossings = f"{self.unlisted} crossing{'s' * (self.unlisted != 1)} of order {self.order + 1}"
+        return f"{sought}; {crossings}, and those of higher order, are weaker and left out."
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
+        from beamdyn.output.campbell import Curves, plot_campbell
+
+        lines = {line.name: line.multiple for line in self.lines}
+        marked = {
+            kind: [(c.speed, c.frequency) for c in self if c.kind == kind]
+            for kind in ("forced", "parametric")
+        }
+        names = tuple(f"mode {i}" for i in range(1, self.frequency.shape[1] + 1))
+        unit = self.display_units.speed_unit().name
+        return plot_campbell([Curves(self.speeds, self.frequency, names)], lines, marked, ax, unit)

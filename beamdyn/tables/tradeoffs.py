@@ -1,0 +1,55 @@
+"""Trade-offs as tables for reading and as rows of CSV files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from rich.console import Group
+from rich.text import Text
+
+from beamdyn.common.edge.tables import table
+from beamdyn.common.pictures import figure_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from beamdyn.tradeoffs import Diagram, Tradeoff
+
+
+def diagram_table(diagram: Diagram) -> Group:
+    """Cost of each digit, the Pareto front, and the reference of the errors."""
+    rows = [
+        (f"{d.error:.0e}", d.family, d.setting, f"{1e3 * d.time:.3g}", "" if i == 0 else f"{d.ratio:.2f}")
+        for i, d in enumerate(diagram.per_digit)
+    ]
+    heads = ("error", "cheapest", "setting", "time [ms]", "over the digit before")
+    return Group(
+        table(diagram.title[:1].upper() + diagram.title[1:], heads, rows, (1, 2)),
+        Text(f"Pareto front: {diagram.summary}."),
+        Text(f"Error: of {diagram.error_of}."),
+        Text(f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that."),
+        *(Text(f"Left out: {sentence}.") for sentence in diagram.skipped),
+        Text(),
+    )
+
+
+def tradeoff_csv(result: Tradeoff) -> Iterator[Sequence[object]]:
+    """All measurements, one row each."""
+    yield "diagram", "family", "setting", "size", "relative_error", "time_s", "in_front"
+    for diagram in result.diagrams:
+        _, *rows = diagram_csv(diagram)
+        yield from ((diagram.title, *row) for row in rows)
+
+
+def diagram_csv(diagram: Diagram) -> Iterator[Sequence[object]]:
+    """The measurements of one diagram, one row each."""
+    yield "family", "setting", "size", "relative_error", "time_s", "in_front"
+    for m in diagram.measurements:
+        yield m.family, m.setting, m.size, m.error, m.time, m in diagram.front
+
+
+def tradeoff_figure(result: Tradeoff) -> Figure:
+    """All diagrams, two in a row."""
+    rows = -(-len(result.diagrams) // 2)
+    return figure_of(result.plot, (6.5 * min(2, len(result.diagrams)), 4.5 * rows))

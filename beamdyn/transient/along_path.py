@@ -1,0 +1,271 @@
+"""What further modes would change in a transient, along its own path.
+
+The motion q of a run, seen as one of a larger model, misses the equations of that by a residual R, which is
+known along the path.  The difference e of the two motions obeys e'' + C e' + K(t) e = R.  It is found in the
+modes that the larger model has in each stretch of the run: the slow ones as oscillators whose frequency
+follows the stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w
+(Liouville and Green); those too fast for the samples of the run follow the residual, and ring by as much as
+that jumps.  So no step has to be solved again.  What couples the modes of a stretch is left out, which
+changes the difference by little where a run lasts long enough to need this.
+
+References
+----------
+Bender, Orszag, Advanced Mathematical Methods for Scientists and Engineers, 1978, section 10.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.root_motion import Quantity, RootMotion
+from beamdyn.transient.gauss import Segment
+from beamdyn.transient.record_steps import RecordSegment, RecordSteps
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.time_error import size_per_coordinate
+from beamdyn.transient.trajectory import SAMPLES, Trajectory, magnitude
+
+_THIN = 2  # of the samples of a path, one in so many is taken
+_STRETCHES, _OF_RECORD = 8, 32  # of a segment in which the speed changes, and of a record
+_RESOLVED = 1.9  # phase from sample to sample [rad] up to which a mode is followed in time
+_INSIDE = 1e-9  # of a segment, by which samples at its ends lie inside it: loads may jump there
+_CONTAINED = 1e-6  # of its size, by which a shape may miss the larger model
+_MOST_DECAY = 30.0  # exponent of the decay in a stretch: larger ones exceed the range of numbers
+_BY_CHANCE = 3.0  # largest of many contributions added by chance, over the root of their summed squares
+_MOST_RINGING = 0.1  # of the distance: a sum of amplitudes is far more than what they reach together
+_MOST_GROWTH = 2.0  # of the deflection at steady speed: what grows there is more than these oscillators
+
+
+@dataclass(frozen=True)
+class _Residual:
+    """What the motion of a run misses in the equations of a larger model, and these equations.
+
+    Parameters
+    ----------
+    larger : ModalSystem
+        The larger model, of n coordinates.
+    quantities : tuple of str
+        Functions of time that multiply its matrices of stiffness.
+    stiffness : ndarray, shape (k, n, n)
+        These matrices.
+    damping : ndarray, shape (n, n)
+        Damping.
+    factors : ndarray, shape (l + k m + m, n)
+        Residual per unit of each load, of each coordinate times each quantity, and of each velocity.
+    embedding : ndarray, shape (n, m)
+        Coordinates of the larger model by those of the run.
+    """
+
+    larger: ModalSystem
+    quantities: tuple[Quantity, ...]
+    stiffness: np.ndarray
+    damping: np.ndarray
+    factors: np.ndarray
+    embedding: np.ndarray
+
+    @classmethod
+    def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
+        """The residual of the motions of a system; None if the larger one does not contain it, or gyrates."""
+        X, (stiffness, damping, _) = _embed(system.equations, larger.equations), larger.equations.matrices
+        if X is None or not set(damping) <= {"unity"}:
+            return None
+        n, matrices = larger.size, np.array([*stiffness.values()])
+        C = damping.get("unity", np.zeros((n, n)))
+        loads = np.array([*larger.equations.vectors.values()]).reshape(-1, n)
+        of_motion = -np.concatenate([*(K @ X for K in matrices), C @ X], axis=1).T
+        factors = np.concatenate([loads, of_motion])
+        return cls(larger, tuple(stiffness), matrices, C, factors - factors @ X @ X.T, X)
+
+    @property
+    def flat_stiffness(self) -> np.ndarray:
+        """The matrices of stiffness as rows: shape (k, n n)."""
+        return self.stiffness.reshape(len(self.stiffness), -1)
+
+    def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Residual at some times, (N, n), for coordinates and velocities (N, m) of the run."""
+        loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
+        return (
+            np.concatenate([*loads, *(k[:, None] * q for k in self.values(root).T), v], axis=1) @ self.factors
+        )
+
+    def load(self, root: RootMotion) -> np.ndarray:
+        """Residual of the run at rest at some times: shape (N, n)."""
+        loads = np.stack([getattr(root, name) for name in self.larger.equations.vectors], axis=1)
+        return loads @ self.factors[: loads.shape[1]]
+
+    def values(self, root: RootMotion) -> np.ndarray:
+        """Values of the quantities at some times: shape (N, k)."""
+        return np.stack([getattr(root, name) for name in self.quantities], axis=1)
+
+
+def _embed(equations: Equations, larger: Equations) -> np.ndarray | None:
+    """Coordinates of the larger model by those of a smaller one, (n, m); None if it does not contain them."""
+    few, many = (_shapes(each) for each in (equations, larger))
+    if few.shape[0] != many.shape[0]:
+        return None
+    X, *_ = np.linalg.lstsq(many, few, rcond=None)
+    missed = np.linalg.norm(many @ X - few, axis=0) > _CONTAINED * np.linalg.norm(few, axis=0)
+    return None if missed.any() else X
+
+
+def _shapes(equations: Equations) -> np.ndarray:
+    """Coordinates of all fields in the discretization, by those of the equations."""
+    rows = []
+    for shape in equations.shapes.values():
+        rows.append(np.zeros((len(shape.matrix), equations.size)))
+        rows[-1][:, equations.blocks[shape.block]] = shape.matrix
+    return np.concatenate(rows)
+
+
+def distance_along_path(
+    path: Trajectory, system: ModalSystem, larger: ModalSystem, y0: np.ndarray, y0_of_larger: np.ndarray
+) -> float | None:
+    """Largest distance of the tip from that of a larger model [m], estimated along the path.
+
+    Parameters
+    ----------
+    path : Trajectory
+        Motion of the run.
+    system, larger : ModalSystem
+        Equations of the run and of the larger model, which contains its modes.
+    y0, y0_of_larger : ndarray, shape (2 m,) and (2 n,)
+        Coordinates and velocities of both at time 0.
+
+    Returns
+    -------
+    float or None
+        None where it takes more than the oscillators: gyroscopic coupling, coordinates that the larger
+        model does not contain, a mode that diverges or is heavily damped, a motion that grows, and where
+        ringing counts most: after an abrupt start, or in a record that is rough from sample to sample.
+    """
+    residual = _Residual.of(system, larger)
+    if residual is None or _grows(path, system):
+        return None
+    (q0, v0), (e, rate) = np.split(y0, 2), np.split(y0_of_larger, 2)
+    e, rate = e - residual.embedding @ q0, rate - residual.embedding @ v0
+    largest, ringing, first = 0.0, 0.0, 0
+    for segment in path.segments:
+        if isinstance(segment, RecordSegment):
+            ringing += _ringing_at_samples(residual, segment.steps)
+        last = first + SAMPLES * len(segment.acceleration)
+        t, q, v = (each[first : last + 1 : _THIN] for each in path.samples)
+        root = larger.root(np.clip(t, *_within(segment)))
+        R, values, jump = residual.at(root, q, v), residual.values(root), True
+        for here in _stretches(segment, residual, larger.motion.steady_start):
+            found = _follow(residual, t[here], R[here], values[here], e, rate)
+            if found is None:
+                return None
+            e, rate = found.e, found.rate
+            ringing += found.ringing if jump else 0.0
+            jump, largest = False, max(largest, found.largest + ringing)
+        first = last
+    return largest if ringing <= _MOST_RINGING * largest else None
+
+
+def _within(segment: Segment | RecordSegment) -> tuple[float, float]:
+    """First and last time [s] that belong to a segment alone."""
+    inside = _INSIDE * (segment.end - segment.start)
+    return segment.start + inside, segment.end - inside
+
+
+def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
+    """Amplitude of the tip [m] by what the load's bends from sample to sample excite, added by chance.
+
+    A change of slope excites a mode of frequency w by itself over w^3; a jump between two samples, in which
+    that is spread over a time h, by w h as much.
+    """
+    middle = steps.piece_start + steps.piece_width / 2
+    root = residual.larger.root(middle)
+    stiffness = residual.values(root).mean(axis=0) @ residual.flat_stiffness
+    n = residual.larger.size
+    squares, modes = np.linalg.eigh(stiffness.reshape(n, n))
+    slope = np.diff(residual.load(root), axis=0) / np.diff(middle)[:, None]
+    bends = np.linalg.norm(np.diff(slope, axis=0) @ modes, axis=0)
+    w = np.sqrt(np.abs(squares))
+    amplitude = bends / w**3 * np.maximum(1.0, w * steps.piece_width.max())
+    fast = w * steps.h.max() * _THIN / SAMPLES > _RESOLVED
+    return _BY_CHANCE * float(size_per_coordinate(residual.larger.tips @ modes) @ (amplitude * fast))
+
+
+def _grows(path: Trajectory, system: ModalSystem) -> bool:
+    """Whether the motion grows at steady speed, by parametric or other resonance."""
+    start = max(system.motion.steady_start, path.start)
+    t, q, _ = path.samples
+    size = magnitude(q[t >= start], system.tips)
+    quarter = len(size) // 4
+    return quarter > 0 and bool(size[-quarter:].max() > _MOST_GROWTH * size[: 2 * quarter].max())
+
+
+def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_start: float) -> Iterator[slice]:
+    """Samples of the stretches of a segment, the last of each being the first of the next."""
+    steps, changing = len(segment.acceleration), segment.start < steady_start
+    parts = (_OF_RECORD if isinstance(segment, RecordSegment) else _STRETCHES) if changing else 1
+    decay = np.abs(residual.damping).sum(axis=0).max() / 2 * (segment.end - segment.start)
+    count = min(steps, max(parts, int(np.ceil(decay / _MOST_DECAY))))
+    for a, b in pairwise(np.arange(count + 1) * steps // count * (SAMPLES // _THIN)):
+        yield slice(int(a), int(b) + 1)
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """The difference in a stretch.
+
+    Parameters
+    ----------
+    largest : float
+        Largest deflection of the tip [m].
+    e, rate : ndarray, shape (n,)
+        Coordinates and their rates at the end.
+    ringing : float
+        Amplitude of the tip [m] by the fast modes, if the stretch begins with a jump.
+    """
+
+    largest: float
+    e: np.ndarray
+    rate: np.ndarray
+    ringing: float
+
+
+def _follow(
+    residual: _Residual, t: np.ndarray, R: np.ndarray, values: np.ndarray, e: np.ndarray, rate: np.ndarray
+) -> _Followed | None:
+    """Follow the difference through a stretch, in the modes of its mean stiffness; None if one diverges."""
+    squares, modes = np.linalg.eigh((values.mean(axis=0) @ residual.flat_stiffness).reshape(len(e), len(e)))
+    stiff = values @ ((residual.stiffness @ modes) * modes).sum(axis=1)
+    decay = ((residual.damping @ modes) * modes).sum(axis=0) / 2
+    w2 = stiff - decay**2
+    if squares[0] <= 0 or (w2.min(axis=0) <= decay**2).any():
+        return None
+    force, tips = R @ modes, residual.larger.tips @ modes
+    y, y0, v0 = force / stiff, modes.T @ e, modes.T @ rate
+    end = (y[-1] - y[-2]) / (t[-1] - t[-2])
+    slow = np.sqrt(w2.max(axis=0)) * np.diff(t).max() <= _RESOLVED
+    ringing = size_per_coordinate(tips) @ np.abs(np.where(slow, 0.0, y0 - y[0]))
+    y[:, slow], end[slow] = _oscillate(
+        t, np.sqrt(w2[:, slow]), decay[slow], force[:, slow], y0[slow], v0[slow]
+    )
+    return _Followed(float(magnitude(y, tips).max()), modes @ y[-1], modes @ end, float(ringing))
+
+
+def _oscillate(
+    t: np.ndarray, w: np.ndarray, decay: np.ndarray, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Oscillators with frequencies w (N, j) under forces (N, j): values (N, j), and rates at the end (j,)."""
+    dt = np.diff(t)[:, None]
+    phase = _cumulative(w, dt)
+    turn = np.exp(1j * phase - decay * (t - t[0])[:, None])
+    root = np.sqrt(w)
+    start = (v0 + decay * y0) / root[0] + 1j * root[0] * y0
+    a = turn * (start + _cumulative(force / (root * turn), dt))
+    y = a.imag / root
+    return y, a[-1].real * root[-1] - decay * y[-1]
+
+
+def _cumulative(values: np.ndarray, dt: np.ndarray) -> np.ndarray:
+    """Integrals from the first of some times to each, (N, j), by trapezoids of widths dt (N - 1, 1)."""
+    parts = (values[1:] + values[:-1]) * (dt / 2)
+    return np.concatenate([np.zeros_like(values[:1]), np.cumsum(parts, axis=0)])

@@ -1,0 +1,69 @@
+"""The smallest modal basis with which a transient meets its tolerance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from beamdyn.modal.modal_basis import ModalBasis
+from beamdyn.transient.missed_tolerance import warn_of_missed_modes
+from beamdyn.transient.trajectory import SAMPLES
+from beamdyn.transient.transient import Transient, TransientRequest
+
+_MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
+_SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
+_FAST = 4.0
+_FEW_MODES, _NEARLY = 4, 30.0  # modes of which one more divides the error by more than this, where they do
+_TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried as well
+
+
+def run_smallest_basis(request: TransientRequest) -> Transient:
+    """Integrate with the smallest basis that meets the tolerance, else with the best that is known.
+
+    The basis of the request is the first that is tried.
+    """
+    tolerance = request.tolerance
+    run = _search(replace(request, method="auto", t_eval=None))
+    if run.relative_mode_error > tolerance and tolerance < _TIGHT:
+        # Accurate steps leave less work for modes: with coarser ones the whole error may be smaller.
+        coarse = _search(replace(request, method="auto", t_eval=None, tolerance=_TIGHT))
+        run = min(run, coarse, key=lambda run: run.time_error + run.mode_error)
+    missed = tuple(warn_of_missed_modes(run.relative_mode_error, tolerance, str(run.request.basis)))
+    as_requested = request.method == "auto" and request.t_eval is None
+    run = run if as_requested else replace(request, basis=run.request.basis).run()
+    return run.with_warnings(missed) if missed else run
+
+
+def _search(request: TransientRequest) -> Transient:
+    """Add modes until the truncation error meets the tolerance, or takes too much work."""
+    run = request.run()
+    if run.mode_error > request.tolerance * run.largest and (finer := run.with_more_modes) is not None:
+        # A sudden motion excites many modes: as many modes at rest may then be the better basis.
+        at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
+        run = min(run, at_rest, key=lambda each: each.distance_from_path(*finer))
+    return _add_modes(run, request.tolerance)
+
+
+def _add_modes(run: Transient, tolerance: float) -> Transient:
+    """Refine a run until its truncation error meets the tolerance, while that is known and takes seconds."""
+    before = np.inf
+    while run.mode_error > tolerance * run.largest and (finer := _enlarge(run, tolerance)) is not None:
+        most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
+        if _work(finer) > most or finer.with_more_modes is None:
+            break
+        run, before = finer, run.mode_error
+    return run
+
+
+def _enlarge(run: Transient, tolerance: float) -> Transient | None:
+    """The next larger run to try: by one of few modes where these nearly suffice, else as `refined`."""
+    few = (run.request.basis.modes or np.inf) <= _FEW_MODES
+    if few and run.mode_error <= _NEARLY * tolerance * run.largest:
+        return run.request.run_with_one_more()
+    return run.refined
+
+
+def _work(run: Transient) -> float:
+    """Steps times squared number of coordinates, to which the time of a run is roughly proportional."""
+    return len(run.path.samples[0]) / SAMPLES * run.system.size**2

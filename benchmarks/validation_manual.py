@@ -1,0 +1,320 @@
+"""The validation manual: every published value beside ours, written from the data that the packages bring.
+
+python -m benchmarks.validation_manual FOLDER writes its pages in Markdown; the site does so when it is built.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.comparison import Comparison
+from beamdyn.common.digits import supported
+from beamdyn.published import load
+from beamdyn.reproduce import motion, others, printed_tables, sections
+from beamdyn.reproduce.entries import PrintedValue
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.scene import Scene
+from beamdyn.spectrum.equilibria import equilibrium
+from beamdyn.spectrum.modes import natural_modes
+from brakes.published import load as load_brakes
+from brakes.published.errata import Erratum
+from brakes.reproduce import caliper, drum, drum_as_printed, forklift, forklift_as_printed
+
+TESTS = "tests/literature"
+_TESTS_OF_TABLES = {  # by the beginning of the source's name
+    "Bir 2009, section": "test_printed_tables.py::test_a_hinged_beam_tends_to_a_cable",
+    "Code_Aster SSLV105": "test_printed_tables.py::test_centrifugal_stretch",
+    "": "test_printed_tables.py::test_all_digits_or_a_proven_erratum",
+}
+_BLADES = "test_printed_tables.py::test_blades_of_wind_turbines"
+_TESTS_OF_LEE_YOO = {  # by the beginning of the section's title
+    "Table 2": "test_lee_yoo.py::test_table_2_within_a_thousandth_of_ansys",
+    "Table 3 with large": "test_elastica_transient.py::test_table_3_with_large_deflection",
+    "Table 3, continued": "test_resonance.py::test_steady_amplitude_is_a_seventh_of_the_published_peak",
+    "Table 3": "test_transient.py::test_table_3_with_one_to_six_modes",
+    "Fig. 6": "test_resonance.py::test_peaks_stand_at_the_resonance_speeds",
+    "Fig. 7": "test_resonance.py::test_the_two_peaks_of_figure_6",
+    "Fig. 8": "test_elastica.py::test_harvester",
+    "Section 3.3": "test_lee_yoo.py::test_first_setting_angle_limit",
+    "Section 4": "test_lee_yoo.py::test_buckling_speed",
+}
+_ROTATING = {
+    True: "test_rotating_beams.py::test_published",
+    False: "test_rotating_beams.py::test_critical_speeds",
+}
+_TEXTBOOKS = {
+    "shigley_16_2": "test_drum.py::test_shigley_example_16_2",
+    "shigley_16_1": "test_drum.py::test_shigley_problem_16_1",
+    "shigley_16_1_inch": "test_drum.py::test_shigley_problem_16_1_in_inches",
+    "shigley_16_2_problem": "test_drum.py::test_shigley_problem_16_2",
+    "bhandari_12_9": "test_drum.py::test_bhandari_12_9",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A published value beside ours: the input in words, both values, our stated error, verdict and test."""
+
+    where: str
+    printed: str
+    ours: str
+    error: str
+    verdict: str
+    test: str
+
+    def cells(self) -> list[str]:
+        return [self.where, self.printed, self.ours, self.error, self.verdict, f"`{self.test}`"]
+
+
+HEADS = ("input", "printed", "ours", "stated error", "verdict", "test")
+Sections = dict[str, list[Row]]
+
+
+def first_of(table: dict[str, str], name: str) -> str:
+    """Entry of the first key with which a name begins."""
+    return next(value for key, value in table.items() if name.startswith(key))
+
+
+def of_printed_tables() -> Sections:
+    """Tables of papers on rotating beams, and blades of wind turbines, by Ritz."""
+    found: Sections = {}
+    for source, entries in printed_tables.all_entries("ritz").items():
+        test = _BLADES if source.endswith("computed") else first_of(_TESTS_OF_TABLES, source)
+        found[source] = [_row_of_entry(entry, test) for entry in entries]
+    return found
+
+
+def _row_of_entry(entry: PrintedValue, test: str) -> Row:
+    verdict = "agrees" if entry.agrees else "differs"
+    if entry.exact:
+        verdict = f"the print errs: {entry.exact}"
+    ours = supported(entry.ours, entry.error, 12)
+    return Row(f"{entry.where}, mode {entry.mode}", entry.printed, ours, f"{entry.error:.0e}", verdict, test)
+
+
+def of_reference_tables() -> Sections:
+    """Frequencies of rotating and of twisted beams that several methods give in all digits."""
+    found: Sections = {}
+    data = load("rotating_beams")
+    for case in (*data["case"], *(c for c in data["critical"] if np.isfinite(c["gamma"]))):
+        printed, ours, error = others.solve_case(case, "ritz")
+        rows = _rows(case["name"], printed, ours, error, _ROTATING["frequency" in case])
+        found.setdefault(case.get("source", "critical speeds, computed"), []).extend(rows)
+    for case in load("twisted_beams")["case"]:
+        modes = natural_modes(others.twisted_scene(case), case["gamma"], len(case["frequency"]))
+        test = "test_two_planes.py::test_rows_of_the_models"
+        rows = _rows(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error, test)
+        found.setdefault(case["source"], []).extend(rows)
+    return found
+
+
+def _rows(name: str, printed: Sequence[Any], ours: np.ndarray, error: np.ndarray, test: str) -> Iterator[Row]:
+    for i, (text, value, relative) in enumerate(zip(map(str, printed), ours, error, strict=True)):
+        absolute = abs(float(value * relative))
+        entry = PrintedValue(name, i + 1, text, float(value), absolute)
+        yield _row_of_entry(entry, test)
+
+
+def of_elastica() -> Sections:
+    """Equilibria of beams that bend far, and frequencies about them."""
+    rows: list[Row] = []
+    for case in load("elastica")["case"]:
+        angles = (float(np.radians(case[f"{name}_angle_deg"])) for name in ("setting", "bending"))
+        physics = Physics(large_deflection=True, branch=case["branch"])
+        scene = Scene(Beam.from_stiffness(1.0, 1.0, 1.0), Mount(case["radius"], *angles), physics=physics)
+        modes = natural_modes(scene, case["gamma"], len(case["frequency"]))
+        test = "test_elastica.py::test_frequencies"
+        rows += _rows(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error, test)
+        if "tip" in case:
+            rows += _tips(case, equilibrium(scene, case["gamma"]))
+    return {"Rotating elastica, computed by other methods": rows}
+
+
+def _tips(case: dict[str, Any], found: Any) -> Iterator[Row]:
+    for name, printed, ours in zip(
+        ("along", "across"), case["tip"], _along_and_across(case, found.tip), strict=True
+    ):
+        free = case["setting_angle_deg"] == 0.0  # then either sign is as good
+        close = abs(abs(ours) - abs(float(printed))) if free else abs(ours - float(printed))
+        verdict = "agrees" if close <= found.error + 0.5e-9 else "differs"
+        where = f"{case['name']}, tip {name}"
+        yield Row(
+            where, printed, f"{ours:.10f}", f"{found.error:.0e}", verdict, "test_elastica.py::test_tips"
+        )
+
+
+def _along_and_across(case: dict[str, Any], tip: np.ndarray) -> tuple[float, float]:
+    angle = np.radians(case["bending_angle_deg"])
+    return float(tip[0]), float(np.cos(angle) * tip[1] + np.sin(angle) * tip[2])
+
+
+def of_lee_and_yoo() -> Sections:
+    """All numbers of the paper on the inward beam."""
+    return {
+        f"Lee and Yoo 2019, {title}": [
+            _row_of_comparison(c, first_of(_TESTS_OF_LEE_YOO, title)) for c in rows
+        ]
+        for title, rows in sections(motion.run_sweep()).items()
+    }
+
+
+def _row_of_comparison(comparison: Comparison, test: str) -> Row:
+    what, source, printed, ours, _, verdict = comparison.cells()
+    return Row(f"{what} ({source})", printed, ours, f"{comparison.error:.0e}", verdict, test)
+
+
+def of_brakes() -> Sections:
+    """Drum brakes, the forklift, bicycle calipers; "ours" follows the papers' own way where they err."""
+    found = {
+        "Vardanyan et al. 2019, Table 1 (by the paper's own way)": _cells(
+            drum.rows(), "test_drum.py::test_table_1_to_every_printed_digit"
+        )
+    }
+    for name, rows in forklift.rows().items():
+        early = name in ("table_2", "table_3", "table_4")
+        test = "tables_2_3_4_but_for_one_cell" if early else "tables_5_6_7_within_their_rounding"
+        found[f"Yoo et al. 1997, Table {name[-1]} (by the paper's own way)"] = _cells(
+            rows, f"test_forklift.py::test_{test}"
+        )
+    for title, comparisons in caliper.sections().items():
+        test = "test_caliper.py::test_every_verdict_on_the_page_is_as_expected"
+        found[f"eeBrake: {title}"] = [_row_of_comparison(c, test) for c in comparisons]
+    return found
+
+
+def _cells(rows: Iterable[Any], test: str) -> list[Row]:
+    found = []
+    for row in rows:
+        for cell in row.cells:
+            printed, ours, *right = cell.texts
+            verdict = f"{cell.verdict}; right: {right[0]}" if right else cell.verdict
+            found.append(Row(", ".join(row.inputs), printed, ours, "rounding", verdict, test))
+    return found
+
+
+def of_textbooks() -> Sections:
+    """Worked examples of drum brakes; the tests hold them to their printed digits."""
+    data = load_brakes("drum_textbooks")
+    return {data[key]["source"]: [*_printed_in(data[key], test)] for key, test in _TEXTBOOKS.items()}
+
+
+def _printed_in(example: dict[str, Any], test: str) -> Iterator[Row]:
+    for name, given in example.items():
+        if isinstance(given, dict) and ("printed" in given or name.startswith("reference")):
+            value = given.get("printed", given.get("value"))
+            text, note = f"{_text(value)} {given['unit']}", given.get("note", "agrees")
+            yield Row(name.replace("_", " "), text, "in the test", "rounding", note, test)
+
+
+def _text(printed: Any) -> str:
+    return ", ".join(printed) if isinstance(printed, list) else str(printed)
+
+
+def problems_of_statics(tests: Path) -> Iterator[str]:
+    """Worked problems of textbooks on mechanisms, each a test."""
+    yield "# Problems of statics\n\nEach is a test with the textbook's number and its tolerance.\n"
+    file = "test_planar_problems.py"
+    names = re.findall(r"^def test_(\w+)", (tests / file).read_text(encoding="utf-8"), re.MULTILINE)
+    yield _table(("problem", "test"), ([name.replace("_", " "), f"`{file}::test_{name}`"] for name in names))
+
+
+_ERRATA = """# Errata
+
+Errors in print. A printed value that ours contradicts is confirmed by a third computation first.
+
+## Values of tables
+
+The proof: the power series in 30 digits, and guaranteed bounds that exclude the print.
+"""
+_HEADS_OF_VALUES = (
+    "source",
+    "at",
+    "mode",
+    "printed",
+    "ours",
+    "power series",
+    "width of bounds",
+    "last digits off",
+)
+_HEADS_OF_ERRATA = ("where", "the paper has", "right", "what follows")
+_ERRATA_OF_BRAKES = {
+    "Vardanyan et al. 2019": (drum_as_printed, "test_drum.py::test_every_erratum_has_a_consequence"),
+    "Yoo et al. 1997": (
+        forklift_as_printed,
+        "test_forklift.py::test_corrected_distance_and_what_the_printed_one_adds",
+    ),
+}
+
+
+def errata() -> Iterator[str]:
+    """All errata, with their proofs or what follows from them."""
+    yield _ERRATA
+    found = printed_tables.compare_papers()[1]
+    yield _table(_HEADS_OF_VALUES, ([source, *entry.cells()] for source, entry in found))
+    yield "\n## Lee and Yoo 2019\n"
+    yield "The proof: `tests/invariants/test_derivation.py` derives the equations again.\n"
+    keys = ("where", "printed", "right", "consequence")
+    rows = ([entry[key] for key in keys] for entry in load("lee_yoo_2019")["erratum"])
+    yield _table(_HEADS_OF_ERRATA, rows)
+    for title, (module, test) in _ERRATA_OF_BRAKES.items():
+        yield f"\n## {title}\n\nThe numbers that follow are computed both ways: `{test}`.\n"
+        yield _table(_HEADS_OF_ERRATA, (_erratum(entry) for entry in module.errata()))
+
+
+def _erratum(entry: Erratum) -> list[str]:
+    return [entry.where, entry.printed, entry.right, entry.consequence]
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
+    return "\n".join([*lines, *("| " + " | ".join(_cell(cell) for cell in row) + " |" for row in rows)])
+
+
+def _cell(text: object) -> str:
+    return str(text).replace("|", "\\|").replace("*", "\\*").replace("\n", " ")
+
+
+PARTS = {
+    "rotating_beams": ("Tables of rotating beams and blades", of_printed_tables),
+    "references": ("Rotating and twisted beams in all digits", of_reference_tables),
+    "large_deflection": ("Beams that bend far", of_elastica),
+    "inward_beam": ("The inward beam of Lee and Yoo", of_lee_and_yoo),
+    "brakes": ("Brakes", of_brakes),
+    "textbooks": ("Drum brakes of textbooks", of_textbooks),
+}
+
+
+def write_pages(folder: Path) -> list[str]:
+    """Write all pages and their overview; the names of the pages."""
+    folder.mkdir(parents=True, exist_ok=True)
+    counts = []
+    for name, (title, part) in PARTS.items():
+        found = part()
+        text = [f"# {title}\n", f"{part.__doc__} Tests: in `{TESTS}`.\n"]
+        for source, rows in found.items():
+            text += [f"## {source}\n", _table(HEADS, (row.cells() for row in rows)), ""]
+            bad = sum(row.verdict.startswith("differs") for row in rows)
+            wrong = sum(row.verdict.startswith("the print errs") for row in rows)
+            counts.append([f"[{source}]({name}.md)", str(len(rows)), str(wrong), str(bad)])
+        (folder / f"{name}.md").write_text("\n".join(text), encoding="utf-8")
+    (folder / "statics.md").write_text(
+        "\n".join(problems_of_statics(Path(__file__).parents[1] / TESTS)), encoding="utf-8"
+    )
+    (folder / "errata.md").write_text("\n".join(errata()), encoding="utf-8")
+    heads = ("source", "values", "the print errs", "differ, with the reason there")
+    overview = ["# All sources\n", _table(heads, counts), "", f"{sum(int(row[1]) for row in counts)} values."]
+    (folder / "overview.md").write_text("\n".join(overview), encoding="utf-8")
+    return ["overview", *PARTS, "statics", "errata"]
+
+
+if __name__ == "__main__":
+    print(*write_pages(Path(sys.argv[1])), sep="\n")

@@ -1,0 +1,32 @@
+"""
+Paths of a four-bar linkage
+===========================
+
+`planar.trace` follows a mechanism along its path, through its turning points, wherever a driver would
+have to turn back.
+"""
+
+import matplotlib.pyplot as plt
+
+from brakes import planar
+
+crank, coupler, rocker = "crank", "coupler", "rocker"
+joints = (
+    planar.Pin("A", crank, "ground", at=(0.0, 0.0)),
+    planar.Pin("B", crank, coupler, at=(0.0, 0.04)),
+    planar.Pin("C", coupler, rocker, at=(0.12, 0.09)),
+    planar.Pin("D", rocker, "ground", at=(0.1, 0.0)),
+)
+linkage = planar.Mechanism((crank, coupler, rocker), joints, (planar.Moment("drive", crank),))
+path = planar.trace(linkage, "drive", length=0.5, points=401)
+
+fig, ax = plt.subplots()
+for name, body, point in (
+    ("B", crank, (0.0, 0.04)),
+    ("C", rocker, (0.12, 0.09)),
+    ("P", coupler, (0.04, 0.10)),
+):
+    place = path.position.point(body, point)
+    ax.plot(1e3 * place[..., 0], 1e3 * place[..., 1], label=name)
+ax.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
+ax.legend()

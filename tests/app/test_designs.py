@@ -1,0 +1,277 @@
+"""Designs of an interactive program: undo and redo, links, named designs, comparison, examples."""
+
+import base64
+import json
+import re
+import tomllib
+import zlib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beamdyn.app.program import BEAMDYN
+from beamdyn.common.app import tasks
+from beamdyn.common.app.browser_memory import named_designs, read_typed, refused_name
+from beamdyn.common.app.comparison import (
+    Difference,
+    OtherDesign,
+    differences_html,
+    headline_html,
+    input_differences,
+    result_differences,
+    with_ghost,
+)
+from beamdyn.common.app.design_link import LinkedDesign
+from beamdyn.common.app.examples import examples_of
+from beamdyn.common.app.handles import draw_sheet
+from beamdyn.common.app.history import History
+from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.edge.config import ConfigError
+from brakes.app.program import BRAKES
+
+VEHICLE = BRAKES.documents[0]
+SCREEN = VEHICLE.screens[0]
+DOCUMENTS = [*BRAKES.documents, *BEAMDYN.documents]
+
+# Undo and redo ------------------------------------------------------------------------------------------
+
+
+@given(st.lists(st.tuples(st.sampled_from("abc"), st.text("012", max_size=2)), max_size=30))
+def test_undoing_all_and_redoing_all_comes_back(changes):
+    history, entries = History({}), {}
+    for at, (path, text) in enumerate(changes):
+        entries = entries | {path: text}
+        history.record(entries, now=10.0 * at)
+    while history.can_undo:
+        first = history.go(-1)
+    assert not any((first if changes and history.can_redo else {}).values())
+    assert history.go(-1) is None
+    last = {}
+    while history.can_redo:
+        last = history.go(1)
+    assert {k: v for k, v in last.items() if v} == {k: v for k, v in entries.items() if v}
+
+
+def test_typing_into_a_field_is_one_step_and_a_pause_begins_another():
+    history = History({"a": "1"})
+    for at, text in enumerate(("12", "123", "123 m")):
+        history.record({"a": text}, now=0.2 * at)
+    history.record({"a": "9 m"}, now=60.0)
+    assert history.go(-1) == {"a": "123 m"}
+    assert history.go(-1) == {"a": "1"}
+
+
+def test_change_after_undo_forgets_what_was_undone():
+    history = History({"a": "1"})
+    history.record({"a": "2"}, now=0.0)
+    history.go(-1)
+    history.record({"a": "3"}, now=0.1)
+    assert not history.can_redo
+    assert history.go(-1) == {"a": "1"}
+
+
+def test_undo_of_another_file_brings_the_design_back():
+    work = OpenDocument(VEHICLE)
+    work.put("stop.speed", "31 km/h")
+    work.history.record(work.entries, now=0.0)
+    before = work.entries
+    work.open(VEHICLE.base, "base")
+    work.history.record(work.entries, now=0.1)
+    assert work.go(-1)
+    assert work.entries == before
+
+
+# Links --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda d: d.name)
+def test_link_carries_each_base_design(document):
+    work = OpenDocument(document)
+    options = {path: work.entries[path] for path in document.aside}
+    fragment = LinkedDesign(document.name, work.text(), options).as_fragment()
+    assert len(fragment) < 2000  # what every browser and mail program takes
+    assert set(fragment) <= set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=")
+    found = LinkedDesign.of_fragment(f"#{fragment}")
+    assert found.document == document.name and found.options == options
+    other = OpenDocument(document)
+    other.open(found.text, "the link")
+    assert other.text() == work.text()
+    assert tomllib.loads(found.text) == tomllib.loads(document.base)
+
+
+def packed(value):
+    text = value if isinstance(value, bytes) else json.dumps(value).encode()
+    return "design=" + base64.urlsafe_b64encode(zlib.compress(text)).decode().rstrip("=")
+
+
+BROKEN = {
+    "nothing": "",
+    "no base64": "design=%%%",
+    "no zlib": "design=" + base64.urlsafe_b64encode(b"plain").decode(),
+    "no JSON": packed(b"import os"),
+    "deep": packed(b"[" * 100_000),
+    "another form": packed({"document": "forklift"}),
+    "numbers": packed(["forklift", 1, {}]),
+    "options of numbers": packed(["forklift", "", {"a": 1}]),
+    "bomb": packed(b" " * 50_000_000),
+    "long": "design=" + "A" * 40_000,
+    "cut": packed(["forklift", "a" * 100, {}])[:-8],
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_link_is_refused_in_a_sentence(name):
+    with pytest.raises(ConfigError, match="the link: it "):
+        LinkedDesign.of_fragment(BROKEN[name])
+
+
+@given(st.text(max_size=60))
+def test_any_fragment_is_a_design_or_refused(text):
+    with pytest.raises(ConfigError):
+        LinkedDesign.of_fragment(text)
+
+
+def test_design_too_large_for_a_link_is_refused():
+    noise = np.random.default_rng(3).bytes(60_000).hex()
+    with pytest.raises(ConfigError, match="save it as a file"):
+        LinkedDesign("forklift", noise, {}).as_fragment()
+
+
+# Kept by the browser ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("stored", [None, "", "[", "[]", "3", '{"a": 3}', '{"a": ["b", {"c": 1}]}'])
+def test_what_is_no_named_design_is_left_out(stored):
+    assert named_designs(stored) == {}
+
+
+def test_named_designs_are_read():
+    assert named_designs('{"mine": ["forklift", {"a": "1"}]}') == {"mine": ("forklift", {"a": "1"})}
+
+
+@pytest.mark.parametrize(("name", "said"), [("", "name"), (" ", "name"), ("x" * 81, "80"), ("mine", "")])
+def test_names_of_designs(name, said):
+    assert said in refused_name(name, {}) and bool(refused_name(name, {})) == bool(said)
+
+
+def test_hundred_and_first_design_is_refused():
+    assert "delete" in refused_name("new", dict.fromkeys(map(str, range(100))))
+    assert not refused_name("7", dict.fromkeys(map(str, range(100))))
+
+
+def test_what_was_typed_last_is_read_as_the_form_reads_it():
+    inputs, base = VEHICLE.inputs(VEHICLE.base_entries), VEHICLE.base_entries
+    typed = {"stop.speed": "25", "stop.friction": "0,6", "no.input": "1", "truck.wheelbase": 3}
+    found = read_typed(typed, base, inputs)
+    assert found == base | {"stop.speed": "25 km/h", "stop.friction": "0.6"}
+
+
+# Comparison ---------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def compared():
+    """A design, and another one that is faster on other wheels; both solved."""
+    work = OpenDocument(VEHICLE)
+    changed = work.entries | {"stop.speed": "30 km/h", "stop.gravity": "9.81 m/s2"}
+    work.compare(OtherDesign("fast", changed))
+    assert work.solve(SCREEN)
+    work.keep_other(SCREEN, tasks.solve(VEHICLE, SCREEN, work.other.entries))
+    return work
+
+
+def test_inputs_that_differ_are_listed_with_defaults(compared):
+    found = [*input_differences(compared.entries, compared.other.entries, compared.inputs)]
+    assert found == [
+        Difference("speed, V", "20 km/h", "30 km/h"),
+        Difference("gravity, g", "(9.806 m/s2)", "9.81 m/s2"),
+    ]
+
+
+def test_results_that_differ_are_those_of_the_answers(compared):
+    here, there = compared.answered[SCREEN.name], compared.compared[SCREEN.name]
+    found = {d.words: (d.here, d.there) for d in result_differences(here.tables, there.tables)}
+    stops = here.answer.stop, there.answer.stop
+    assert [float(text) for text in found["time to rest [s]"]] == pytest.approx(
+        [float(s.time) for s in stops], rel=1e-4
+    )
+    assert [*result_differences(here.tables, here.tables)] == []
+
+
+def test_other_design_is_solved_once_and_again_for_another(compared):
+    assert not compared.wants_other(SCREEN)
+    work = OpenDocument(VEHICLE)
+    work.compare(OtherDesign("broken", work.entries | {"stop.speed": "fast"}))
+    work.keep_other(SCREEN, tasks.solve(VEHICLE, SCREEN, work.other.entries))
+    assert "stop.speed" in work.not_compared[SCREEN.name]
+    work.compare(None)
+    assert not work.wants_other(SCREEN)
+
+
+def test_ghost_lies_beneath_and_keeps_to_its_role(compared):
+    here, there = (
+        SCREEN.drawings(a[SCREEN.name].answer, 0.0) for a in (compared.answered, compared.compared)
+    )
+    drawn = with_ghost(here, there, "fast")[0][0]
+    number = len(drawn.shapes) - len(here[0][0].shapes)
+    assert number > 0
+    assert {shape.role for shape in drawn.shapes[:number]} == {"other"}
+    assert drawn.shapes[number:] == list(here[0][0].shapes)
+    assert drawn.legend["other"] == "fast"
+
+
+def test_markup_in_names_and_values_stays_text():
+    script = "<script>alert(1)</script>"
+    made = differences_html([Difference(script, script, script)], script, script)
+    made += headline_html([(script, script)], [(script, "1")], script)
+    assert "<script" not in made
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda d: d.name)
+def test_each_screen_has_a_headline(document):
+    work = OpenDocument(document)
+    for screen in document.screens:
+        assert work.solve(screen), work.mistakes
+        found = screen.headline(work.answered[screen.name].answer)
+        assert len(found) <= 4 and (found or screen.name == "Rotor")  # which draws the inputs
+        assert all(result.words and result.value for result in found)
+
+
+def test_headline_of_a_truck_that_never_stops():
+    work = OpenDocument(VEHICLE)
+    work.put("stop.friction", "0.05")
+    assert work.solve(SCREEN)
+    found = dict(SCREEN.headline(work.answered[SCREEN.name].answer))
+    assert found["stopping distance"] == "never"
+
+
+# Examples -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("program", [BRAKES, BEAMDYN], ids=lambda p: p.name)
+def test_examples_are_designs_with_titles(program):
+    found = examples_of(program)
+    assert len(found) >= 4
+    assert len({example.title for example in found}) == len(found)
+    for example in found:
+        assert example.document in program.documents and len(example.title) <= 110
+        example.document.check(example.text, example.name)
+
+
+# On a narrow page -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("document", BRAKES.documents, ids=lambda d: d.name)
+def test_narrow_paper_has_letters_of_the_same_size(document):
+    """On a page of 390 px letters of 9 pt on 400 pt are 9 px high: they are read without zooming."""
+    work = OpenDocument(document)
+    for screen in document.screens:
+        assert work.solve(screen)
+        answer = work.answered[screen.name].answer
+        wide, narrow = (draw_sheet(screen, answer, screen.last, narrow=n) for n in (False, True))
+        if wide.element:
+            assert 'viewBox="0 0 400 ' in narrow.element and 'viewBox="0 0 680 ' in wide.element
+            sizes = [set(re.findall(r'font-size="([\d.]+)"', s.element)) for s in (wide, narrow)]
+            assert min(map(float, sizes[1])) >= min(map(float, sizes[0]))

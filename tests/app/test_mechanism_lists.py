@@ -1,0 +1,180 @@
+"""Lists of a mechanism's parts: a toggle clamp from nothing, names that follow, what is missing."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beamdyn.common.app.form_entries import tables_of
+from beamdyn.common.app.open_document import OpenDocument
+from brakes.app.caliper import MECHANISM
+from brakes.app.mechanism_lists import add, advice, covers, empty, groups, put, remove
+from brakes.app.program import BRAKES
+
+SCREEN = MECHANISM.screens[0]
+CLAMP = (Path(__file__).parents[2] / "examples" / "calipers" / "toggle-clamp.toml").read_text("utf-8")
+
+
+def item(entries, name):
+    return next(one for group in groups(entries) for one in group.items if one.name == name)
+
+
+def tables(entries):
+    return tables_of(entries, MECHANISM.inputs(entries))
+
+
+def write(entries, name, /, **values):
+    """Type values into the cells of an item, its name last."""
+    for key, text in sorted(values.items(), key=lambda pair: pair[0] == "name"):
+        entries = put(entries, item(entries, name), key, text)
+    return entries
+
+
+def built():
+    """The toggle clamp of the examples, built by adding and choosing alone; advice at each step."""
+    said = []
+    entries = empty(MECHANISM.base_entries)
+    said.append(advice(entries))
+    entries = write(entries, "body 1", name="handle")
+    entries = write(add(entries, "body"), "body 1", name="arm")
+    for name in ("C", "D", "E", "grip"):
+        made = add(entries, "point")
+        (new,) = set(tables(made)["points"]) - set(tables(entries)["points"])
+        entries = write(made, new, name=name) if new != name else made
+    there = {"A": (0, -40), "B": (0, 0), "C": (20, 20), "D": (40, 54.64101615137754), "E": (60, -40)}
+    for name, (x, y) in {**there, "grip": (80, 12)}.items():
+        entries = write(entries, name, x=f"{x}", y=f"{y} mm")
+    entries = write(add(entries, "pin"), "pin 1", body="arm", at="A")
+    said.append(advice(entries))
+    entries = write(add(entries, "pin"), "pin 2", body="arm", other="handle", at="B")
+    entries = write(add(entries, "bar"), "bar 1", name="CD", body="handle", at="C", to="D")
+    said.append(advice(entries))
+    entries = write(add(entries, "force"), "force 1", body="handle", at="grip", name="hand")
+    said.append(advice(entries))
+    entries = write(add(entries, "force"), "force 1", body="arm", at="E", direction="90", name="work")
+    said.append(advice(entries))
+    entries = write(entries, "stroke", driver="hand", travel="14")
+    said.append(advice(entries))
+    return entries, said
+
+
+def solved(entries):
+    work = OpenDocument(MECHANISM)
+    work.show(entries)
+    assert work.solve(SCREEN), work.mistakes
+    return work.answered[SCREEN.name].answer
+
+
+def test_a_toggle_clamp_is_built_from_nothing():
+    entries, _ = built()
+    work = OpenDocument(MECHANISM)
+    work.open(CLAMP, "clamp.toml")
+    work.put("run.points", "")
+    one, other = solved(entries), solved(work.entries)
+    np.testing.assert_allclose(one.over.amplitudes["work"], other.over.amplitudes["work"], rtol=1e-12)
+    assert not SCREEN.notes(one)
+
+
+def test_at_each_step_advice_says_what_is_missing():
+    _, said = built()
+    words = (
+        "held by the ground",
+        "Nothing holds handle",
+        "Add a force",
+        "without magnitude 0",
+        "To see it move",
+    )
+    for sentences, word in zip(said, words, strict=False):
+        assert any(word in sentence for sentence in sentences), (word, sentences)
+    assert said[-1] == []
+
+
+@pytest.mark.parametrize("steps", range(4))
+def test_each_state_on_the_way_is_drawn_or_explained(steps):
+    entries = empty(MECHANISM.base_entries)
+    for kind in ("body", "point", "pin", "bar")[:steps]:
+        entries = add(entries, kind)
+    work = OpenDocument(MECHANISM)
+    work.show(entries)
+    if work.solve(SCREEN):
+        ((drawing,),) = SCREEN.drawings(work.answered[SCREEN.name].answer, 1.0)
+        assert {label.text for label in drawing.labels} >= set(tables(entries)["points"])
+    else:
+        assert any(work.mistakes[SCREEN.name].values())
+
+
+def test_the_document_stays_the_file():
+    entries = MECHANISM.opened(CLAMP, "clamp")
+    for group in groups(entries):
+        for one in group.items:
+            for cell in one.cells:
+                if cell.key != "name" and cell.text:
+                    assert tables(put(entries, one, cell.key, cell.text)) == tables(entries), (one, cell)
+    assert tables(entries) == tomllib.loads(CLAMP)
+    assert all(covers(path) for path in entries if path.partition(".")[0] in ("bodies", "points", "pin"))
+
+
+@pytest.mark.parametrize("old, new", [("handle", "lever"), ("C", "knee"), ("force hand", "fist")])
+def test_what_names_a_thing_follows_when_it_is_renamed(old, new):
+    entries = MECHANISM.opened(CLAMP, "clamp")
+    renamed = put(entries, item(entries, old), "name", new)
+    before = solved(entries).over.amplitudes["work"]
+    np.testing.assert_allclose(solved(renamed).over.amplitudes["work"], before, rtol=1e-14)
+    assert f'"{old.removeprefix("force ")}"' not in str(renamed.values()).replace("'", "")
+
+
+def test_what_is_removed_is_gone_and_said_where_it_is_missed():
+    entries = MECHANISM.opened(CLAMP, "clamp")
+    without = remove(entries, item(entries, "force hand"))
+    assert "driver" not in tables(without).get("run", {})
+    lost = remove(entries, item(entries, "C"))
+    work = OpenDocument(MECHANISM)
+    work.show(lost)
+    assert not work.solve(SCREEN)
+    assert any("C" in s for said in work.mistakes[SCREEN.name].values() for s in said)
+
+
+def test_bare_numbers_take_the_unit_shown_and_decimal_commas_are_read():
+    entries = MECHANISM.opened(CLAMP, "clamp")
+    moved = write(entries, "C", x="18,5")
+    assert tables(moved)["points"]["C"][0] == "18.5 mm"
+    pushed = write(entries, "force hand", magnitude="250", direction="-80")
+    hand = tables(pushed)["force"][0]
+    assert hand["magnitude"] == "250 N" and hand["direction"] == "-80 deg"
+
+
+# On the page --------------------------------------------------------------------------------------------
+
+
+def test_buttons_add_and_remove_and_lists_write_into_the_document(simulate, fields):
+    async def body(another):
+        user = await another()
+        page = fields(user)
+        page.go("Mechanism")
+
+        def click(words):
+            found = [
+                e for e in user.client.elements.values()
+                if e.tag == "q-btn" and words in (e.props.get("aria-label"), getattr(e, "text", None))
+            ]  # fmt: skip
+            with user.client:
+                for listener in list(found[0]._event_listeners.values()):
+                    if listener.type == "click":
+                        found[0]._handle_event({"listener_id": listener.id, "args": {}})
+
+        click("Start from nothing")
+        assert "held by the ground" in page.text()
+        click("add pin")
+        assert page.field("pin.0.body").value == "body 1"
+        with user.client:
+            page.field("pin.0.at").set_value("A")
+        click("add point")
+        assert page.field("points.C.x").value == "40 mm"
+        click("remove C")
+        with pytest.raises(IndexError):
+            page.field("points.C.x")
+        click("add force")
+        assert "without magnitude" in page.text()
+
+    simulate(BRAKES, body)

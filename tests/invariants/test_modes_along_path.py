@@ -1,0 +1,69 @@
+"""What more modes change, found along the path of a run, is what a motion with these modes shows."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
+from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
+
+TILTED = replace(HARVESTER, mount=bd.Mount(0.215, 0.3), motion=bd.SpinUp(90.0, duration=0.2))
+OUTWARD = replace(HARVESTER, mount=bd.Mount(0.0, math.pi), gravity=9.81)
+TIMES = np.linspace(0, 0.5, 501)
+RECORD = bd.SampledRotation(TIMES, 40 * np.sin(np.pi * TIMES) ** 2, interpolation="pchip")
+RUNS = {
+    "on the road": (SHORT_SPIN_UP, 1),
+    "tilted": (TILTED, 1),
+    "damped": (replace(TILTED, damping_ratio=0.02), 2),
+    "gravity": (replace(OUTWARD, motion=bd.SpinUp(60.0, duration=0.3)), 2),
+    "in two planes": (replace(TILTED, mount=bd.Mount(0.215, 0.3, 0.4), physics=bd.Physics(planes=2)), 2),
+    "a record": (replace(TILTED, motion=RECORD), 1),
+}
+
+
+SUDDEN = ("gravity", False)  # sets in at once: modes at rest that are too fast for the steps ring by it
+
+
+def run_of(name, at_speeds):
+    """A run in modes at rest, or at the slowest and the fastest speed."""
+    scene, modes = RUNS[name]
+    run = bd.simulate(scene, 0.5, modes, tolerance=1e-7)
+    basis = ModalBasis(modes, find_speed_range(scene.motion, 0.5) if at_speeds else (0.0,))
+    return replace(run.request, basis=basis).run()
+
+
+@pytest.mark.parametrize("at_speeds", [False, True])
+@pytest.mark.parametrize("name", RUNS)
+def test_distance_is_that_from_a_run_with_more_modes(name, at_speeds):
+    """Within 15 %, by what couples the modes of a stretch and by maxima between samples; never much below.
+
+    No motion with more modes is integrated for it, unless they ring.
+    """
+    run = run_of(name, at_speeds)
+    distance = run.distance_from(run.request.run_refined())
+    assert run.mode_error / 2 == pytest.approx(distance, rel=0.15)
+    assert ("with_more_modes" in vars(run)) == ((name, at_speeds) == SUDDEN)
+    assert "refined" not in vars(run)
+
+
+def test_after_an_abrupt_start_more_modes_are_integrated():
+    """It makes fast modes ring, of which the path tells no more than the sum of their amplitudes."""
+    run = bd.simulate(replace(TILTED, motion=bd.SpinUp(90.0, 0.2, law="linear")), 0.5, 3, tolerance=1e-6)
+    distance = run.distance_from(run.request.run_refined())
+    assert run.mode_error / 2 == pytest.approx(distance, rel=0.15)
+    assert "with_more_modes" in vars(run)
+
+
+@pytest.mark.parametrize(("height", "grows"), [(1e-4, False), (2e-4, True)])
+def test_a_motion_that_grows_is_integrated_again(height, grows):
+    """Parametric resonance, by a road at twice the first frequency, makes the difference grow as well."""
+    radius, speed = 0.3, 60.0
+    first = 2 * np.pi * bd.natural_modes(HARVESTER, speed, 1).frequency[0]
+    road = bd.RoadWave(wavelength=2 * np.pi * radius / (2 * first / speed - 1), height=height)
+    run = bd.simulate(replace(HARVESTER, motion=bd.RollingWheel(radius, speed, road)), 3.0, 1, tolerance=1e-5)
+    assert (run.peak(2.25, 3.0) > 2 * run.peak(0.0, 1.5)) == grows
+    assert run.mode_error / 2 == pytest.approx(run.distance_from(run.request.run_refined()), rel=0.15)
+    assert ("with_more_modes" in vars(run)) == grows

@@ -1,0 +1,167 @@
+"""A small result of every class of both packages, for tests that walk over all of them."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+import beamdyn as bd
+import brakes
+from beamdyn.common.edge.input_sweep import InputSweep
+from beamdyn.common.results import Result
+from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
+from brakes import drum, forklift
+from brakes.answers.caliper import CALIPER, MECHANISM
+from brakes.answers.drum import BRAKE as DRUM
+from brakes.answers.forklift import FORKLIFT
+from brakes.app.bases import base
+from brakes.calipers import NAMED, stop
+from brakes.reproduce.forklift_as_printed import stop_as_printed
+from brakes.reproduce.newton import newton_raphson
+from tests.unit.decks_written import LENGTH, elastodyn_blade
+
+BENT = bd.Scene(
+    bd.Beam.rectangular(0.6, 0.06, 0.012, 210e9, 7850.0),
+    bd.Mount(0.2, setting_angle=np.pi / 2),
+    physics=bd.Physics(large_deflection=True),
+)
+DAMPED = replace(HARVESTER, damping_ratio=0.01)
+BENDIX = forklift.BENDIX_12_5
+ROUGH = bd.PowerSpectrum([5.0, 60.0, 200.0], [1.0, 3.0, 0.2])
+SPEEDS = np.linspace(0.0, 100.0, 41)
+SHOE = drum.Shoe(0.138, 0.05, lining=(0.5, 1.9), pivot=(0.02, -0.11), force_arm=0.115)
+TRUCK = forklift.Truck(5950.0, (1.049, 0.359), 3500.0, (-1.2, 0.45), front_wheel_radius=0.4, wheelbase=1.89)
+STOP = forklift.StopConditions(0.1, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
+
+
+def _deck() -> bd.Deck:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "blade.dat"
+        path.write_text(elastodyn_blade())
+        return bd.read_deck(path, length=LENGTH, hub_radius=1.25)
+
+
+def _caliper() -> Any:
+    return NAMED["dual-pivot"]().build()
+
+
+def _answer(brake: Any) -> Any:
+    return brake.answer(tomllib.loads(base(brake.name)), brake.name)
+
+
+def _friction() -> Any:
+    tables = (Path(__file__).parents[2] / "examples" / "block_brake.toml").read_text()
+    return MECHANISM.answer(tomllib.loads(tables), "block_brake").friction
+
+
+def _sweep_of_a_brake() -> Any:
+    return DRUM.sweep(tomllib.loads(base("drum")), "drum", [DRUM.example_sweep])[0]
+
+
+def _transient() -> bd.Transient:
+    return bd.simulate(SHORT_SPIN_UP, 0.3, 2)
+
+
+BASES = {"Answer", "PlanarAnswer", "OfChosenPhysics", "StatesModelError", "SpanLoads", "SlidesOrLocks"}
+MAKERS: dict[str, Callable[[], Result]] = {
+    "Backbone": lambda: bd.backbone(BENT, 5.0),
+    "BrakeResult": lambda: drum.brake_torque(drum.simplex(SHOE), friction=0.4, force=1e3),
+    "BrakeSweep": _sweep_of_a_brake,
+    "CaliperAnswer": lambda: _answer(CALIPER),
+    "CaliperStroke": lambda: _caliper().stroke(finger=40.0),
+    "Campbell": lambda: bd.campbell(HARVESTER, SPEEDS, 2, rated=50.0, bounds=True),
+    "CriticalPoint": lambda: bd.critical_point(HARVESTER),
+    "Crossings": lambda: bd.resonance_speeds(SHORT_SPIN_UP, 100.0),
+    "Deck": _deck,
+    "DeckAudit": lambda: _deck().audit,
+    "Diagram": lambda: made("Tradeoff").diagrams[0],
+    "DrumAnswer": lambda: _answer(DRUM),
+    "Equilibrium": lambda: bd.equilibrium(BENT, 5.0),
+    "EquilibriumBranches": lambda: bd.equilibrium_branches(BENT, 5.0),
+    "ForkliftAnswer": lambda: _answer(FORKLIFT),
+    "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
+    "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
+    "InputSweep": lambda: InputSweep(("a.x",), ("mm",), (np.arange(3.0),), ("y",), ("N",), (np.ones(3),)),
+    "InternalForces": lambda: forklift.internal_forces(BENDIX, piston_force=3e4, torque=9e3, clearance=5e-4),
+    "Kinematics": lambda: forklift.follow_shoes(BENDIX, 5e-4),
+    "LoadCycles": lambda: cycles_of(made("TransientLoads")),
+    "Locus": lambda: bd.frequency_locus(HARVESTER, SPEEDS),
+    "Matrices": lambda: bd.matrices(HARVESTER, 50.0, 2),
+    "MechanismAnswer": lambda: _answer(MECHANISM),
+    "MechanismFriction": _friction,
+    "Modes": lambda: bd.natural_modes(HARVESTER, 50.0),
+    "NewtonResult": lambda: newton_raphson(BENDIX.find_levers(5e-4), torque=9e3, piston_force=3e4),
+    "PadWear": lambda: _caliper().wear([0.0, 1e-3]),
+    "PivotFriction": lambda: _caliper().friction(0.1, 0.004, 40.0),
+    "PrintedStop": lambda: stop_as_printed(TRUCK, STOP),
+    "Procedure": lambda: forklift.brake_procedure(TRUCK, STOP, made("ShoeMotion"), piston_force=3e4),
+    "RandomLoads": lambda: bd.random_loads(DAMPED, 50.0, ROUGH, "bending", at=[0.0, 0.025]),
+    "RandomResponse": lambda: bd.random_response(DAMPED, 50.0, 1e-3, frequencies=np.linspace(1.0, 100.0, 60)),
+    "RotorDrawing": lambda: bd.draw(HARVESTER),
+    "Sensitivities": lambda: bd.frequency_sensitivities(HARVESTER, 50.0),
+    "SettingAngleLimits": lambda: bd.setting_angle_limits(HARVESTER, 400.0),
+    "ShoeMotion": lambda: BENDIX.move_shoes(5e-4),
+    "ShoeResult": lambda: made("BrakeResult").shoes[0],
+    "Spread": lambda: bd.spread(HARVESTER, {"beam.thickness": "+-2%"}, samples=128, modes=1, speed=50.0),
+    "StaticLoads": lambda: bd.static_loads(HARVESTER, [0.0, 50.0]),
+    "SteadyLoads": lambda: bd.steady_loads(made("SteadyResponse"), at=[0.0, 0.025]),
+    "SteadyResponse": lambda: bd.steady_response(SHORT_SPIN_UP, np.linspace(45.0, 50.0, 5), 2),
+    "Stop": lambda: forklift.stop(TRUCK, STOP),
+    "StoppingDistance": lambda: stop(mass=80.0, speed=5.0, pad_force=1e3, friction=0.4),
+    "Study": lambda: bd.study(HARVESTER, {"beam.thickness": [1e-4, 2e-4]}, speed=20.0),
+    "Sweep": lambda: bd.sweep(SHORT_SPIN_UP, [50.0, 53.0], AFTER_SHORT_SPIN_UP, modes=2),
+    "Terms": lambda: bd.terms(SHORT_SPIN_UP),
+    "Tradeoff": lambda: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.05),
+    "Transient": _transient,
+    "TransientLoads": lambda: bd.transient_loads(_transient(), at=[0.0, 0.025]),
+}
+EXAMPLES_OF_INPUTS = (
+    HARVESTER,
+    SHORT_SPIN_UP,
+    replace(HARVESTER, label="0.2 mm", physics=bd.Physics(planes=2), damping_ratio=0.01, gravity=9.81),
+    HARVESTER.beam,
+    HARVESTER.mount,
+    bd.Mount(0.1, np.pi, 0.3, precone=0.05, root_stiffness=3.0),
+    SHORT_SPIN_UP.motion,
+    bd.SteadyRotation(50.0),
+    bd.RotationFunction(np.sin, np.cos, lambda t: -np.sin(t), 1.0),
+)
+
+
+def cycles_of(loads: bd.TransientLoads) -> bd.LoadCycles:
+    """Cycles as `count_cycles` gives them, which needs the package that counts."""
+    ranges, means, counts = np.array([1e-4, 3e-4]), np.zeros(2), np.array([1.0, 0.5])
+    what = ("strain", 0, 0.0, ranges, means, counts, 0.0, 1.0, ())
+    return bd.LoadCycles(*what, loads.provenance, loads.scene)
+
+
+@cache
+def made(name: str) -> Any:
+    """The result of a class, computed once."""
+    return MAKERS[name]()
+
+
+def result_classes() -> dict[str, type[Result]]:
+    """Classes of results, of all modules of both packages, without those that are only derived from.
+
+    Modules of screens define none, and may lack the toolkit that they import.
+    """
+    for package in (bd, brakes):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not module.name.endswith("__main__") and ".app" not in module.name:
+                importlib.import_module(module.name)
+    return {kind.__name__: kind for kind in _derived(Result) if kind.__name__ not in BASES}
+
+
+def _derived(kind: type) -> set[type]:
+    own = {each for each in kind.__subclasses__() if each.__module__.startswith(("beamdyn.", "brakes."))}
+    return own.union(*map(_derived, own))

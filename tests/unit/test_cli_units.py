@@ -1,0 +1,69 @@
+"""Units of frequencies and densities on the command line and in its files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from beamdyn.cli.excitations import read_spectrum
+from beamdyn.cli.linear_models import parse_frequencies
+from beamdyn.config import ConfigError
+
+G = 9.80665  # m/s2
+
+
+def spectrum(tmp_path, unit, wanted="m2/s4/Hz"):
+    path = tmp_path / "psd.csv"
+    path.write_text(f"f [Hz], psd [{unit}]\n1, 1\n50, 2\n")
+    return read_spectrum(path, wanted)
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"),
+    [
+        ("m2/s4/Hz", 1.0),
+        ("(m/s2)2/Hz", 1.0),
+        ("(m/s^2)^2/Hz", 1.0),
+        ("(m/s**2)**2/Hz", 1.0),
+        ("g2/Hz", G**2),
+        ("g^2/Hz", G**2),
+        ("g**2 / Hz", G**2),
+    ],
+)
+def test_densities_of_accelerations(tmp_path, unit, size):
+    np.testing.assert_allclose(spectrum(tmp_path, unit).values, [size, 2 * size], rtol=1e-14)
+
+
+def test_densities_of_forces(tmp_path):
+    np.testing.assert_allclose(spectrum(tmp_path, "kN2/Hz", "N2/Hz").values, [1e6, 2e6], rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("unit", "wanted"), [("g2/Hz", "N2/Hz"), ("g/Hz", "m2/s4/Hz"), ("kg2/Hz", "m2/s4/Hz")]
+)
+def test_other_densities_are_refused(tmp_path, unit, wanted):
+    with pytest.raises(ConfigError, match="expected a unit like"):
+        spectrum(tmp_path, unit, wanted)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("1:1000:200", 'give a unit of frequency at its end, e.g. "1:1000:200 Hz"'),
+        ("50, 60", 'e.g. "50, 60 Hz"'),
+        ("", 'e.g. "1:1000:400 Hz"'),
+        ("1:10:3 m", "a unit of length where frequency is wanted"),
+        ("1:10 Hz", "give start:stop:count or a list"),
+    ],
+)
+def test_frequencies_that_are_refused(text, said):
+    with pytest.raises(ValueError) as refusal:
+        parse_frequencies(text)
+    assert said in str(refusal.value) and "--frequencies" in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "hertz"), [("50,60Hz", [50, 60]), ("1:100:3Hz", [1, 10, 100]), ("0.05, 1 kHz", [50, 1000])]
+)
+def test_frequencies(text, hertz):
+    np.testing.assert_allclose(parse_frequencies(text), hertz, rtol=1e-14)

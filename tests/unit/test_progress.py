@@ -1,0 +1,138 @@
+"""On a terminal, a command that takes over a second says so on standard error, and elsewhere nothing."""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from beamdyn import cli as beams
+from beamdyn.common.edge import progress
+from beamdyn.common.edge.program import DONE
+from beamdyn.common.edge.progress import at_work, quiet
+from brakes import cli as brakes
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ROLLING, TYRE = str(EXAMPLES / "rolling_harvester.toml"), str(EXAMPLES / "tyre_harvester.toml")
+COMMANDS = [
+    (beams, "beamdyn modes", TYRE),
+    (beams, "beamdyn loads", TYRE, "--speed", "20 rad/s"),
+    (beams, "beamdyn simulate", ROLLING, "--t-end", "0.2 s", "--modes", "2"),
+    (brakes, "brakes drum", str(EXAMPLES / "drum.toml")),
+]
+COUNTED = [
+    (beams, "study", TYRE, "--vary", "beam.thickness=0.2:0.3:4 mm", "--what", "critical_speed"),
+    (beams, "sweep", ROLLING, "--speeds", "10, 11 rad/s", "--window", "0:0.1 s", "--modes", "2"),
+    (beams, "tradeoff", TYRE, "--budget", "0.1 s", "--modes", "1"),
+]
+_CONTROL = re.compile(r"\x1b\[[?0-9;]*[A-Za-z]")
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+    @property
+    def text(self) -> str:
+        return _CONTROL.sub("", self.getvalue())
+
+
+@pytest.fixture
+def on_terminal(monkeypatch):
+    """Makes standard error a terminal, on which a little silence is long."""
+    monkeypatch.setenv("TERM", "xterm")
+
+    def on_terminal(silence=0.001):
+        monkeypatch.setattr(progress, "SILENCE", silence)
+        screen = Terminal()
+        monkeypatch.setattr(sys, "stderr", screen)
+        return screen
+
+    return on_terminal
+
+
+def wait_for(said, stream):
+    """Until it stands on the screen, at most some seconds on a busy machine."""
+    end = time.monotonic() + 20
+    while said not in stream.text and time.monotonic() < end:
+        time.sleep(0.01)
+    assert said in stream.text
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[1])
+def test_every_command_says_that_it_is_at_work(on_terminal, capsys, command):
+    terminal = on_terminal()
+    program, name, *options = command
+    assert program.main([name.split()[1], *options]) == DONE
+    assert name in terminal.text and capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", COUNTED, ids=lambda command: command[1])
+def test_what_has_steps_counts_them(on_terminal, monkeypatch, command):
+    on_terminal()
+    counts = []
+    count = progress._ProgressLine.count
+    monkeypatch.setattr(
+        progress._ProgressLine, "count", lambda line, *steps: (counts.append(steps), count(line, *steps))
+    )
+    program, *arguments = command
+    assert program.main(arguments) == DONE
+    assert len({total for _, total in counts}) == 1 and counts[-1][0] > 0
+    assert [done for done, _ in counts] == sorted(done for done, _ in counts)
+
+
+def test_nothing_is_said_where_standard_error_is_no_terminal(monkeypatch, capsys):
+    monkeypatch.setattr(progress, "SILENCE", 0.001)
+    monkeypatch.setenv("FORCE_COLOR", "1")  # by which rich takes anything for a terminal
+    assert beams.main(["modes", TYRE]) == DONE
+    with at_work("designs") as count:
+        count(1, 2)
+        time.sleep(0.05)
+    assert capsys.readouterr().err == ""
+
+
+def test_nothing_is_said_of_what_is_done_within_a_second(on_terminal):
+    terminal = on_terminal(silence=1.0)
+    with at_work("designs") as count:
+        count(1, 2)
+    assert terminal.getvalue() == ""
+
+
+def test_the_line_has_time_and_count_and_is_taken_away(on_terminal):
+    terminal = on_terminal()
+    with at_work("designs") as count:
+        wait_for("0:00:00", terminal)
+        count(3, 7)
+        wait_for("3/7", terminal)
+        wait_for(" left", terminal)
+    assert terminal.getvalue().endswith("\x1b[2K")  # the line is erased
+
+
+def test_what_is_printed_takes_the_place_of_the_line(on_terminal):
+    terminal = on_terminal()
+    with at_work("designs"):
+        wait_for("designs", terminal)
+        with quiet():
+            assert terminal.getvalue().endswith("\x1b[2K")
+            before = terminal.getvalue()
+            time.sleep(0.05)
+            assert terminal.getvalue() == before
+        terminal.truncate(0)
+        wait_for("designs", terminal)
+
+
+def test_a_line_within_another_takes_its_place(on_terminal):
+    terminal = on_terminal()
+    with at_work("whole"):
+        wait_for("whole", terminal)
+        with at_work("part"):
+            wait_for("part", terminal)
+            terminal.truncate(0)
+            time.sleep(0.3)
+            assert "whole" not in terminal.text
+        terminal.truncate(0)
+        wait_for("whole", terminal)
