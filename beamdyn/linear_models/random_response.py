@@ -18,7 +18,8 @@ from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
 from beamdyn.linear_models.convergence import refine
 from beamdyn.linear_models.excitations import Excitation
-from beamdyn.linear_models.mean_square import PartialFractions, partial_fractions
+from beamdyn.linear_models.frequency_grid import about_resonances, frequencies_of_response, one_of_each
+from beamdyn.linear_models.mean_square import FreeDecay, PartialFractions, partial_fractions
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, as_observation
 from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TURN = 2 * np.pi
-_POINTS = 500  # frequencies of the result, if none are given
+_POINTS = 500  # frequencies of the result by white noise, beside those about resonances
 _DECADES = 3  # below the highest frequency, at which they begin
 _DIRECT = 0  # functions up to which all are kept: their poles are too far apart, and lose digits
 _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
@@ -142,7 +143,9 @@ def random_response(
     output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
         As for `frequency_response`.
     frequencies : sequence of float, optional
-        Frequencies at which the density of the response is computed [Hz], ascending from 0 or more.
+        Frequencies at which the density of the response is computed [Hz], ascending from 0 or more; by
+        default those of the input, and so dense about resonances that straight lines between the densities
+        have nearly the mean square as their area.
     modes : int or "auto"
         Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
         truncation error meets the tolerance.
@@ -184,7 +187,7 @@ def random_response(
         _DIRECT,
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
-    f = _frequencies(frequencies, top + abs(speed) / _TURN if top else 0.0, model)
+    f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
     of_psd = refine(
         loaded, speed, 0.0, model.modes, tolerance, model.discretization,
         lambda model: _density(_expand(model, drive, seen), spectrum, speed, f),
@@ -212,20 +215,28 @@ def random_response(
 # The response -------------------------------------------------------------------------------------
 
 
-def _frequencies(given: Sequence[float] | np.ndarray | None, top: float, model: ModelAtSpeed) -> np.ndarray:
-    """Frequencies of the density of the response [Hz]: those given, or up to a highest, with resonances.
+def _given(frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
+    """The frequencies asked for [Hz], checked."""
+    f = ascending("frequencies", frequencies)
+    refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
+    return f
 
-    Without a highest one, of white noise, they end at ten times the lowest resonance.
+
+def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation) -> np.ndarray:
+    """Frequencies of the response [Hz], such that straight lines between its densities have their area.
+
+    Those to white noise end at ten times the lowest resonance.
     """
-    if given is not None:
-        f = ascending("frequencies", given)
-        refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
-        return f
-    poles = model.poles[np.isfinite(model.poles)]
+    poles = FreeDecay.of(model).poles
+    if isinstance(spectrum, PowerSpectrum):
+        shifts = [h * model.speed / _TURN for h in model.drives(drive)]
+        return frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
     lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
-    top = top or 10 * float(lowest.min())
-    return np.union1d(np.geomspace(top / 10**_DECADES, top, _POINTS), resonances[resonances < top])
+    top = 10 * float(lowest.min())
+    bottom, about = top / 10**_DECADES, about_resonances(poles)
+    between = about[(about > bottom) & (about < top)]
+    return one_of_each(np.concatenate([np.geomspace(bottom, top, _POINTS), between]))
 
 
 def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:

@@ -47,6 +47,37 @@ def test_a_sharp_resonance_is_integrated_too():
     assert band == pytest.approx(white, rel=1e-5)  # what lies outside of the band, 1e-6 of the variance
 
 
+STRIP = bd.Scene(bd.Beam.rectangular(0.15, 0.01, 0.0003, **STEEL), damping_ratio=0.01)
+SHARP = replace(STRIP, damping_ratio=1e-7)
+STEEP = bd.PowerSpectrum([0.5, 40.0, 41.0, 150.0], [1e-3, 3.0, 1e-6, 0.2])
+WIDE = {
+    "far above the first resonance": (STRIP, 0.0, bd.PowerSpectrum([5.0, 2e4], [1.0, 1.0]), "bending"),
+    "little damping": (SHARP, 0.0, bd.PowerSpectrum([5.0, 2e4], [1.0, 1.0]), "bending"),
+    "from 0 Hz": (STRIP, 0.0, bd.PowerSpectrum([0.0, 100.0, 2e4], [1.0, 0.0, 1.0], "linear"), "bending"),
+    "steep, with side bands": (SCENE, SPEED, STEEP, "n2"),
+    "narrow, with side bands": (SCENE, SPEED, bd.PowerSpectrum([60.0, 60.1], [1.0, 2.0]), "n2"),
+    "overdamped": (replace(STRIP, damping=bd.Damping(mass_factor=1e3)), 0.0, TABLE, "bending"),
+}
+
+
+@pytest.mark.parametrize("case", WIDE)
+@pytest.mark.parametrize("output", ["tip", "tip acceleration"])
+def test_the_listed_density_has_the_mean_square_as_its_area(case, output):
+    scene, speed, psd, excitation = WIDE[case]
+    found = bd.random_response(scene, speed, psd, excitation, output)
+    area = np.trapezoid(found.psd, found.frequencies)
+    assert area == pytest.approx(found.rms**2, rel=0.01)
+    assert (np.diff(found.frequencies) > 0).all() and len(found.frequencies) < 10_000
+    if excitation != "n2":
+        assert found.frequencies[0] == psd.frequencies[0]
+        assert found.frequencies[-1] == psd.frequencies[-1]
+
+
+def test_the_listed_density_by_white_noise_has_the_mean_square_as_its_area():
+    found = bd.random_response(STRIP, 0.0, 1.0)
+    assert np.trapezoid(found.psd, found.frequencies) == pytest.approx(found.rms**2, rel=0.01)
+
+
 def test_white_noise_against_lyapunovs_equation():
     found = bd.random_response(SCENE, SPEED, 2.0, "bending", modes=3)
     ss = bd.state_space(SCENE, SPEED, ["bending"], ["tip"], modes=3)
