@@ -22,7 +22,8 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
     Returns
     -------
     str
-        "0 ± error" where no digit is sure, "unresolved" where the error is not known.
+        "0 ± error" where the error is half the number or more, "number ± error" where else no digit is sure,
+        "unresolved" where the error is not known.
     """
     if not math.isfinite(value):
         return "none" if math.isnan(value) else str(value)
@@ -37,8 +38,24 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
     if error > 0:
         decimals = min(decimals, math.floor(-math.log10(2 * error)))
     if decimals + lead < 0:
-        return f"0 ± {abs(value) + error:.1g}"
+        return _with_error(value, error)
     return f"{value:.{decimals}f}" if lead > -4 and decimals >= 0 else f"{value:.{decimals + lead}e}"
+
+
+def supported_or_range(value: float, error: float, most: int = _DIGITS) -> str:
+    """As `supported`, and "number ± error" where one digit is sure, which rounds far more than the error."""
+    text = supported(value, error, most)
+    if "±" in text or not (0 < 2 * error < abs(value) < math.inf):
+        return text
+    lead = math.floor(math.log10(abs(value)))
+    return _with_error(value, error) if math.floor(-math.log10(2 * error)) + lead <= 0 else text
+
+
+def _with_error(value: float, error: float) -> str:
+    """A number with the digits up to the first of its error, and that error with one digit."""
+    last = math.floor(math.log10(error))
+    digits = max(math.floor(math.log10(abs(value))) - last, 0) + 1
+    return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ")
 
 
 def percent(value: float, sign: str = "") -> str:

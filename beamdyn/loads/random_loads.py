@@ -23,7 +23,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, ascending, positive, refuse, within
-from beamdyn.common.digits import supported
+from beamdyn.common.digits import percent, supported
 from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
@@ -55,6 +55,7 @@ _OF_RATES = 1e3  # tolerance of rates over that of the others: peak factors foll
 _FEW = 10.0  # crossings in the duration, below which the largest is no matter of statistics
 _LEAST = math.e  # crossings that the formula is evaluated with, at least
 _DIGITS = 3  # of the largest that are expected: statistics have no more
+_UNSURE = 0.05  # error over the largest, above which no digit of it may be sure
 _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
 
 
@@ -327,16 +328,18 @@ def random_loads(
     found, error = RandomStatistics(*refined.value), RandomStatistics(*refined.error)
     parametric = parametric_term(refined.model, drive, spectrum)
     largest = asked.outputs.split(found.largest(expected_factor, duration)[None])
+    of_largest = asked.outputs.split(_error_of_largest(found, error, duration)[None], "_error")
     return RandomLoads(
         **placed(scene, stations, sections),
         **largest,
-        **asked.outputs.split(_error_of_largest(found, error, duration)[None], "_error"),
+        **of_largest,
         warnings=(
             *sections.notes,
             *warn_of_left_out(scene),
             *parametric.warnings(),
             *warn_of_band(spectrum, drive, refined.model),
             *_warn_of_few(found, duration),
+            *_warn_of_few_modes(largest["moment"][0], of_largest["moment_error"][0], refined.model),
             *warn_of_deflection(_tip_deflection(refined.model, drive, spectrum), scene.beam.length),
             *warn_of_elastic_limit(largest["strain"]),
         ),
@@ -464,3 +467,13 @@ def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
         yield f"in {duration:g} s there are few vibrations: the largest expected are a rough guess"
+
+
+def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:
+    """Yield a warning if the modes left out may change the largest bending moment in its first digits."""
+    if model.modes is not None and error.max() > _UNSURE * moment.max() > 0:
+        share = percent(float(error.max() / moment.max()))
+        yield (
+            f"{model.modes} modes are too few: the estimated error of the bending moment is {share} of the "
+            'largest; give more modes, or "auto"'
+        )

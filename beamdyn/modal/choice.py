@@ -23,6 +23,7 @@ _FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error g
 _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
 _FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more functions, and lose digits
 # Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
 # sections bend under the forces in both directions.
 _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
@@ -126,6 +127,8 @@ def _choose(
     for finer in list_models(scene, discretization, modes, target, cheapest):
         if not isinstance(discretization, str):
             return finer, None
+        if finer.solver.size < modes and found is None and _refine(finer) is not None:
+            continue  # some of its functions depend on others
         try:
             found = finer, (at_ends := solve_with_error(finer, ends, modes))
         except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
@@ -197,7 +200,7 @@ def _count_segments(scene: Scene) -> int:
 def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
     segments = _count_segments(scene)
-    if segments > _FEW_SEGMENTS:
+    if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
         digits = -np.log10(max(target, MOMENTS_TARGET))

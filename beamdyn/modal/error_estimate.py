@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.modal.eigensolver import Eigen
 from beamdyn.modal.model import Model
 from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
@@ -33,8 +34,8 @@ class EstimatedModes:
     eigen : Eigen
         Modes of `model`.
     error : ndarray, shape (S, k)
-        Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved, and
-        where the model does not exceed the coarser one.
+        Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved,
+        where the coarser model has no such mode, and where the model does not exceed the coarser one.
     """
 
     model: Model
@@ -69,14 +70,22 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     Returns
     -------
     EstimatedModes
+
+    Raises
+    ------
+    InvalidValue
+        If the model has fewer functions than modes.
     """
+    _check_size(model, modes)
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
-    s = fine.eigenvalue[:, :modes]
-    squared, distance = s**2, s**2 - eigenvalues_over_speeds(model.coarse_solver, speeds, modes) ** 2
+    coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
+    compared = coarse.shape[1]  # of moments that depend on each other there may be fewer than modes
+    s = fine.eigenvalue[:, :compared]
+    squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation: removes the leading term of the error
         squared = squared + distance / (2**order - 1)
-        extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, modes:]], axis=1)
+        extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
@@ -84,13 +93,22 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
             truncation = relative * np.where(_layers_are_resolved(model, speeds), _OF_ORDER_2, 1.0)[:, None]
         else:
             truncation = _ritz_error_of(model, fine, distance, squared)
-    error = truncation + _ROUNDING * fine.rounding[:, :modes] + integration_error(model, squared)
+    error = truncation + _ROUNDING * fine.rounding[:, :compared] + integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     neutral = (s == 0) & _is_hinged(model)
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
-    return EstimatedModes(model, fine, np.where(resolved, np.where(neutral, 0.0, error), np.inf))
+    stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
+    lacking = (0, 0), (0, modes - compared)
+    return EstimatedModes(model, fine, np.pad(stated, lacking, constant_values=np.inf))
+
+
+def _check_size(model: Model, modes: int) -> None:
+    """Refuse more modes than the model has functions: of moments some may depend on others."""
+    if model.solver.size < modes:
+        bound = f"{model.discretization} has {model.solver.size} functions for this beam"
+        raise InvalidValue("modes", modes, bound, "ask for fewer")
 
 
 def _layers_are_resolved(model: Model, speeds: np.ndarray) -> np.ndarray:

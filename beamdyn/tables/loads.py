@@ -177,9 +177,9 @@ def _columns_of_random(result: RandomLoads, name: str) -> list[tuple[np.ndarray,
 
 
 def _expected(value: float, error: float = 0.0) -> str:
-    """A number of statistics, with three digits and no positive exponent."""
+    """A number of statistics, with three digits and no positive exponent; "0 ± error" if none is sure."""
     text = supported(value, error, _DIGITS_EXPECTED)
-    return f"{float(text):.0f}" if "e+" in text else text
+    return f"{float(text):.0f}" if "e+" in text and "±" not in text else text
 
 
 def _say_expected(result: RandomLoads, found: LargestLoad) -> str:

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, parse_speeds
-from beamdyn.common.digits import supported
+from beamdyn.common.digits import supported, supported_or_range
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "tyre_harvester.toml")
@@ -276,12 +276,36 @@ SUPPORTED = [
     (np.nan, 0.0, "none"),
     (np.inf, 0.0, "inf"),
     (1.0, np.inf, "unresolved"),
+    (8.89e6, 5.2e5, "8.9e+06 ± 5e+05"),
+    (-8.3, 0.9, "-8.3 ± 0.9"),
 ]
 
 
 @pytest.mark.parametrize(("value", "error", "text"), SUPPORTED)
 def test_supported(value, error, text):
     assert supported(value, error) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (0.14939, 0.006, "0.149 ± 0.006"),
+        (65.23045644, 0.6, "65.2 ± 0.6"),
+        (65.23045644, 1.3e-6, "65.23046"),
+        (1.0, np.inf, "unresolved"),
+        (1e-9, 4e-8, "0 ± 4e-08"),
+    ],
+)
+def test_a_single_digit_stands_with_its_error(value, error, text):
+    assert supported_or_range(value, error) == text
+
+
+@given(st.floats(1e-12, 1e12), st.floats(1e-15, 0.49))
+def test_a_number_with_its_error_is_rounded_by_less(value, relative):
+    number, _, error = supported_or_range(value, value * relative).partition(" ± ")
+    if error:
+        assert abs(float(number) - value) <= value * relative
+        assert float(error) == pytest.approx(value * relative, rel=0.5)
 
 
 @given(st.floats(1e-12, 1e12), st.floats(1e-15, 0.4))

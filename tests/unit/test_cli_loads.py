@@ -109,6 +109,15 @@ def test_the_largest_strain_on_a_rough_road_as_the_page_prints_it(monkeypatch, c
     assert out == printed.splitlines()
 
 
+def test_random_loads_by_too_few_modes_say_so(tmp_path, capsys):
+    """The first mode alone, above whose resonance the input begins: no digit of its loads is sure."""
+    (tmp_path / "psd.csv").write_text("f [Hz], psd [m2/s4/Hz]\n400, 1e9\n700, 1e9\n")
+    options = ("--psd", str(tmp_path / "psd.csv"), "--speed", "50 rad/s", "--at", "0 mm", "--modes", "1")
+    assert main(["random-loads", str(EXAMPLES / "harvester_on_road.toml"), *options]) == DONE
+    out, err = capsys.readouterr()
+    assert "0 ± " in out and "1 modes are too few: the estimated error of the bending moment is" in err
+
+
 def test_random_loads_are_written(tmp_path, capsys):
     files = [tmp_path / f"random.{kind}" for kind in ("json", "csv", "png")]
     options = ["--road", "B", "--velocity", "60 km/h", "--highest", "10 1/m", "--at", "0, 50 mm"]

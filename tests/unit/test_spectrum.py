@@ -137,6 +137,41 @@ def test_many_modes_of_a_beam_of_many_segments() -> None:
     assert found.error.max() < 1e-9 and found.frequency[0] * 2 * np.pi == pytest.approx(3.5160152685)
 
 
+STATIONS = np.linspace(0.1, 0.9, 9)
+UNIFORM = bd.Scene(
+    bd.Beam.from_stiffness(20.0, 100.0, 1e8, second_bending_stiffness=4e8, breakpoints=STATIONS),
+    bd.Mount(1.0, np.pi, np.pi / 2),
+    physics=bd.Physics(planes=2),
+)
+
+
+@pytest.mark.parametrize("modes", [50, 64])
+def test_many_modes_of_a_uniform_beam_between_stations(modes: int) -> None:
+    """Of the moments that inertia causes there many are polynomials, which the basis has already."""
+    found = bd.natural_modes(UNIFORM, 0.0, modes)
+    one = bd.natural_modes(replace(UNIFORM, physics=bd.Physics()), 0.0, 8)
+    assert found.frequency[0] == pytest.approx(one.frequency[0], rel=1e-9)
+    assert (found.error < 1e-6).all()
+    assert np.isfinite(bd.frequency_locus(UNIFORM, [0.0, 1.0], modes).frequency).all()
+
+
+def test_many_modes_of_few_moments_that_depend_on_each_other() -> None:
+    """With less than two modes for each segment the basis has moments, of which few are independent here."""
+    many = bd.Beam.from_stiffness(1.0, 1.0, 1.0, breakpoints=np.arange(1, 30) / 30)
+    found = bd.natural_modes(bd.Scene(many), 0.0, 54)
+    assert found.frequency[0] * 2 * np.pi == pytest.approx(3.5160152685)
+    assert not np.isnan(found.error).any()
+
+
+def test_modes_that_the_coarser_basis_lacks_have_no_error() -> None:
+    found = bd.natural_modes(UNIFORM, 0.0, 50, discretization=bd.Ritz(86, "moments"))
+    assert np.isfinite(found.frequency).all()
+    assert np.isinf(found.error[-1])
+    in_one_plane = replace(UNIFORM, physics=bd.Physics())
+    with pytest.raises(ValueError, match=r"modes = 40: .* has 32 functions for this beam; ask for fewer"):
+        bd.natural_modes(in_one_plane, 0.0, 40, discretization=bd.Ritz(86, "moments"))
+
+
 def test_a_given_basis_counts_its_functions_on_every_segment() -> None:
     table = bd.Table((0.0, 0.5, 1.0), (8.0, 8.0, 4.0))
     scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, table))
