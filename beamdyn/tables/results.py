@@ -11,7 +11,7 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.common.announced import OUTSIDE
-from beamdyn.common.digits import supported
+from beamdyn.common.digits import supported, supported_or_range
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.equations.directions import (
@@ -50,7 +50,7 @@ def modes_table(result: Modes) -> Group:
     size = np.abs(result.eigenvalue) * result.error  # absolute error of the eigenvalues
     model_error = result.model_error
     for i, status in enumerate(result.status):
-        frequency = supported(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
+        frequency = supported_or_range(result.frequency[i], size[i] / (2 * np.pi)).replace("none", "-")
         frequency = set_apart(frequency, model_error[i] * abs(result.frequency[i]))
         growth = "0" if result.growth_rate[i] == 0 else supported(result.growth_rate[i], size[i])
         shares = _share_cells(result.scene, result.plane_share[i])
@@ -196,7 +196,7 @@ def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int, model_error:
     if result.status[s, mode] not in ("stable", "neutral"):
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
     digits = _DIGITS if result.frequency.shape[1] <= _FEW else _DIGITS_OF_MANY
-    frequency = supported(result.frequency[s, mode], size[s, mode] / (2 * np.pi), digits)
+    frequency = supported_or_range(result.frequency[s, mode], size[s, mode] / (2 * np.pi), digits)
     cells = set_apart(frequency, model_error), *_direction_cells(result.scene, result.plane_share[s, mode])
     return Text(" ").join(map(_as_text, cells))
 
@@ -243,7 +243,7 @@ def _describe_critical(result: CriticalPoint) -> Text:
                 f"critical speed: 0 {unit.name}; the beam is unstable at every speed: {result.reason}"
             )
         speed = unit.of(result.speed)
-        value = supported(speed, result.error * speed, _CRITICAL_DIGITS)
+        value = supported_or_range(speed, result.error * speed, _CRITICAL_DIGITS)
         shown = set_apart(value, float(result.model_error) * speed)
         straight = any(OUTSIDE in warning for warning in result.warnings)
         which = "a straight beam would buckle" if straight else "the beam buckles"

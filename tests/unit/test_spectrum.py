@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import warnings
 from dataclasses import replace
 from io import StringIO
@@ -383,6 +384,16 @@ def test_the_picture_tells_flap_from_edge() -> None:
     assert words[:2] == ["mode 1", "mode 2"] and "flap" in words[2] and "edge" in words[3]
     dashes = {line.get_label(): line.get_linestyle() for line in ax.lines}
     assert (dashes[words[2]], dashes[words[3]]) == ("-", "--")
+
+
+def test_a_frequency_of_one_sure_digit_stands_with_its_error() -> None:
+    found = bd.natural_modes(HARVESTER, 50.0, 1)
+    f = float(found.frequency[0])
+    shown = Console(width=200)
+    with shown.capture() as captured:
+        shown.print(modes_table(replace(found, error=np.array([0.04]))))
+    number, error = re.search(r"([\d.e+]+) ± ([\d.e+]+)", captured.get()).groups()
+    assert abs(float(number) - f) < float(error) == float(f"{0.04 * f:.1g}")
 
 
 def test_shapes_show_both_directions() -> None:
