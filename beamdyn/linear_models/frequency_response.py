@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TURN = 2 * np.pi
+_HIGHEST = 1e12  # frequency [Hz], with which atoms vibrate
 _DIRECT = 300  # functions up to which all are kept: some milliseconds a frequency
 
 
@@ -149,7 +150,7 @@ def frequency_response(
     speed : float
         Speed [rad/s].
     frequencies : sequence of float
-        Frequencies of the excitation [Hz], ascending from 0 or more.
+        Frequencies of the excitation [Hz], ascending from 0 or more, to 1e12.
     input : BaseMotion, PointForce or str
         What drives the beam.  A word may stand for it: "bending", "across", "n1", "n2" and "n3" are
         accelerations of the base [m/s2], "tip force" and "tip force across" are forces [N].
@@ -185,6 +186,7 @@ def frequency_response(
     start = perf_counter()
     given = ascending("frequencies", frequencies)
     refuse(given < 0, "frequencies", given, "Hz", "give 0 or more")
+    refuse(given > _HIGHEST, "frequencies", given, "Hz", "at most {limit} {unit}", limit=_HIGHEST)
     drive, seen = as_excitation("input", input), as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
 

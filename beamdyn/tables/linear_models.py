@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -16,6 +17,7 @@ from beamdyn.linear_models.random_response import RandomResponse
 from beamdyn.linear_models.resonance_peaks import ResonancePeaks
 
 _MOST_PEAKS = 8  # of a table
+_LETTERS = re.compile(r"([A-Za-z]+)(\d?)")  # of a unit: a factor with its power
 _NO_WIDTH = "-"  # in place of a width that a peak does not have
 _DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of its peaks
 
@@ -57,7 +59,9 @@ def _width(peaks: ResonancePeaks, k: int) -> str:
 def response_csv(result: FrequencyResponse) -> Iterator[Sequence[object]]:
     """Real and imaginary part, and error, of each harmonic, a row a frequency."""
     numbers = [f"_{h:+d}" if h else "" for h in result.harmonics.tolist()]
-    names = [f"{name}{n}" for n in numbers for name in ("answer_Hz", "real", "imaginary", "error")]
+    unit = _in_head(result.unit)
+    columns = "answer_Hz", f"real{unit}", f"imaginary{unit}", f"error{unit}"
+    names = [f"{name}{n}" for n in numbers for name in columns]
     yield "frequency_Hz", *names
     each = [result.response_frequencies, np.real(result.response), np.imag(result.response), result.error]
     for frequency, row in zip(result.frequencies.tolist(), np.stack(each, axis=-1), strict=True):
@@ -86,9 +90,16 @@ def random_table(result: RandomResponse) -> Group:
 
 def random_csv(result: RandomResponse) -> Iterator[Sequence[object]]:
     """Density of the response and its error, a row a frequency."""
-    yield "frequency_Hz", "psd", "psd_error"
+    squared = _in_head(_LETTERS.sub(lambda factor: f"{factor[1]}{2 * int(factor[2] or 1)}", result.unit))
+    yield "frequency_Hz", f"psd{squared}_per_Hz", f"psd_error{squared}_per_Hz"
     columns = result.frequencies, result.psd, result.psd_error
     yield from zip(*(column.tolist() for column in columns), strict=True)
+
+
+def _in_head(unit: str) -> str:
+    """A unit at the end of a column's head, such as _m_per_N; none of a pure number."""
+    words = unit.removeprefix("1 ").replace("/", " per ").split()
+    return "".join(f"_{word}" for word in words)
 
 
 _MATRICES = (

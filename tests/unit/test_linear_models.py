@@ -12,6 +12,7 @@ from beamdyn.cli.excitations import parse_input, parse_output
 from beamdyn.cli.linear_models import parse_frequencies
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.modal.model import Model
+from beamdyn.tables.linear_models import random_csv, response_csv
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2, np.pi), damping_ratio=0.01)
@@ -96,6 +97,10 @@ REFUSED = {
     "a road without a wheel": (lambda: bd.random_response(SCENE, 5.0, bd.RoadRoughness("C")), "scene.motion"),
     "unknown class": (lambda: bd.RoadRoughness("Z"), "road.roughness = 'Z'"),
     "negative frequency": (lambda: bd.frequency_response(SCENE, 5.0, [-1.0]), "frequencies = -1 Hz"),
+    "frequency beyond squares": (
+        lambda: bd.frequency_response(SCENE, 80.0, [1e308]),
+        "frequencies = 1e+308 Hz: at most 1e+12 Hz",
+    ),
     "rotating input": (lambda: bd.state_space(SCENE, 5.0, ["n2"]), "speed = 5 rad/s"),
     "rigid direction": (lambda: bd.frequency_response(SCENE, 5.0, [1.0], "tip force across"), "input"),
     "along the beam": (lambda: bd.matrices(SCENE, 0.0, inputs=["n1"]), "input"),
@@ -264,6 +269,17 @@ def test_a_motion_without_lists_names_no_file(tmp_path):
 # Commands -----------------------------------------------------------------------------------------
 
 
+def test_columns_have_their_units():
+    answers = {"tip": "m", "tip acceleration": "m_per_s2", "root moment": "N_m"}
+    squares = {"tip": "m2", "tip acceleration": "m2_per_s4", "root moment": "N2_m2"}
+    for output, unit in answers.items():
+        head = [*next(iter(random_csv(bd.random_response(SCENE, 5.0, TABLE, output=output, modes=2))))]
+        squared = squares[output]
+        assert head == ["frequency_Hz", f"psd_{squared}_per_Hz", f"psd_error_{squared}_per_Hz"]
+        found = bd.frequency_response(SCENE, 5.0, [1.0], "tip force", output, modes=2)
+        assert [*next(iter(response_csv(found)))][2] == f"real_{unit}_per_N"
+
+
 def test_options():
     np.testing.assert_allclose(parse_frequencies("1:100:3 Hz"), [1, 10, 100])
     np.testing.assert_allclose(parse_frequencies("1, 2 kHz"), [1000, 2000])
@@ -286,7 +302,7 @@ def test_the_strain_on_a_rough_road_by_a_command(tmp_path, capsys):
     speed = 25 / scene.motion.rolling_radius
     expected = bd.random_response(scene, speed, bd.RoadRoughness("C"), output="root strain").rms
     assert json.loads(paths["json"].read_text())["rms"] == expected
-    assert paths["csv"].read_text().splitlines()[0] == "frequency_Hz,psd,psd_error"
+    assert paths["csv"].read_text().splitlines()[0] == "frequency_Hz,psd_per_Hz,psd_error_per_Hz"
     assert paths["plot"].stat().st_size > 10_000
 
 
