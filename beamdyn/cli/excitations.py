@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.scene.scene import Scene
 
+Axes = Literal["log", "linear"]
 RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 _AT = re.compile(r"(force|deflection|acceleration)@(.+?)( across)?")
 _SQUARED = re.compile(r"\(([^()]*)\)\s*(?:\^|\*\*)?2")
@@ -34,6 +35,9 @@ class RandomInput:
     psd : Path, optional
         One-sided density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
         or [g2/Hz], of a force [N2/Hz].
+    psd_axes : str, optional
+        Axes on which the density is straight between the points of --psd: log, as standards draw it, or
+        linear, which may begin at 0 Hz; default: log.
     road : str, optional
         Class of a random road by ISO 8608, from A, very good, to H.
     roughness : str, optional
@@ -50,6 +54,7 @@ class RandomInput:
     """
 
     psd: Path | None = None
+    psd_axes: Axes | None = None
     road: RoadClass | None = None
     roughness: Text | None = None
     highest: Text | None = None
@@ -86,7 +91,10 @@ class RandomInput:
                     f'--highest = "{self.highest}": it is that of a road; leave it out with --psd'
                 )
             drive = self.drive
-            return read_spectrum(self.psd, "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz")
+            unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"
+            return read_spectrum(self.psd, unit, self.psd_axes or "log")
+        if self.psd_axes is not None:
+            raise ValueError(f"--psd-axes = {self.psd_axes}: give it with --psd; a road has its own")
         limit = {} if self.highest is None else {"highest": parse_positive("--highest", self.highest, "1/m")}
         return RoadRoughness(self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit)
 
@@ -134,16 +142,19 @@ def _position(option: str, text: str) -> float | None:
     return None if text.strip() == "tip" else parse_positive(option, text.strip(), "m")
 
 
-def read_spectrum(path: Path, unit: str) -> PowerSpectrum:
+def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> PowerSpectrum:
     """Read a density from a CSV file with the columns f [Hz] and psd, in a unit such as m2/s4/Hz or g2/Hz.
+
+    It is straight between its points on the axes.
 
     Raises
     ------
     ConfigError
         If a head lacks its unit, a column is missing or a cell is no number: with the line.
     InvalidValue
-        If the frequencies do not ascend, or a density is not above 0.
+        If the frequencies do not ascend, or a density is negative, or 0 on logarithmic axes.
     """
+    from beamdyn.common.checks import InvalidValue
     from beamdyn.common.edge.csv_columns import read_csv
     from beamdyn.common.edge.data_text import read_data
     from beamdyn.common.edge.inputs import Quantity
@@ -162,7 +173,11 @@ def read_spectrum(path: Path, unit: str) -> PowerSpectrum:
     columns = table.named()
     if len(columns) != 2:
         raise text.refusal(table.head_line, f"expected the columns f [Hz] and psd [{unit}]")
-    return PowerSpectrum(columns["f"].values, columns["psd"].values)
+    try:
+        return PowerSpectrum(columns["f"].values, columns["psd"].values, axes)
+    except InvalidValue as refusal:
+        refusal.remedy = refusal.remedy.replace('interpolation = "linear"', "--psd-axes linear")
+        raise
 
 
 def spell_density(text: str) -> str:

@@ -148,6 +148,19 @@ def test_a_density_of_a_tip_force_has_its_unit(run, tmp_path):
     assert code == 2 and "m2/s4/Hz" in err
 
 
+def test_a_measured_density_may_begin_at_0_hz_on_linear_axes(run, tmp_path):
+    (tmp_path / "psd.csv").write_text("f [Hz], psd [m2/s4/Hz]\n0, 0\n100, 1\n")
+    asked = ("random", FILE, "--psd", tmp_path / "psd.csv", "--speed", "5 rad/s", "--modes", "2")
+    code, _, err = run(*asked)
+    assert code == 2 and "leave the point out, or give --psd-axes linear" in err
+    code, out, err = run(*asked, "--psd-axes", "linear")
+    assert code == 0, err
+    rms = bd.PowerSpectrum([0, 100], [0, 1], "linear").rms
+    assert f"{rms:.6g} m/s2" in out
+    code, _, err = run("random", FILE, "--road", "A", "--speed", "5 rad/s", "--psd-axes", "linear")
+    assert code == 2 and "--psd-axes = linear: give it with --psd" in err
+
+
 def test_an_input_beside_the_first_resonance_is_warned_of():
     first = bd.natural_modes(SCENE, 0.0, 1).frequency[0]
     for middle in (0.5, 1.5):
