@@ -307,6 +307,22 @@ def test_model_error_says_where_it_is_large():
     assert "at mount.setting_angle = 0.8 rad, speed = 60 rad/s the model error" in said
 
 
+def test_a_model_error_that_is_not_known_names_the_design_that_diverges():
+    """Not the stable one whose known changes are largest."""
+    for thickness in ([1e-4, 2e-4, 4e-4], [4e-4, 2e-4, 1e-4]):
+        study = bd.study(SCENE, {"beam.thickness": thickness}, speed=120.0, modes=1)
+        assert study.status[:, 0].tolist().count("divergence") == 1
+        (said,) = study.model_warnings()
+        assert said.startswith("at beam.thickness = 0.0001 m the model error may exceed")
+
+
+def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
+    vary = {"beam.thickness": [1e-4, 4e-4], "speed": [0.0, 120.0, 130.0]}
+    study = bd.study(SCENE, vary, modes=1)
+    (said,) = study.model_warnings()
+    assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of the 6 designs")
+
+
 def test_plots_of_one_input_and_of_more():
     one = bd.study(SCENE, {"mount.radius": [0.1, 0.2, 0.3]}).plot()
     assert len(one.get_lines()) == 3 and one.get_xlabel() == "mount.radius [m]"
