@@ -63,6 +63,17 @@ def is_input(name: str) -> bool:
     return name in _UNITS or unit_of_listed(name) is not None
 
 
+def check_name(argument: str, name: object) -> str:
+    """The name of an input, that of an argument of names; refused if there is no such input."""
+    if not isinstance(name, str):
+        bound = "the name of an input is a string"
+        raise InvalidValue(argument, name, bound, 'give one such as "beam.thickness"')
+    if not is_input(name):
+        near = difflib.get_close_matches(name, NAMES, n=1)
+        raise InvalidValue(argument, name, "unknown input", f"give {near[0] if near else ', '.join(NAMES)}")
+    return name
+
+
 def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
     """The inputs of a study with their values as arrays.
 
@@ -77,10 +88,8 @@ def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
     return tuple(_check_input(name, values) for name, values in vary.items())
 
 
-def _check_input(name: str, values: Any) -> VariedInput:
-    if not is_input(name):
-        near = difflib.get_close_matches(str(name), NAMES, n=1)
-        raise InvalidValue("vary", name, "unknown input", f"give {near[0] if near else ', '.join(NAMES)}")
+def _check_input(given: object, values: Any) -> VariedInput:
+    name = check_name("vary", given)
     array = real_array(name, values)
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")

@@ -333,6 +333,14 @@ def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
     assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of the 6 designs")
 
 
+@pytest.mark.parametrize("key", [1, None, ("a",)])
+def test_a_name_that_is_no_string_is_refused(key):
+    with pytest.raises(InvalidValue, match=r"^vary = .*is a string; give one such as \"beam.thickness\""):
+        bd.study(SCENE, {key: [1.0, 2.0]})
+    with pytest.raises(InvalidValue, match=r"^inputs = .*is a string; give one such as"):
+        bd.spread(SCENE, {key: "+-2%"})
+
+
 def test_plots_of_one_input_and_of_more():
     one = bd.study(SCENE, {"mount.radius": [0.1, 0.2, 0.3]}).plot()
     assert len(one.get_lines()) == 3 and one.get_xlabel() == "mount.radius [m]"
