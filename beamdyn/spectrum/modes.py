@@ -166,7 +166,7 @@ class Modes(StatesModelError):
 
 def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
     """Directions that are drawn solid and dashed, and their names."""
-    solid, names = first_drawn(scene.mount), name_directions(scene.mount)
+    solid, names = first_drawn(scene), name_directions(scene)
     return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
 

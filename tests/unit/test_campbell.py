@@ -120,6 +120,23 @@ def test_modes_that_pass_one_another_keep_their_names(of_two_planes: bd.Campbell
         assert c.confidence > 0.9
 
 
+@pytest.mark.parametrize("degrees", [85, 95, 50, 130, -85, 275])
+def test_a_pitched_blade_has_flap_and_edge(degrees: float) -> None:
+    """By its sections' own directions, of which flap is nearer to the axis of rotation."""
+    mount = replace(TWO_PLANES.mount, bending_angle=math.radians(degrees))
+    found = bd.campbell(replace(TWO_PLANES, mount=mount), SPEEDS[:2], modes=4)
+    assert found.names == (("flap 1", "edge 1", "flap 2", "edge 2"),)
+
+
+def test_in_plane_of_a_pitched_blade_is_edge() -> None:
+    """At a pitch of 85 deg the stiffer direction is nearer to the axis."""
+    mount = replace(TWO_PLANES.mount, bending_angle=math.radians(5))
+    (names,) = bd.campbell(replace(TWO_PLANES, mount=mount), SPEEDS[:2], modes=4).names
+    assert names == ("edge 1", "flap 1", "edge 2", "flap 2")
+    bent = bd.frequency_locus(replace(TWO_PLANES, mount=mount), SPEEDS[:2], 1)
+    assert "flap" in bent.plot(Figure().subplots()).get_legend().get_texts()[1].get_text()
+
+
 def test_margins_are_those_of_the_frequencies(of_two_planes: bd.Campbell) -> None:
     """At the rated speed against natural modes and all six lines by hand."""
     modes = bd.natural_modes(TWO_PLANES, 8.0, 4)
