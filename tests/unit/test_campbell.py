@@ -409,6 +409,18 @@ MISTAKES = {
     "negative order": ((BLADE, "--top-speed", "5 rpm", "--per-rev", "-3"), ("--per-rev", "1P to 6P")),
     "range of one": ((BLADE, "--top-speed", "5 rpm", "--operating", "3 rpm"), ("--operating", "lowest:")),
     "range falls": ((BLADE, "--top-speed", "5 rpm", "--operating", "4:3 rpm"), ("--operating", "end above")),
+    "range above the top": (
+        (BLADE, "--top-speed", "60 rpm", "--operating", "10:80 rpm"),
+        ('--operating = "10:80 rpm"', "ends above", '--top-speed = "60 rpm"', "higher"),
+    ),
+    "rated outside the range": (
+        (BLADE, "--top-speed", "100 rpm", "--operating", "10:80 rpm", "--rated", "90 rpm"),
+        ('--rated = "90 rpm"', 'outside --operating = "10:80 rpm"'),
+    ),
+    "many orders": (
+        (BLADE, "--top-speed", "5 rpm", "--per-rev", "2000"),
+        ('--per-rev = "2000"', "from 1 to 100"),
+    ),
     "one label twice": ((BLADE, BLADE, "--top-speed", "5 rpm"), ("blade", "--labels")),
     "labels alike": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a, a"), ('"a"', "its own")),
     "length of a scene": ((BLADE, "--top-speed", "5 rpm", "--length", "5 m"), ("--length", "leave it out")),
