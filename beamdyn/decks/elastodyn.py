@@ -193,7 +193,9 @@ def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
     wanted = [_USED[0], *second, *_USED[1:]]
     if heads[: len(wanted)] != wanted:
         here = next(i for i, name in enumerate(wanted) if heads[i : i + 1] != [name])
-        said = f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
+        said = (
+            f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
+        )
         yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
 
 

@@ -152,7 +152,9 @@ class SteadyResponse(StatesModelError):
     @property
     def is_warned(self) -> np.ndarray:
         """Whether a warning holds at each speed, (S,)."""
-        undecided = (np.abs(self.growth_rate) < self.growth_rate_error) & np.isin(self.status, ("stable", UNSTABLE))
+        undecided = (np.abs(self.growth_rate) < self.growth_rate_error) & np.isin(
+            self.status, ("stable", UNSTABLE)
+        )
         judged = self.status, self.vibration, self.error, undecided
         each = ([values[[i]] for values in (self.speeds, *judged)] for i in range(len(self.speeds)))
         alone = (_warnings(replace(self.request, speeds=at), *values) for at, *values in each)

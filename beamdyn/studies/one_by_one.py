@@ -20,7 +20,7 @@ from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
 from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
-from beamdyn.studies.inputs import scene_of
+from beamdyn.studies.inputs import scene_of, unit_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
 from beamdyn.transient.sweep import sweep
@@ -95,7 +95,7 @@ def _caution(
     """Yield of how many answers something holds, and why of the first."""
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
-        at = ", ".join(f"{name} = {value:.6g}" for name, value in designs[first].items())
+        at = ", ".join(f"{name} = {v:.6g} {unit_of(name)}".rstrip() for name, v in designs[first].items())
         yield Caution(words, sum(counts), 0.0, f" {words}{at and '; at ' + at}: {'; '.join(reasons[first])}")
 
 

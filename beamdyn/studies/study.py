@@ -192,7 +192,8 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
     if what == "crossings":
         positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
     if varied and not kind.has_speed:
-        raise InvalidValue("vary", SPEED, f"{what} belong to no speed", "vary other inputs")
+        bound = f"a {kind.word} is itself a speed that is sought, and belongs to no other"
+        raise InvalidValue("vary", SPEED, bound, "leave speed out and vary other inputs")
     return at
 
 

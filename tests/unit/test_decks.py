@@ -320,7 +320,9 @@ def test_columns_in_another_order_than_elastodyn_reads_are_warned_of(folder, run
 
 def test_a_blade_file_without_the_column_that_newer_versions_lack_is_in_order(folder):
     in_order(folder / "blade.dat", (0, 2, 3, 4, 5))
-    assert not [said for said in bd.read_deck(folder / "blade.dat", **GIVEN).audit.warnings if "heads" in said]
+    assert not [
+        said for said in bd.read_deck(folder / "blade.dat", **GIVEN).audit.warnings if "heads" in said
+    ]
 
 
 def test_written_polynomials_are_read_back_and_audited(folder, run):
