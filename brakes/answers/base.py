@@ -83,6 +83,10 @@ class Answer(Result, ABC):
         """Why the model has no answer, such as a brake that locks: one sentence each, none if it has."""
         return ()
 
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """Why there is no answer to some of as many designs that were solved together, by their row."""
+        return {}
+
     def loadable(self) -> Result | None:
         """The result of the mechanics, if a single one is all that there is to know; else None."""
         return None
@@ -394,7 +398,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         if answer is not None:
             values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
         more = () if answer is None else answer.refusals
-        made = swept(designs, outputs, [*values], more, refused)
+        made = _with_reasons(swept(designs, outputs, [*values], more, refused), answer, rows)
         return made, (*(() if answer is None else answer.warnings), *made.warnings)
 
     def _solve_accepted(
@@ -413,6 +417,17 @@ class ArrayBrakeType(BrakeType[FileModel]):
                 refused.update((int(rows[i]), str(each)) for i, each in bad.items())
                 rows = rows[~error.cases.bad]
         return None, rows, refused
+
+
+def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> InputSweep:
+    """The sweep with the reasons of the designs of some rows that the model has no answer to, such as locking.
+
+    A design of which all results that are wanted are there has none to give.
+    """
+    lacking = np.isnan([np.ravel(values) for values in made.found[:-1]]).any(axis=0)
+    why = {} if answer is None else answer.refusals_of_cases(len(rows))
+    unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
+    return replace(made, unanswered=tuple(sorted(unanswered.items())))
 
 
 class TableBrakeType(BrakeType[FileModel]):

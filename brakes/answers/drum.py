@@ -81,6 +81,10 @@ class DrumAnswer(Answer):
         """That the brake locks."""
         return (self.result.message,) if np.any(self.result.locked) else ()
 
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """That the brake locks, of the designs of which it does."""
+        return self.result.messages_of_locked(count)
+
     def tables(self) -> list[RenderableType]:
         """The brake as a whole, and shoe by shoe."""
         brake, shoes = self.result, self.result.shoes

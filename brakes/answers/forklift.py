@@ -149,6 +149,11 @@ class ForkliftAnswer(Answer):
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
         return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """The same of each of as many designs, by its row."""
+        stop = {} if self.stop is None else self.stop.messages_of_cases(count)
+        return stop | ({} if self.forces is None else self.forces.messages_of_cases(count))
+
     @property
     def error(self) -> Any:
         """Largest of the stages' residuals."""

@@ -193,11 +193,25 @@ class SlidesOrLocks(Result):
             return "slides: the friction is below self-locking"
         where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
         both = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
-        mu, least = (float(values.flat[0]) for values in both)
-        return (
-            f"locked{where}: friction {mu:.4g} is at or past self-locking, {least:.4g}; the shoe grips by "
-            "itself, and no torque follows from the force"
-        )
+        return _say_locked(*both, where)
+
+    def messages_of_locked(self, count: int) -> dict[int, str]:
+        """The message of each case that locks, of as many cases, by its row."""
+        given = self.friction, self.locking_friction, self.locked
+        mu, least, locked = (np.broadcast_to(x, (count,)) for x in given)
+        return {i: _say_locked(mu[i], least[i]) for i in np.flatnonzero(locked).tolist()}
+
+
+def _say_locked(friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:
+    return (
+        f"locked{where}: friction {_say_range(friction)} is at or past self-locking, {_say_range(locking)}; "
+        "the shoe grips by itself, and no torque follows from the force"
+    )
+
+
+def _say_range(values: np.ndarray) -> str:
+    ends = f"{float(np.min(values)):.4g}", f"{float(np.max(values)):.4g}"
+    return " to ".join(dict.fromkeys(ends))
 
 
 @dataclass(frozen=True)

@@ -126,6 +126,11 @@ class InternalForces(Result):
             return ", ".join(f"{name}: {count} cases" for name, count in zip(names, counts, strict=True))
         return _SENTENCES[str(self.status)]
 
+    def messages_of_cases(self, count: int) -> dict[int, str]:
+        """The message of each case that is not in equilibrium, of as many cases, by its row."""
+        each = np.broadcast_to(self.status, (count,)).tolist()
+        return {i: _SENTENCES[status] for i, status in enumerate(each) if status != "equilibrium"}
+
 
 _SENTENCES = {
     "equilibrium": "the shoes are in equilibrium, all forces positive",

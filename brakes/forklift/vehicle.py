@@ -264,6 +264,11 @@ class Stop(Result):
             return f"{short} of {np.size(self.stops)} cases do not stop" if short else "every case stops"
         return _SENTENCES[str(self.status)]
 
+    def messages_of_cases(self, count: int) -> dict[int, str]:
+        """The message of each case that does not stop, of as many cases, by its row."""
+        each = np.broadcast_to(self.status, (count,)).tolist()
+        return {i: _SENTENCES[status] for i, status in enumerate(each) if status == "never stops"}
+
 
 _SENTENCES = {
     "stops": "the truck stops",

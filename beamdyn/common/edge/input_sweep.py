@@ -109,6 +109,8 @@ class InputSweep(Result):
         Whether the inputs are combined each with each, or taken together.
     refused : tuple of (int, str)
         Designs that are refused, by their row (the last input changes fastest), each with the reason.
+    unanswered : tuple of (int, str)
+        Likewise designs that are accepted, but have not all of the results: a brake that locks.
     """
 
     inputs: tuple[str, ...]
@@ -120,6 +122,7 @@ class InputSweep(Result):
     warnings: tuple[str, ...] = ()
     combine: str = "product"
     refused: tuple[tuple[int, str], ...] = ()
+    unanswered: tuple[tuple[int, str], ...] = ()
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""
