@@ -196,8 +196,10 @@ def _inputs(scene: Scene) -> list[Input]:
     from beamdyn.config.scene_inputs import SceneInput
     from beamdyn.studies.inputs import NAMES, SCALE, SPEED, unit_of
     from beamdyn.studies.listed_numbers import listed_names
+    from beamdyn.studies.motion_numbers import motion_names
 
-    by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in NAMES}
+    known = {*NAMES, *motion_names(scene)}
+    by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in known}
     factors = (name for name in NAMES if name.startswith(SCALE))
 
     class ByWholeName(Input):

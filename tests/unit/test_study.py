@@ -1,6 +1,7 @@
 """Studies: inputs and their names, shapes, answers of single calls, refusals and model errors."""
 
 import pickle
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -253,6 +254,52 @@ ROAD = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
 def rolling(duration=0.5, **options):
     wheel = bd.RollingWheel(0.3, bd.SpinUp(40.0, duration), ROAD)
     return bd.Scene(SCENE.beam, SCENE.mount, wheel, **options)
+
+
+def test_numbers_of_the_motion_are_inputs():
+    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.RollingWheel(0.3, 40.0, ROAD))
+    vary = {"motion.road.wavelength": [0.2, 0.3], "speed": [20.0, 30.0], "motion.rolling_radius": [0.3, 0.35]}
+    study = bd.study(scene, vary, "amplitude")
+    assert [each.unit for each in study.inputs] == ["m", "rad/s", "m"]
+    own = bd.RollingWheel(0.35, 40.0, bd.RoadWave(0.2, velocity_amplitude=0.01))
+    assert study.scene_at(0, 1, 1).motion == own
+    single = bd.steady_response(study.scene_at(0, 1, 1), [20.0, 30.0]).amplitude
+    assert np.array_equal(study.value[0, :, 1], single)
+
+
+def test_numbers_of_a_rotation_of_a_wheel_are_inputs():
+    made = scene_of(rolling(), {"motion.rotation.duration": 2.0, "motion.road.velocity_amplitude": 0.02})
+    road = bd.RoadWave(0.3, velocity_amplitude=0.02)
+    assert made.motion == bd.RollingWheel(0.3, bd.SpinUp(40.0, 2.0), road)
+    turning = replace(SCENE, motion=bd.SpinUp(40.0, 1.0))
+    assert scene_of(turning, {"motion.duration": 3.0}).motion == bd.SpinUp(40.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("what", "name", "values", "said"),
+    [
+        (
+            "amplitude",
+            "motion.road.height",
+            [0.1],
+            "no such number; give one of motion.rolling_radius, motion.r",
+        ),
+        ("amplitude", "motion.road.wavelength", [-0.1], "motion.road.wavelength = -0.1 m: "),
+        ("frequencies", "motion.road.wavelength", [0.1], "only amplitudes and peaks are studied over"),
+        ("crossings", "motion.rolling_radius", [0.1], "ask for one of these"),
+        ("amplitude", "motion.rotation.speed", [0.1], "unknown input"),
+        ("amplitude", "motion.road.wavelenght", [0.1], "give motion.road.wavelength"),
+    ],
+)
+def test_numbers_of_the_motion_are_refused_in_a_sentence(what, name, values, said):
+    with pytest.raises(InvalidValue, match=said.replace(".", "[.]")):
+        bd.study(rolling(), {name: values}, what, speed=30.0)
+
+
+def test_a_spread_takes_numbers_of_the_motion():
+    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.RollingWheel(0.3, 40.0, ROAD))
+    found = bd.spread(scene, {"motion.road.velocity_amplitude": "+-2%"}, "amplitude", samples=128)
+    assert found.worst.largest[0] / found.nominal[0] == pytest.approx(1.02, rel=1e-6)  # proportional
 
 
 def test_peaks_are_those_of_sweeps():

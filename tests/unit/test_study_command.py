@@ -94,6 +94,14 @@ road = { wavelength = "300 mm", velocity_amplitude = "10 mm/s" }
 """
 
 
+def test_numbers_of_the_motion_are_varied(tmp_path, capsys):
+    vary = ["--vary", "wavelength=200,300 mm", "--what", "amplitude"]
+    code, out, _ = run(vary, tmp_path, capsys, TOML + MOTION)
+    assert code == 0 and "motion.road.wavelength [mm]" in out
+    code, _, err = run(vary, tmp_path, capsys)
+    assert code == 2 and "unknown name 'wavelength'" in err
+
+
 @pytest.mark.parametrize("what", ["critical_speed", "crossings"])
 def test_a_speed_that_is_sought_is_not_varied(what, tmp_path, capsys):
     code, _, err = run(
