@@ -86,8 +86,9 @@ def study(
         The scene; its motion is used for crossings, amplitudes and peaks.
     vary : mapping of str to sequence of float
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
-        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; of amplitudes
-        and peaks numbers of the motion, "motion.road.wavelength", "motion.rolling_radius"; and "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
+        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; numbers of
+        the motion, of amplitudes and peaks, such as "motion.road.wavelength"; and
+        "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
         Sides and material are those of a rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak"}
         The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
