@@ -420,7 +420,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
 
 
 def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> InputSweep:
-    """The sweep with the reasons of the designs, of some rows, that the model has no answer to: that they lock.
+    """The sweep with the reasons why the model has no answer to designs of some rows, such as that they lock.
 
     A design of which all results that are wanted are there has none to give.
     """

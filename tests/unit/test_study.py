@@ -380,6 +380,14 @@ def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
     assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of the 6 designs")
 
 
+@pytest.mark.parametrize("store", ["", "  "])
+def test_a_store_without_a_name_is_refused(store, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InvalidValue, match="^store = '.*': the name is empty; give a folder"):
+        bd.study(SCENE, {"speed": [0.0, 1.0]}, store=store)
+    assert not [*tmp_path.iterdir()]
+
+
 @pytest.mark.parametrize("key", [1, None, ("a",)])
 def test_a_name_that_is_no_string_is_refused(key):
     with pytest.raises(InvalidValue, match=r"^vary = .*is a string; give one such as \"beam.thickness\""):

@@ -112,9 +112,17 @@ def test_a_speed_that_is_sought_is_not_varied(what, tmp_path, capsys):
 
 def test_no_model_error_is_stated_of_no_answer(tmp_path, capsys):
     vary = ["--vary", "speed=300,400 rad/s", "--what", "amplitude"]
-    code, out, err = run(vary, tmp_path, capsys, TOML + MOTION)
+    _, out, err = run(vary, tmp_path, capsys, TOML + MOTION)
     assert "not computed: no design has an answer" in out and "of 0 designs" not in out
     assert "at none of 2 designs is there an answer: past the critical speed" in err
+
+
+def test_a_store_without_a_name_is_refused(tmp_path, capsys, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    code, _, err = run(["--vary", "speed=0:9:2 rad/s", "--store", ""], tmp_path, capsys)
+    assert code == 2 and "--store" in err and "the name is empty" in err and err.count("\n") == 1
+    assert not [*(tmp_path / "here").iterdir()]
 
 
 def test_help_and_python_have_one_limit(capsys):
