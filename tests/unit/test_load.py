@@ -236,9 +236,13 @@ def reseal(text, old, new):
 
 
 def test_a_file_that_is_not_there_is_refused_in_a_sentence(tmp_path):
-    with pytest.raises(FileNotFoundError, match=r"none\.json: no result can be loaded: there is no such file; "):
+    with pytest.raises(
+        FileNotFoundError, match=r"none\.json: no result can be loaded: there is no such file; "
+    ):
         bd.load(tmp_path / "none.json")
-    with pytest.raises(OSError, match="no result can be loaded: .*; give one that save or --json has written"):
+    with pytest.raises(
+        OSError, match="no result can be loaded: .*; give one that save or --json has written"
+    ):
         bd.load(tmp_path)
 
 
