@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,8 +27,13 @@ def solve(tables: Mapping[str, Any]) -> RotorDrawing:
 
 
 def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
-    """The rotor along its axis, and the section of its root."""
-    return rotor.drawings()
+    """The rotor along its axis and the section of its root, beside one another as a page is wide.
+
+    The beam by itself, where it is drawn, stands beside the section: both are details.
+    """
+    (plan,), *details = rotor.drawings()
+    apart = [replace(detail, own_scale=True) for (detail,) in details]
+    return [[plan], apart] if len(apart) > 1 else [[plan, *apart]]
 
 
 def handles(rotor: RotorDrawing, _: float = 0.0) -> Sequence[Handle]:

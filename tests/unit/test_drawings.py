@@ -450,3 +450,33 @@ def test_a_label_stands_beside_a_ground_sign_not_on_it():
         (sign,) = signs_of(layout)
         gap = np.minimum(text.box[2:], sign[2:]) - np.maximum(text.box[:2], sign[:2])
         assert (gap <= 0).any(), towards
+
+
+def test_a_detail_has_a_scale_of_its_own_and_less_of_the_width():
+    def line(length, own_scale=False):
+        return Drawing([Outline([(0, 0), (length, length)], "axis")], own_scale=own_scale)
+
+    def scales(*row):
+        return [layout.fit.scale for layout in lay_out([row], Paper.of([row]))]
+
+    one, other = scales(line(1.0), line(0.01))
+    assert one == other
+    one, detail = scales(line(1.0), line(0.01, own_scale=True))
+    assert detail > 50 * one
+    (left, _, end, _), (start, _, right, _) = (
+        layout.frame for layout in lay_out([[line(1.0), line(1.0, own_scale=True)]], Paper(680.0, (400.0,)))
+    )
+    assert left == 0 and end == start and right == 680.0
+    assert right - start < end - left
+
+
+def test_no_label_stands_under_the_handle_of_a_point():
+    at = (0.0, 0.0)
+    around = Outline([(-1, -1), (1, 1)], "ghost", 0.0)
+    for points in ({}, {"a point": at}):
+        drawing = Drawing([around], [Label("here", at, "axis", (1.0, 0.0))], points=points)
+        layout = arrange(drawing, (0.0, 0.0, 400.0, 400.0))
+        (text,) = (text for text in layout.texts if text.lines == ("here",))
+        place = layout.fit.to_paper(at)
+        gap = float(np.hypot(*(np.clip(place, text.box[:2], text.box[2:]) - place)))
+        assert (gap > 7.0) == bool(points)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.drawing.label_places import FAR, Ground, Place, Wish, keep_places, place_labels
-from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, points_of_shape
+from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, arc, points_of_shape
 from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size, wrapped
 
 Frame = tuple[float, float, float, float]  # left, top, right, bottom
@@ -21,6 +21,8 @@ _CROWDED = 30.0  # a label farther than this from its point asks for a larger ma
 _SWATCH, _SPACE = 16.0, 14.0  # length of a line in the key, and what follows its text
 _BAR = 0.22  # longest scale bar over the width of the frame
 _SMALL_DISC = 30.0  # radius up to which labels should not stand on it
+# Points that cover the round handle of a point that can be moved, from its place: 16 px of the page.
+_HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
 _PADDING = (4.0, 1.0)  # around the measured text: letters are drawn with hints, and slanted
 
 
@@ -212,6 +214,7 @@ def _ground(drawing: Drawing, inner: Frame, fit: Fit) -> Ground:
         whole = along[np.isfinite(along).all(axis=1)]
         if len(whole) and not closed and not np.array_equal(whole[0], whole[-1]):
             points.append(whole[[0, -1]])
+    points += [fit.to_paper(at) + _HANDLE for at in drawing.points.values()]
     left, top, right, bottom = inner
     within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
     return Ground(within, _clipped(np.vstack(segments), inner), np.vstack(points))

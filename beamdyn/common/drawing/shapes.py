@@ -171,6 +171,8 @@ class Drawing:
         Points (x, y) that can be moved, by their names.
     room : ndarray, shape (k, 2)
         Points for which there is room beside what is drawn, such as those of other positions.
+    own_scale : bool
+        Whether it has a scale of its own beside others, as a detail has.
     """
 
     shapes: Sequence[DrawnShape]
@@ -182,6 +184,7 @@ class Drawing:
     key: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     points: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     room: Any = ()
+    own_scale: bool = False
 
     @property
     def legend(self) -> dict[str, str]:
