@@ -86,9 +86,7 @@ class Page:
 
     def _body(self) -> None:
         with (
-            ui.tab_panels(self._bar, value=next(iter(self.places)))
-            .classes("w-full")
-            .props("animated=false role=main")
+            ui.tab_panels(self._bar, value=next(iter(self.places))).classes("w-full").props("animated=false")
         ):
             for name, (document, screen) in self.places.items():
                 with ui.tab_panel(name) as panel:
