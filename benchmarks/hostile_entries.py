@@ -174,7 +174,7 @@ def each_alone(program: Program, count: int, seed: int) -> Iterator[Row]:
 # In a tab beside another ------------------------------------------------------------------------------------
 
 # Types texts into fields, whether they are folded or not, with a pause after each.
-_ENTER = """async ([entries, pause]) => {
+ENTER = """async ([entries, pause]) => {
   for (const [path, text] of entries) {
     for (const field of document.querySelectorAll(`[data-path="${path}"]`)) {
       const box = field.querySelector("input, textarea") || field;
@@ -277,7 +277,7 @@ def _beside(
         for text in hostile_texts(entry, count, seed)
     ]
     random.Random(seed).shuffle(entries)
-    hostile.evaluate(_BEGIN, [_ENTER, [entries, 1e3 * _PAUSE]])
+    hostile.evaluate(_BEGIN, [ENTER, [entries, 1e3 * _PAUSE]])
     numbers = (f"0.{digits} m" for digits in range(1100, 1_000_000))
     while not hostile.evaluate("window.sent"):
         reacted, solved = other.evaluate(_ANSWER, [path, next(numbers), 60_000])

@@ -21,6 +21,7 @@ from brakes.app.program import BRAKES
 
 WIDTHS, SCHEMES = (390, 800, 1280, 1920), ("light", "dark")
 PROGRAMS = {program.name: program for program in (BRAKES, BEAMDYN)}
+_TO_TOP = "document.querySelectorAll('html, .left').forEach((e) => e.scrollTo(0, 0))"
 NO_AXE = "axe-core: pip install axe-playwright-python"
 _SERIOUS = ("serious", "critical")
 
@@ -31,8 +32,8 @@ _BEGIN = """() => {
   window.reached = [];
 }"""
 _AROUND = "() => window.reached.indexOf(window.reached[0], 1) > 0"
-# Names of visible controls at which the Tab key has not stopped; of tabs one is enough, the others are reached
-# from it by arrow keys.
+# Names of visible controls at which the Tab key has not stopped; of tabs one is enough, the others are
+# reached from it by arrow keys.
 _NOT_REACHED = """() => [...document.querySelectorAll(
   "button, input, textarea, a[href], summary, [role=slider], [role=tablist], [role=button], [role=switch]")]
   .filter((e) => e.checkVisibility({visibilityProperty: true}) && !e.disabled && e.type !== "file")
@@ -45,7 +46,7 @@ _NOT_BY_TOUCH = """() => [...document.querySelectorAll("button, input, textarea,
     e.scrollIntoView({block: "center", inline: "center"});
     const box = e.getBoundingClientRect();
     const hit = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-    return box.width > 1 && !(hit && (e.contains(hit) || hit.contains(e)
+    return box.width > 1 && !(hit && (e.contains(hit)
       || e.closest(".q-field")?.contains(hit)
       || (e.matches(".handle") && hit.matches(".handle"))));
   }).map((e) => e.getAttribute("aria-label") || e.innerText || e.outerHTML.slice(0, 80))"""
@@ -73,7 +74,9 @@ def not_by_keyboard(page: Any) -> list[str]:
             page.keyboard.press("Tab")
         if page.evaluate(_AROUND):
             break
-    return page.evaluate(_NOT_REACHED)
+    found = page.evaluate(_NOT_REACHED)
+    page.evaluate("document.activeElement.blur()")
+    return found
 
 
 def faults(page: Any, width: int) -> dict[str, list[str]]:
@@ -109,7 +112,7 @@ def _of_width(browser: Any, port: int, program: Program, width: int, folder: Pat
             page.emulate_media(color_scheme=scheme)
             page.wait_for_timeout(300)  # colours change gradually
             name = f"{program.name}-{screen.name.lower().replace(' ', '-')}-{width}-{scheme}"
-            page.evaluate("window.scrollTo(0, 0)")
+            page.evaluate(_TO_TOP)
             page.screenshot(path=folder / f"{name}.png")
             wrong = [f"{kind} {', '.join(said)}" for kind, said in faults(page, width).items() if said]
             yield name, "; ".join(wrong) or "nothing wrong", "nothing wrong"

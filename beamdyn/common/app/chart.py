@@ -238,7 +238,7 @@ def _axis(axis: ChartAxis, values: Sequence[Any], gap: float, place: str) -> dic
 
 
 def _numbers(axis: ChartAxis) -> dict[str, Any]:
-    """How the numbers at an axis are written: small and large ones by powers of ten, ends where there is room."""
+    """How the numbers at an axis are written: small and large ones by powers of ten; ends, where free."""
     if axis.logarithmic:
         return {":formatter": _POWERS}
     return {"showMaxLabel": axis.low is None or axis.high is None or _is_tick(axis.low, axis.high)}
