@@ -68,6 +68,7 @@ class Page:
         self._body()
         ui.on("undo", self.undo)
         ui.on("redo", self.redo)
+        ui.on("narrow", lambda event: self._be_narrow(event.args is True))
         self._bar.client.on_delete(self._close)
 
     def _close(self) -> None:
@@ -336,9 +337,7 @@ class Page:
     def _restore(self, stored: Mapping[str, Any]) -> None:
         """Put stored designs into the forms; a form that shows its design already is left alone."""
         self.header.show_look(stored.get("look") or "")
-        if stored.get("narrow") is True:
-            for panel in self.panels.values():
-                panel.be_narrow()
+        self._be_narrow(stored.get("narrow") is True)
         typed = stored.get("typed", {})
         for name, entries in stored.get("designs", {}).items():
             if (work := self.works.get(name)) is not None:
@@ -349,6 +348,10 @@ class Page:
             self._bar.set_value(stored["front"])
         if stored.get("link"):
             self._follow(str(stored["link"]))
+
+    def _be_narrow(self, narrow: bool) -> None:
+        for panel in self.panels.values():
+            panel.be_narrow(narrow)
 
     def _follow(self, fragment: str) -> None:
         """Open the design in a link, which is checked as a file is."""

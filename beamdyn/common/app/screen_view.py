@@ -292,10 +292,11 @@ class ScreenView:
             for more in self._more:
                 more.show(answered.answer)
 
-    def be_narrow(self) -> None:
-        """Draw on narrow paper from now on."""
-        self.narrow = True
-        self._draw()
+    def be_narrow(self, narrow: bool) -> None:
+        """Draw on narrow paper from now on, or on wide."""
+        if narrow != self.narrow:
+            self.narrow = narrow
+            self._draw()
 
     def compare(self) -> None:
         """Show the design that this one is compared with, or none."""
