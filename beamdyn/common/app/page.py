@@ -151,8 +151,8 @@ class Page:
         self.header.mark(stale, self.work.history, self.work.other)
 
     def _rebuild(self, document: Document) -> None:
-        for screen in document.screens:
-            self.panels[screen.name].rebuild()
+        if self.current[0] is document:  # other screens are made up to date when they come to the front
+            self.panels[self.front].rebuild()
         if self._recalled:
             self._bar.client.run_javascript(self._memory.forget_typed)
         self.panels[self.front].enter()

@@ -62,7 +62,8 @@ class ScreenView:
             self._left: Any = ui.column().classes("left gap-1")
             with ui.column().classes("right gap-2"):
                 self._results()
-        self.rebuild()
+        self._shape: list[str] | None = None  # its form is made when it comes to the front: pages open sooner
+        self.state()
 
     def _results(self) -> None:
         with ui.column().classes("head"):
