@@ -16,6 +16,7 @@ from beamdyn import natural_modes
 from beamdyn.app.headlines import of_trade
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_aside, read_at_speed
 from beamdyn.app.left_out import left_out_table
+from beamdyn.app.sketches import sketch
 from beamdyn.cautions import notes_of, warnings_of
 from beamdyn.common.app.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.app.screens import Drag, Screen
@@ -251,4 +252,5 @@ TRADE = Screen(
     charts=charts,
     headline=lambda answer: [*of_trade(answer.modes, answer.time)],
     effort=EFFORT,
+    sketch=sketch,
 )

@@ -15,6 +15,7 @@ from beamdyn.app.bent_beam import bent_beam, drawn_larger
 from beamdyn.app.headlines import of_peak
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, first_frequency, read_aside, read_scene
 from beamdyn.app.left_out import left_out_table
+from beamdyn.app.sketches import sketch
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.app.screens import Screen, Slider
@@ -245,4 +246,5 @@ TRANSIENT = Screen(
     charts=charts,
     headline=lambda answer: [*of_peak(answer.peak, answer.peak_at)],
     effort=EFFORT,
+    sketch=sketch,
 )

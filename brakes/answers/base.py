@@ -123,6 +123,10 @@ class Answer(Result, ABC):
         """What the figure shows beside its drawings, with the slider at a place."""
         return None
 
+    def branches(self) -> Mapping[str, Answer]:
+        """The same answer with each of several solutions drawn, by their names; none where there is one."""
+        return {}
+
     def handles(self, place: float) -> Sequence[Handle]:
         """Points of the first drawing that can be moved there, with the slider at a place."""
         return ()
@@ -257,6 +261,10 @@ class BrakeType(ABC, Generic[FileModel]):
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
         """Tables of a design that is drawn the same and solved sooner."""
         return tables
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """Drawings that show what the symbols of its form mean, for what is chosen there."""
+        return ()
 
     @abstractmethod
     def solve(self, design: FileModel) -> Answer:

@@ -123,7 +123,7 @@ def test_a_stroke_is_played_by_the_space_bar(page, motion):
     page.evaluate("""() => {
       window.seen = new Set();
       const look = () => {
-        for (const it of document.querySelectorAll('svg.machine'))
+        for (const it of document.querySelectorAll('.board svg.machine'))
           if (it.getBoundingClientRect().width) window.seen.add(it.id);
         requestAnimationFrame(look);
       };

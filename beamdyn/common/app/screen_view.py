@@ -12,6 +12,7 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app import tasks
+from beamdyn.common.app.branch_choice import BranchChoice
 from beamdyn.common.app.chart_board import ChartBoard
 from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
@@ -27,6 +28,7 @@ from beamdyn.common.app.player import BackAndForth, Player
 from beamdyn.common.app.processes import TaskTaker
 from beamdyn.common.app.refusals import changed, outcome_of
 from beamdyn.common.app.screens import Handle, Screen
+from beamdyn.common.app.sketch_panel import SketchPanel
 from beamdyn.common.app.sweep_panel import SweepPanel
 from beamdyn.common.app.under_way import UnderWay
 from beamdyn.common.edge.inputs import Input
@@ -58,6 +60,7 @@ class ScreenView:
         self._way = UnderWay(self._settle, self.state)
         self._holds = False  # a slider of the form
         self._partial = False  # whether the tables shown are those of an answer before
+        self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
             self._left: Any = ui.column().classes("left gap-1")
             with ui.column().classes("right gap-2"):
@@ -80,6 +83,7 @@ class ScreenView:
         with self._good:
             with ui.column().classes("pictures gap-2"):
                 self._slider()
+                self._branch = BranchChoice(self._redraw)
                 self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
                 self._curves: Any = ui.html("", sanitize=False).classes("w-full drawing-frame curves")
                 self._charts = ChartBoard(f"{self.screen.name}: charts of the result")
@@ -116,8 +120,10 @@ class ScreenView:
 
     def rebuild(self) -> None:
         """Make the form again, for instance after another file has been opened."""
+        shown = self._sketch is None or self._sketch.shown
         self._left.clear()
         with self._left:
+            self._sketch = SketchPanel(self.screen.sketch, self.work.entries, shown)
             self._lists = self._make_lists()
             self.form = Form(
                 self._fielded, self.screen.sections, self.work.entries, self._changed, self.screen.drags,
@@ -295,12 +301,19 @@ class ScreenView:
     def be_narrow(self) -> None:
         """Draw on narrow paper from now on."""
         self.narrow = True
+        if self._sketch is not None:
+            self._sketch.fold()
         self._draw()
 
     def compare(self) -> None:
         """Show the design that this one is compared with, or none."""
         if self.work.answered.get(self.screen.name):
             self._show()
+
+    def _redraw(self) -> None:
+        """Draw another of the answer's branches."""
+        self._draw()
+        self._plot()
 
     def _turn(self) -> None:
         """Draw at the slider's new place, to the same scale; curves follow when it rests."""
@@ -312,15 +325,19 @@ class ScreenView:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        there = self._other_answer()
+        answer, there = self._drawn_answer(answered), self._other_answer()
         other = () if there is None else self.screen.drawings(there, self.progress)
         name = self.work.other.name if self.work.other else ""
         made = draw_sheet(
-            self.screen, answered.answer, self.progress, self.board.held or view, other, name, self.narrow
+            self.screen, answer, self.progress, self.board.held or view, other, name, self.narrow
         )
         self._drawn = made.name or self.screen.name
-        self._chart(answered.answer)
+        self._chart(answer)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
+
+    def _drawn_answer(self, answered: Answered) -> Any:
+        """The answer, with the branch drawn that is chosen."""
+        return self._branch.choose(answered.answer, self.screen.branches(answered.answer))
 
     def _other_answer(self) -> Any:
         """The answer to the design that this one is compared with, if there is one."""
@@ -341,7 +358,7 @@ class ScreenView:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        answer, progress = answered.answer, self.progress
+        answer, progress = self._drawn_answer(answered), self.progress
         figure = self.screen.curves(answer, progress) if self.screen.drawings(answer, progress) else None
         made = "" if figure is None else picture(drawing(lambda: figure), f"{self.screen.name}: curves")
         self._curves.set_content(made)

@@ -12,6 +12,7 @@ from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.app.lists import Lists
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketcher
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -185,6 +186,12 @@ class Screen:
     charts : callable, optional
         Answer and place of the slider in; charts out, which are shown below the drawings, and in place of the
         figure where there are none.
+    branches : callable
+        Answer in; out, by their names, the same answer with each of several solutions drawn, the usual one
+        first, among which the page lets one choose. None where there is one.
+    sketch : callable
+        Entries of its form in; rows of drawings out that show what its symbols mean, for the kinds that are
+        chosen there.
     """
 
     name: str
@@ -208,6 +215,8 @@ class Screen:
     headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
     effort: str = ""
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
+    branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}
+    sketch: Sketcher = lambda _: ()
 
     @property
     def last(self) -> float:
