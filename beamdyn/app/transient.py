@@ -18,6 +18,7 @@ from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
+from beamdyn.common.app.courses import Onward
 from beamdyn.common.app.screens import Screen, Slider
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.drawing.shapes import Drawing
@@ -240,7 +241,7 @@ TRANSIENT = Screen(
     draw,
     lambda answer: warnings_of(answer.run),
     lambda answer: rows_of(answer.run),
-    slider=Slider("time", ("start", "end"), 0.001, 20.0),
+    slider=Slider("time", ("start", "end"), 0.001, 20.0, Onward),
     drags=DRAGS,
     drawings=drawings,
     charts=charts,

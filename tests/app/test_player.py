@@ -7,12 +7,20 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-from beamdyn.common.app.player import BackAndForth, Onward
+from beamdyn.app.transient import TRANSIENT
+from beamdyn.common.app.courses import BackAndForth, Onward
 from brakes.app.program import BRAKES
 from tests.app.browsing import go
 from tests.app.serving import IN_BROWSER
 
 PAINTED = re.compile(r".*requestAnimationFrame", re.DOTALL)
+
+
+def test_time_goes_on_and_strokes_go_back():
+    """A transient that ran backwards would show a motion that there is not."""
+    assert isinstance(TRANSIENT.slider.course(1.0, 20.0), Onward)
+    for screen in (screen for document in BRAKES.documents for screen in document.screens if screen.slider):
+        assert isinstance(screen.slider.course(1.0, 2.5), BackAndForth)
 
 
 @pytest.mark.parametrize("course", [BackAndForth(2.0, 3.0), Onward(7.0, 4.0)])

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.app.chart import Chart
+from beamdyn.common.app.courses import BackAndForth, Course
 from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.app.lists import Lists
 from beamdyn.common.curves import sweep_figure
@@ -62,12 +63,15 @@ class Slider:
         Between places that are drawn when it is moved by hand.
     seconds : float
         How long it takes to play from one end to the other [s].
+    course : callable
+        Its last place and these seconds in, how it is played out: back and forth, or from the start again.
     """
 
     label: str
     marks: tuple[str, ...]
     step: float = 0.05
     seconds: float = 2.5
+    course: Callable[[float, float], Course] = BackAndForth
 
 
 @dataclass(frozen=True)
@@ -175,7 +179,7 @@ class Screen:
     coarser : callable
         Tables in, those of a question out whose drawing is the same and that is answered sooner: solved while
         a point is moved.
-    curves : callable
+    curves : callable, optional
         Answer and place of the slider in; the figure below the drawings out, or None.
     lists : Lists, optional
         Lists of named things that stand above its form.
@@ -210,7 +214,7 @@ class Screen:
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
     drawings: Callable[[Any, float], Rows] = lambda *_: ()
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
-    curves: Callable[[Any, float], Figure | None] = lambda *_: None
+    curves: Callable[[Any, float], Figure | None] | None = None
     lists: Lists | None = None
     headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
     effort: str = ""
