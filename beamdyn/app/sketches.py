@@ -11,7 +11,7 @@ from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Outline, Symbol
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch, wall
 
-_PHI, _PSI, _ETA = np.radians((46.0, 35.0, 24.0))
+_PHI, _PSI, _ETA = np.radians((36.0, 35.0, 24.0))
 _ROOT, _LENGTH, _TIP = np.array([1.0, 0.0]), 0.9, 0.16
 _HUB = 0.16  # radius at which the sense of rotation is drawn
 
@@ -83,11 +83,11 @@ def _road() -> Drawing:
     s = Sketch()
     x = np.linspace(-1.15, 2.0, 121)
     road = np.column_stack([x, -0.16 * np.cos(2 * np.pi * x / 1.1)])
-    hub = np.array([-0.5, 0.72])
-    s.add(Outline(road, "ground", 1.6), Disc(hub, 0.58, "wheel", 1.4))
+    hub = np.array([-0.5, 0.54])
+    s.add(Outline(road, "ground", 1.6), Disc(hub, 0.4, "wheel", 1.4))
     s.axis(hub)
-    s.length("R", hub, hub - (0.0, 0.58), (1.0, 0.0))
-    s.moment("omega_s", hub, 0.72, 2.0, 1.1, "axis")
+    s.length("R", hub, hub - (0.0, 0.4), (1.0, 0.0))
+    s.moment("omega_s", hub, 0.52, 2.1, 1.0, "axis")
     s.length("lambda", (0.55, 0.4), (1.65, 0.4), (0.0, 1.0))
     s.dashed((0.55, 0.4), (0.55, 0.16))
     s.dashed((1.65, 0.4), (1.65, 0.16))

@@ -136,7 +136,7 @@ class MechanismFriction(Result):
     def at(self, position: Position, branch: str) -> Equilibrium:
         """Equilibrium of a branch at one position."""
         found = solve_with_friction(position.mechanism, self.driver, position)
-        return dict(zip(BRANCHES, _ways(found), strict=True))[branch]
+        return _ways(found)[BRANCHES.index(branch)]
 
     def locked(self) -> dict[str, np.ndarray]:
         """Where the mechanism locks over the stroke, by the name of each curve on which it does anywhere.

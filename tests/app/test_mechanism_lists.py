@@ -76,6 +76,15 @@ def test_a_toggle_clamp_is_built_from_nothing():
     assert not SCREEN.notes(one)
 
 
+def test_a_point_that_is_added_lies_on_no_other():
+    """The third point of a mechanism from nothing lay on the second: one saw two, and dragged the wrong one."""
+    entries = empty(MECHANISM.base_entries)
+    for _ in range(12):
+        entries = add(entries, "point")
+        places = [tuple(at) for at in tables(entries)["points"].values()]
+        assert len(set(places)) == len(places)
+
+
 def test_at_each_step_advice_says_what_is_missing():
     _, said = built()
     words = (
