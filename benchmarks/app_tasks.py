@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ _HEADLINE = """() => {
   return Object.fromEntries([...(it?.children ?? [])].map((e) =>
     [e.querySelector('dt').innerText, e.querySelector('dd').innerText]));
 }"""
-_NEVER, _STEPS = "never", 200
+_NEVER, _STEPS = "never", 40
 
 
 @dataclass
@@ -73,7 +73,7 @@ class Person:
         self._does(choose)
 
     def moves(self, point: str, key: str) -> None:
-        """Move a point of the drawing by an arrow key."""
+        """Move a point of the drawing, or a slider, by a key."""
         made = self._seen(self.page.get_by_role("slider", name=point, exact=True))
         self._does(lambda: made.press(key))
 
@@ -101,15 +101,14 @@ class Person:
 
 def find_the_slope(person: Person) -> str:
     """The slope at which the truck no longer stops: its end is moved down until it says so, and back."""
-    point, distance = "end of the slope", "stopping distance"
     person.goes_to("Vehicle")
-    for key in ("Shift+ArrowDown", "ArrowUp", "ArrowDown"):
-        for _ in range(_STEPS):
-            before = person.field("stop.slope").input_value()
-            if (person.reads(distance) == _NEVER) == key.endswith("Down"):
-                break
-            person.moves(point, key)
-    return f"stops on {before}, not on {person.field('stop.slope').input_value()}"
+    last: dict[bool, str] = {}  # slopes, by whether the truck never stops there
+    for key in ("Shift+ArrowDown", "ArrowUp"):
+        while (never := person.reads("stopping distance") == _NEVER) != key.endswith("Down"):
+            last[never] = person.field("stop.slope").input_value()
+            person.moves("end of the slope", key)
+        last[never] = person.field("stop.slope").input_value()
+    return f"stops on {last[False]}, never on {last[True]}"
 
 
 def move_the_pivot(person: Person) -> str:
@@ -123,6 +122,8 @@ def move_the_pivot(person: Person) -> str:
             if (now := abs(float(person.reads(ratio)) - 1)) >= last:
                 break
             last = now
+    for x in ("26.8", "26.9", "26.89"):  # between two steps of the keys
+        person.types("dimensions.side_pivot", f"{x}, 4")
     return f"{person.reads(ratio)} with the pivot at {person.field('dimensions.side_pivot').input_value()}"
 
 
@@ -163,24 +164,22 @@ def choose_a_model(person: Person) -> str:
     person.goes_to("Trade")
     person.types("trade.digits", "3")
     person.types("operation.speed", "100")
-    person.presses("fold the sketch") if False else None
-    return person.sees("Cheapest with 3 digits in all")
+    return person.reads("cheapest, physics included")
 
 
 def watch_the_resonance(person: Person) -> str:
     """The harvester's run is played until it has passed the resonance."""
     person.goes_to("Transient")
-    said = person.sees("the speed passes a resonance")
-    slider = person._seen(person.page.get_by_role("slider", name="time", exact=True))
-    slider.press("Home")
+    passes = person.reads("passes a resonance at")
+    person.moves("time", "Home")
     person.presses("play time")
-    passed = float(said.split()[1])
+    passed = float(passes.split()[0])
     person.page.wait_for_function(
         "([wanted]) => [...document.querySelectorAll('.machine title')].some((it) => "
         "parseFloat(it.textContent.replace('At ', '')) > wanted)", arg=[passed]
     )  # fmt: skip
     person.presses("pause time")
-    return said
+    return f"at {passes}: {person.sees('the speed passes a resonance')}"
 
 
 TASKS: dict[str, tuple[str, Callable[[Person], str]]] = {

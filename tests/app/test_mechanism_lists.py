@@ -77,7 +77,7 @@ def test_a_toggle_clamp_is_built_from_nothing():
 
 
 def test_a_point_that_is_added_lies_on_no_other():
-    """The third point of a mechanism from nothing lay on the second: one saw two, and dragged the wrong one."""
+    """The third point of a mechanism from nothing lay on the second, which could not be dragged."""
     entries = empty(MECHANISM.base_entries)
     for _ in range(12):
         entries = add(entries, "point")
