@@ -22,14 +22,16 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range
-from brakes.answers.base import TableBrakeType
+from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import PlanarAnswer
+from brakes.answers.planar_friction import unknown_loads
 from brakes.answers.planar_tables import (
     describe_statics,
     format_size,
     joint_outputs,
     largest_error,
+    name_output,
     reactions_table,
     select_rows,
 )
@@ -321,6 +323,16 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         """
         with in_range():
             return _answer_to(design)
+
+    def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
+        """The loads that equilibrium gives, then the others."""
+        if not isinstance(answer, MechanismAnswer):
+            return super()._first(answer, outputs)
+        mechanism = answer.equilibrium.position.mechanism
+        given = {load.name for load in mechanism.loads} - {load.name for load in unknown_loads(mechanism)}
+        loads = sorted(mechanism.loads, key=lambda load: load.name in given)
+        when = "at the end of the stroke" if answer.motion else "as drawn"
+        return [(f"{load.name} {when}", name_output(load.name)) for load in loads][:3]
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """The signs of joints; of a caliper with a vehicle that too."""

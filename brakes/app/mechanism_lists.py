@@ -218,7 +218,8 @@ def _with_point(tables: dict[str, Any], item: Item, key: str, text: str) -> dict
         if not text or "." in text or text in points:
             return tables
         return _renamed(tables, _POINTS, item.name, text)
-    at = {cell.key: cell.text for cell in item.cells} | {key: _with_unit(text, "mm")}
+    now = {cell.key: cell.text for cell in _point(item.name, points.get(item.name, ["", ""])).cells}
+    at = now | {key: _with_unit(text, "mm")}
     return {**tables, "points": {**points, item.name: [at["x"], at["y"]]}}
 
 

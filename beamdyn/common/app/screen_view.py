@@ -284,7 +284,8 @@ class ScreenView:
     def _say(self, mistakes: dict[str, list[str]]) -> None:
         """Show the mistakes outside this form, and the warnings of the answer."""
         answered = self.work.answered.get(self.screen.name)
-        elsewhere = [s for path, said in mistakes.items() if path not in self.form.fields for s in said]
+        out_of_form = (said for path, said in mistakes.items() if path not in self.form.fields)
+        elsewhere = [*dict.fromkeys(sentence for said in out_of_form for sentence in said)]
         warnings = answered.notes if answered and not mistakes else ()
         if (elsewhere, [*warnings]) == self._sentences:
             return
