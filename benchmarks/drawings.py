@@ -38,7 +38,7 @@ POINTS = {
 COUNT = """() => {
   window.pictures = new Set(); window.frames = 0; window.counting = true;
   const look = () => {
-    for (const it of document.querySelectorAll('svg.machine'))
+    for (const it of document.querySelectorAll('.board svg.machine'))
       if (it.getBoundingClientRect().width) window.pictures.add(it.id);
     window.frames += 1;
     if (window.counting) requestAnimationFrame(look);
