@@ -26,6 +26,7 @@ extensions = [
     "docstring_bars",
     "repository_pages",
     "validation_pages",
+    "file_keys",
 ]
 exclude_patterns = ["build", "_ext", "_templates", "**/GALLERY_HEADER.rst"]
 templates_path = ["_templates"]

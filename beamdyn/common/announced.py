@@ -20,7 +20,7 @@ _within_another: ContextVar[bool] = ContextVar("within_another", default=False)
 class OutsideLinearTheory(UserWarning):
     """A number of linear theory about a beam that bends further than this theory allows.
 
-    Analyses issue this warning of Python, once each, where rotation or weight bends the beam by more than a
+    Analyses issue this warning of Python, once each, where the beam bends by more than a
     tenth of its length; the result says so in its ``warnings``, too.  With ``physics="auto"`` of the scene,
     analyses add the effects that matter instead.
 
