@@ -1,4 +1,4 @@
-"""Tables of the keys of TOML files in place of ``<!-- keys of MODULE:SECTION -->``, from their description."""
+"""Tables of the keys in place of ``<!-- keys of MODULE:SECTION -->``, from their description."""
 
 from __future__ import annotations
 
