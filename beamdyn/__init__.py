@@ -19,7 +19,8 @@ _NAMES = {
     "common.results": ("load",),
     "rotor": ("RotorDrawing", "draw"),
     "common.display_units": ("DisplayUnits",),
-    "config": ("ConfigError", "load_scene"),
+    "common.edge.config": ("ConfigError",),
+    "config.scenes": ("load_scene",),
     "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
     "decks.blade": ("IgnoredProperty",),
     "decks.deck": ("Deck", "read_deck"),
@@ -124,7 +125,7 @@ if TYPE_CHECKING:
     from beamdyn.common.spreading.statistics import Scatter, SobolIndices
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
-    from beamdyn.config import load_scene
+    from beamdyn.config.scenes import load_scene
     from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
     from beamdyn.decks.blade import IgnoredProperty
     from beamdyn.decks.deck import Deck, read_deck

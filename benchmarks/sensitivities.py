@@ -6,8 +6,9 @@ Half of the scenes are slender beams in one plane, to 0.999 of the critical spee
 half have every kind of input: two planes, twist, shear, rotary inertia, stretch, precone, springs at the root
 and along the beam, point masses, tip bodies, all kinds of damping, some of them 0.  The reference are
 differences of eigenvalues of 40 digits (`cases.reference.many_digits`).  Printed is the largest error of the
-relative change of a frequency over that of a number, how many errors exceed the stated ones, and by which
-kinds of numbers frequencies were differentiated.
+relative change of a frequency over that of a number (over this change itself where it is larger than one, as
+near the critical speed), how many errors exceed the stated ones, and by which kinds of numbers frequencies
+were differentiated.
 """
 
 from __future__ import annotations
@@ -83,7 +84,9 @@ def _measured(seed: int) -> Case:
     seconds = process_time() - start
     names, errors, stated = [], [], []
     for k, number, truth, doubt in zip(chosen, numbers, truths, doubts, strict=True):
-        size, there = number.size / found.value[known[k]], known[k]
+        there = known[k]
+        size = number.size / found.value[there]
+        size /= np.maximum(np.abs(truth[there]) * size, 1)
         errors.extend((np.abs(found.derivative[k] - truth)[there] * size).tolist())
         stated.extend(((found.error[k] + doubt)[there] * size).tolist())
         names.extend([number.name] * int(there.sum()))

@@ -16,6 +16,7 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.sensitivities.scene_numbers import SceneNumber
 
 PLACES = 8
+_STEPS = 9  # sizes of steps, over four decades: rounding counts by their inverse
 
 Evaluated = TypeVar("Evaluated")
 
@@ -58,13 +59,14 @@ def evaluate_nearby(
 
 
 def _intervals(number: SceneNumber) -> Iterator[tuple[float, float]]:
-    """Around the number, above it, and below it; then nearer, where other numbers of the scene limit it."""
-    for step in (number.step, 1e-2 * number.step, 1e-4 * number.step):
-        low, high = number.value - step, number.value + step
-        if low >= number.least:
-            yield low, high
-        yield number.value, high
-        if low >= number.least:
+    """Around the number, the widest first, nearer where others of the scene limit it; then beside it."""
+    steps = [number.step * 10 ** (-k / 2) for k in range(_STEPS)]
+    lowest = [max(number.value - step, number.least) for step in steps]
+    for low, step in zip(lowest, steps, strict=True):
+        yield low, number.value + step
+    for low, step in zip(lowest, steps, strict=True):
+        yield number.value, number.value + step
+        if low < number.value:
             yield low, number.value
 
 

@@ -96,7 +96,8 @@ def frequency_sensitivities(
         by_speed = np.imag(fine.speed_derivatives()) * _HZ
         distance = np.abs(by_speed - np.imag(coarse.speed_derivatives()) * _HZ)
         derivative = np.vstack([derivative, by_speed])
-        error = np.vstack([error, distance + found.error * np.abs(by_speed)])
+        error = np.vstack([error, distance])
+    error += found.error * np.abs(derivative)  # which is inversely proportional to the frequency
     lost, words = _without_derivative(found)
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     return Sensitivities(

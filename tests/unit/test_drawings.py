@@ -21,7 +21,7 @@ from beamdyn.common.drawing.sheet import Paper, lay_out
 from beamdyn.common.drawing.style import INKS
 from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped
-from beamdyn.config import ConfigError
+from beamdyn.common.edge.config import ConfigError
 from beamdyn.tables.rotor import rotor_csv
 from brakes import calipers
 from brakes.app.program import BRAKES

@@ -218,6 +218,8 @@ class ScreenView:
         outcome = outcome_of(future, self.work, self.screen)
         if not last and not isinstance(outcome, Answered):
             return
+        if last:
+            self.board.forget_steps()
         self.work.keep(self.screen, self._complete(outcome))
         mistakes = self._mistakes()
         self.form.mark(mistakes)
