@@ -10,7 +10,7 @@ from types import ModuleType
 
 import pytest
 
-from beamdyn.config import SceneInput
+from beamdyn.config.scene_inputs import SceneInput
 from brakes.config.drum import DrumInput
 from brakes.config.forklift import ForkliftInput
 
