@@ -24,6 +24,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "mathml",  # this and the next ones: docs/_ext
     "docstring_bars",
+    "docstring_pages",
     "repository_pages",
     "validation_pages",
     "file_keys",
