@@ -51,7 +51,7 @@ def _default(entry: Input, name: str) -> str:
     if name == "kind":
         return "the first"
     if entry.required:
-        return "**must be given**"
+        return "**required**"
     if entry.default in (None, [], ()):
         return ""
     return str(entry.default).lower() if isinstance(entry.default, bool) else str(entry.default)

@@ -59,6 +59,6 @@ def test_keys_of_an_example_are_in_its_tables(section: type, file: str) -> None:
 
 def test_rows_say_unit_bound_default_and_where_a_key_belongs() -> None:
     text = extension().tables_of(SceneInput)
-    assert "| `width` | width of the section [m], greater than 0 | **must be given** | rectangular |" in text
+    assert "| `width` | width of the section [m], greater than 0 | **required** | rectangular |" in text
     assert "| `law` | law of the spin-up: smooth, linear | smooth | `spin_up` |" in text
     assert not re.search(r"Input \|$", text, re.MULTILINE)  # no name of a class
