@@ -71,6 +71,10 @@ def frequency_sensitivities(
     ValueError
         If an argument is out of its range, a name is unknown, or large deflection is modelled.
 
+    References
+    ----------
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -133,6 +137,10 @@ def critical_speed_sensitivities(
     ------
     ValueError
         If an argument is wrong, or there is no critical speed, or none is known.
+
+    References
+    ----------
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7.
 
     Examples
     --------
@@ -200,6 +208,11 @@ def crossing_sensitivities(
     ------
     ValueError
         If an argument is wrong, or large deflection is modelled.
+
+    References
+    ----------
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7, along the line of the excitation
+    (own).
 
     Examples
     --------
