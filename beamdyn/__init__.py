@@ -15,10 +15,12 @@ _NAMES = {
     "campbell_diagram.crossings": ("LineCrossing",),
     "campbell_diagram.diagram": ("Campbell", "campbell"),
     "campbell_diagram.margins": ("Margin",),
+    "common.announced": ("OutsideLinearTheory",),
     "common.results": ("load",),
     "rotor": ("RotorDrawing", "draw"),
     "common.display_units": ("DisplayUnits",),
-    "config": ("ConfigError", "load_scene"),
+    "common.edge.config": ("ConfigError",),
+    "config.scenes": ("load_scene",),
     "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
     "decks.blade": ("IgnoredProperty",),
     "decks.deck": ("Deck", "read_deck"),
@@ -112,6 +114,7 @@ if TYPE_CHECKING:
     from beamdyn.campbell_diagram.crossings import LineCrossing
     from beamdyn.campbell_diagram.diagram import Campbell, campbell
     from beamdyn.campbell_diagram.margins import Margin
+    from beamdyn.common.announced import OutsideLinearTheory
     from beamdyn.common.designs import VariedInput
     from beamdyn.common.display_units import DisplayUnits
     from beamdyn.common.edge.config import ConfigError
@@ -122,7 +125,7 @@ if TYPE_CHECKING:
     from beamdyn.common.spreading.statistics import Scatter, SobolIndices
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
-    from beamdyn.config import load_scene
+    from beamdyn.config.scenes import load_scene
     from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
     from beamdyn.decks.blade import IgnoredProperty
     from beamdyn.decks.deck import Deck, read_deck

@@ -43,7 +43,7 @@ POINTS = {
     "Mechanism": "E",  # C soon leaves the reach of the hand
 }
 SLIDER = "radius, r [mm]"
-SLIDERS = dict.fromkeys(("Frequencies", "Rotor", "Mode shapes"), SLIDER)
+SLIDERS: dict[str, str] = dict.fromkeys(["Frequencies", "Rotor", "Mode shapes"], SLIDER)
 LONG = ("Steady response", "Transient")
 # Counts each picture that is there when a frame is painted, once.
 COUNT = """() => {

@@ -15,7 +15,8 @@ from beamdyn.common.app.screens import Drag
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, describe
-from beamdyn.config import RectangularInput, SceneInput, StiffnessInput, scene_from_dict
+from beamdyn.config.scene_inputs import RectangularInput, SceneInput, StiffnessInput
+from beamdyn.config.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
 
 # On the form of each screen, in this order.

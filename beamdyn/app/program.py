@@ -12,7 +12,8 @@ from beamdyn.app.steady_state import STEADY_STATE
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.app.screens import Document, Program
-from beamdyn.config import parse_scene, with_physics_as_table
+from beamdyn.config.scene_inputs import with_physics_as_table
+from beamdyn.config.scenes import parse_scene
 
 SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE)
 SCENE = Document(

@@ -10,6 +10,7 @@ import numpy as np
 
 from beamdyn import draw as draw_rotor
 from beamdyn.app.inputs import DRAGS, SCENE_TABLES, first_frequency, read_scene
+from beamdyn.app.sketches import sketch
 from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.views import rows_of
@@ -73,4 +74,5 @@ ROTOR = Screen(
     drags=DRAGS,
     drawings=drawings,
     handles=handles,
+    sketch=sketch,
 )

@@ -157,7 +157,7 @@ def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None)
 def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
     from beamdyn.cli.decks import read_with
     from beamdyn.common.edge.config import read
-    from beamdyn.config import load_scene
+    from beamdyn.config.scenes import load_scene
 
     if path.suffix.lower() == ".toml":
         return _BladeFile(path, load_scene(path), read(path), ())

@@ -146,7 +146,7 @@ def _inputs(scene: Scene) -> list[Input]:
     """The inputs of scene files that a study varies, each once, those in lists of a scene, and the speed."""
     from beamdyn.common.edge.input_sweep import numbers
     from beamdyn.common.edge.inputs import Input, Quantity, describe
-    from beamdyn.config import SceneInput
+    from beamdyn.config.scene_inputs import SceneInput
     from beamdyn.studies.inputs import NAMES, SCALE, SPEED, unit_of
     from beamdyn.studies.listed_numbers import listed_names
 

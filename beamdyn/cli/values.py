@@ -203,7 +203,7 @@ def load_with(path: Path, physics: PhysicsOption = None, *speeds: str | None) ->
 
     The answer shows its speeds in the unit of the options `speeds`, if one is given, else as in the file.
     """
-    from beamdyn.config import load_scene
+    from beamdyn.config.scenes import load_scene
 
     scene = load_scene(path)
     units = scene.units.with_others({"speed": unit_of_speed(*speeds)})
@@ -220,7 +220,7 @@ def unit_of_speed(*texts: str | None) -> str:
 
 def load_moving(path: Path, physics: PhysicsOption = None, *speeds: str | None) -> Scene:
     """Read a scene that must have a motion, as `load_with` does."""
-    from beamdyn.config import ConfigError
+    from beamdyn.common.edge.config import ConfigError
 
     scene = load_with(path, physics, *speeds)
     if scene.motion is None:

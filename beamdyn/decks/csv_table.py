@@ -9,7 +9,7 @@ import numpy as np
 from beamdyn.common.edge.csv_columns import CsvTable
 from beamdyn.common.edge.data_text import DataText
 from beamdyn.common.edge.inputs import Quantity
-from beamdyn.config import RADIUS, read_station_file
+from beamdyn.config.station_files import RADIUS, read_station_file
 from beamdyn.decks.blade import Blade, ignore
 
 _STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # of other programs, whose sense is the opposite

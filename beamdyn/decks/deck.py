@@ -16,7 +16,7 @@ from beamdyn.common.edge.data_text import DataText, read_data
 from beamdyn.common.files import check_writable, write_text
 from beamdyn.common.one_line import counted, number
 from beamdyn.common.results import Result
-from beamdyn.config import scene_from_dict
+from beamdyn.config.scenes import scene_from_dict
 from beamdyn.decks import bmodes, csv_table, elastodyn
 from beamdyn.decks.audit import DeckAudit, audit
 from beamdyn.decks.blade import Blade, IgnoredProperty

@@ -16,6 +16,7 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.scene import Scene
 
 STRAIGHT = "as of the straight beam"
+_ROUNDING = 1e-13  # relative difference of two solutions of equations that an effect does not change
 
 
 class Answer(NamedTuple):
@@ -71,6 +72,7 @@ def _change(without: Answer, within: Answer) -> Answer:
     """Relative change of values, nan where it is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
+    change = np.where(np.abs(change) < _ROUNDING, 0.0, change)
     unknown = ~np.isfinite(change)
     reason = (without.reason or within.reason or "there is nothing to compare") if unknown.any() else ""
     return Answer(np.where(unknown, np.nan, change), reason, within.assumed)

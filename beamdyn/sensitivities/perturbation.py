@@ -128,7 +128,7 @@ def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.n
     if not pencil.C.any():
         return v.conj()
     P = s**2 * pencil.M + s * (pencil.C + speed * pencil.G) + pencil.K0 + speed**2 * pencil.K2
-    scale = np.sqrt(np.diag(pencil.K0))
+    scale = np.sqrt(np.diag(pencil.K0) + abs(s) ** 2 * np.diag(pencil.M))  # a hinge has no stiffness
     return scipy.linalg.svd(P.T / np.outer(scale, scale))[2][-1].conj() / scale
 
 

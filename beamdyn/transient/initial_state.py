@@ -35,6 +35,14 @@ def initial_state(initial: str | np.ndarray, system: ModalSystem | ElasticaSyste
     return y0
 
 
+def padded(initial: str | np.ndarray, modes: int, more: int) -> str | np.ndarray:
+    """Extend initial coordinates and velocities of some modes to those of more, by zeros; words stay."""
+    if isinstance(initial, str):
+        return initial
+    parts = np.reshape(initial, (-1, modes))
+    return np.hstack([parts, np.zeros((len(parts), more - modes))]).ravel()
+
+
 def _equilibrium(system: ModalSystem) -> np.ndarray:
     """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
     _, K, f = system.coefficients(np.zeros(()))

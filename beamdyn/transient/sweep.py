@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -37,10 +37,7 @@ from beamdyn.common.results import Provenance
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import (
-    FEWEST_MODES,
     SPEED_SAMPLES,
-    ModalBasis,
-    find_speed_range,
     given_basis,
 )
 from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
@@ -53,8 +50,15 @@ from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import simulate
-from beamdyn.transient.smallest_basis import run_smallest_basis
 from beamdyn.transient.step_size import TOLERANCES
+from beamdyn.transient.sweep_basis import (
+    end_speeds,
+    first_basis,
+    largest_mode_error,
+    list_samples,
+    run_samples,
+    with_basis_of,
+)
 from beamdyn.transient.transient import Transient
 
 if TYPE_CHECKING:
@@ -258,16 +262,16 @@ def sweep(
     chunk = count("chunk", chunk)
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
-    scene = choose_for_motion(scene, _end_speeds(request, cases), basis and basis.modes, request.tolerance)
+    scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
     request = replace(request, scene=replace(scene, physics_choice=None))  # whose times no key may hold
-    _check_speeds(request := replace(request, basis=basis or _smallest_basis(request, cases)), cases)
+    _check_speeds(request := replace(request, basis=basis or first_basis(request, cases)), cases)
     if store is not None or executor is not None or runner.workers > 1:
         _check_sendable(request, importable=runner.workers > 1)
     runner.open_store()
     with runner.prepared(_solve, -(-len(cases) // chunk)):
-        samples = None if basis else _choose_basis(request, cases)
+        samples = None if basis else run_samples(request, cases)
         if samples is not None:
-            request = _request_with_basis(request, cases, samples)
+            request = with_basis_of(request, cases, samples)
         if executor is None and runner.workers == 1:
             mode_error = _find_mode_error(request, cases, samples, Event())
             found = _solve_cases(request, cases, chunk, runner)
@@ -351,19 +355,6 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
         )
 
 
-def _smallest_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
-    """Smallest modal basis that is tried: modes at the slowest and at the fastest speed of all cases."""
-    return ModalBasis(FEWEST_MODES, tuple(_end_speeds(request, speeds).tolist()))
-
-
-def _end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
-    """The slowest and the fastest speed of all cases [rad/s], one where they are the same."""
-    ends = [
-        find_speed_range(motion, request.t_end) for motion in map(request.motion, (speeds[0], speeds[-1]))
-    ]
-    return np.unique([ends[0][0], ends[1][-1]])
-
-
 @contextmanager
 def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
     """Call a function in a thread of its own, with an event that is set if its result is wanted no more.
@@ -380,68 +371,6 @@ def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[floa
         thread.shutdown(wait=False, cancel_futures=True)
 
 
-def _list_samples(speeds: tuple[float, ...]) -> list[float]:
-    """Speeds [rad/s] at which `mode_error` is estimated: the slowest that moves, the fastest, and between."""
-    slowest = min(1, len(speeds) - 1) if speeds[0] == 0 else 0
-    return sorted({speeds[max(slowest, k * (len(speeds) - 1) // 4)] for k in range(5)})
-
-
-@one_blas_thread()
-def _choose_basis(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Run the samples in bases that suffice, each beginning with one mode fewer than the one before needed.
-
-    If some take modes at their speeds and others at rest, all run in one basis: at rest if that keeps the
-    tolerance, as this takes fewer coordinates; else at their speeds if that does, or else in the better.
-    """
-    samples, basis = [], request.basis
-    for speed in _list_samples(speeds):
-        samples.append(run_smallest_basis(replace(request, basis=basis).transient_request(speed)))
-        needed = samples[-1].request.basis
-        if needed.is_at_rest == basis.is_at_rest:
-            basis = replace(basis, modes=max(FEWEST_MODES, (needed.modes or 0) - 1))
-    if len({run.request.basis.is_at_rest for run in samples}) == 1:
-        return samples
-    most, tried = _most_modes(samples), []
-    for each in (ModalBasis(most), replace(request.basis, modes=most)):
-        tried.append(_run_in_basis(replace(request, basis=each), speeds, samples))
-        if _mode_error(tried[-1]) <= request.tolerance:
-            break
-    return min(tried, key=_mode_error)
-
-
-@one_blas_thread()
-def _run_in_basis(
-    request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient]
-) -> list[Transient]:
-    """Run the samples again in the basis of the request, but for those that were."""
-    runs = []
-    for speed, run in zip(_list_samples(speeds), samples, strict=True):
-        basis = request.basis_at(speed)
-        same = (run.request.basis, run.request.tolerance) == (basis, request.tolerance)
-        runs.append(run if same else replace(run.request, basis=basis, tolerance=request.tolerance).run())
-    return runs
-
-
-def _request_with_basis(
-    request: SweepRequest, speeds: tuple[float, ...], runs: list[Transient]
-) -> SweepRequest:
-    """The request with the modal bases of its samples."""
-    at_rest = runs[0].request.basis.is_at_rest
-    basis = ModalBasis(_most_modes(runs), (0.0,) if at_rest else request.basis.speeds)
-    modes = [run.request.basis.modes or 0 for run in runs]
-    return replace(request, basis=basis, modes_at=tuple(zip(_list_samples(speeds), modes, strict=True)))
-
-
-def _most_modes(runs: Sequence[Transient]) -> int:
-    """Largest number of modes of some runs."""
-    return max(run.request.basis.modes or 0 for run in runs)
-
-
-def _mode_error(runs: Iterable[Transient]) -> float:
-    """Largest modal truncation error of the runs, relative to the largest deflection of each."""
-    return max((run.relative_mode_error for run in runs), default=0.0)
-
-
 @one_blas_thread()
 def _find_mode_error(
     request: SweepRequest,
@@ -454,9 +383,9 @@ def _find_mode_error(
     def is_wanted(_: object) -> bool:
         return not unwanted.is_set()
 
-    wanted = takewhile(is_wanted, _list_samples(speeds))
+    wanted = takewhile(is_wanted, list_samples(speeds))
     runs = samples or (request.transient_request(speed).run() for speed in wanted)
-    return _mode_error(takewhile(is_wanted, runs))
+    return largest_mode_error(takewhile(is_wanted, runs))
 
 
 def _check_sendable(request: SweepRequest, importable: bool) -> None:

@@ -28,7 +28,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.along_path import distance_along_path
 from beamdyn.transient.elastica_system import ElasticaSystem
-from beamdyn.transient.initial_state import initial_state
+from beamdyn.transient.initial_state import initial_state, padded
 from beamdyn.transient.integration import integrate
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.limits import check_growth, check_motion
@@ -454,7 +454,7 @@ class TransientRequest(FieldsOnly):
     def _with_basis(self, basis: ModalBasis) -> TransientRequest:
         """Request with a larger basis, by "ritz" if the discretization has too few functions."""
         assert basis.modes is not None and self.basis.modes is not None
-        initial = self._pad_initial(self.basis.modes, basis.modes)
+        initial = padded(self.initial, self.basis.modes, basis.modes)
         discretization = ensure_size(self.scene, self.discretization, basis.modes)
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
@@ -483,13 +483,6 @@ class TransientRequest(FieldsOnly):
         name = self.method if isinstance(self.method, str) else self.method.__name__
         path = integrate_by_solve_ivp(system, y0, self.t_end, self.method, self.tolerance, self.options)
         return path, np.nan, name
-
-    def _pad_initial(self, modes: int, more: int) -> str | np.ndarray:
-        """Extend the initial coordinates and velocities to more modes by zeros."""
-        if isinstance(self.initial, str):
-            return self.initial
-        parts = np.reshape(self.initial, (-1, modes))
-        return np.hstack([parts, np.zeros((len(parts), more - modes))]).ravel()
 
 
 def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:

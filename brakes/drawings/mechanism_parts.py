@@ -122,10 +122,11 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
 
 
 def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
-    """Forces on the mechanism from outside: loads, and reactions of the ground."""
+    """Forces on the mechanism from outside: loads, and reactions and friction of the ground."""
     mechanism = equilibrium.position.mechanism
     loads = {load.name for load in mechanism.loads}
     outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}
+    outer |= {f"friction of {name}" for name in outer & {*mechanism.friction}}
     return [
         OuterForce(action.name, action.at, action.force, action.name not in loads)
         for body in mechanism.bodies

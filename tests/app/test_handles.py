@@ -11,6 +11,7 @@ from beamdyn.common.app import tasks
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.handles import Sheet, changed_texts, describe_place, draw_sheet
 from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.screen_view import ScreenView
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.drawing.shapes import Disc, points_of_shape
 from brakes.app.caliper import CALIPER
@@ -378,6 +379,20 @@ def test_arrow_keys_step(simulate, fields):
         assert page.field("dimensions.pad").value == '["13.0 mm", "-46 mm"]'
         handles.send("right pad", "keydown", 0, 1, True)
         assert page.field("dimensions.pad").value == '["13.0 mm", "-41.0 mm"]'
+
+    on_page(simulate, fields, "Caliper", body)
+
+
+def test_arrow_keys_step_on_while_an_answer_takes_its_time(simulate, fields, monkeypatch):
+    async def body(page, handles):
+        monkeypatch.setattr(ScreenView, "solve", lambda self, held=False: None)
+        for way in ((1, 0), (1, 0), (0, 1)):
+            handles.send("right pad", "keydown", *way, True)
+        assert page.field("dimensions.pad").value == '["22.5 mm", "-41.0 mm"]'
+        monkeypatch.undo()
+        page.enter("dimensions.pad", '["20 mm", "-46 mm"]')
+        handles.send("right pad", "keydown", 0, 1, True)
+        assert page.field("dimensions.pad").value == '["20 mm", "-41.0 mm"]'
 
     on_page(simulate, fields, "Caliper", body)
 

@@ -100,6 +100,15 @@ def test_critical_speed_is_that_of_power_series():
         assert error[0] < 1e-9 * abs(derivative[0])
 
 
+def test_a_hinge_with_gyroscopic_terms_and_damping():
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=3.0)
+    mount = bd.Mount(0.2, np.pi, 0.3, root_stiffness=0.0, precone=0.1)
+    scene = bd.Scene(beam, mount, physics=bd.Physics(planes=2), damping=bd.Damping(tip_damper=0.1))
+    found = bd.frequency_sensitivities(scene, 5.0, 3, ["mount.radius"])
+    reference = differences(scene, found.inputs[0], lambda s: bd.natural_modes(s, 5.0, 3).frequency)
+    np.testing.assert_allclose(found.derivative[0], reference, rtol=1e-6)  # of differences
+
+
 def test_crossings():
     scene = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.215), WHEEL, gravity=9.81)
     found = bd.crossing_sensitivities(scene, 150.0, 2, ["beam.length", "mount.radius"])
@@ -131,7 +140,9 @@ def test_elements_agree():
     np.testing.assert_allclose(fem.relative[largest], ritz.relative[largest], rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("seed", [10, 11])  # near the critical speed; a damper, a mass and a spring
+# Near the critical speed; a damper, a mass, a spring; nearer; a stiff spring and a soft hinge, over whose
+# places and stiffness 1 % of the length is a long step.
+@pytest.mark.parametrize("seed", [10, 11, 46, 149, 171])
 def test_random_scenes(seed):
     (case,) = measure(seed)
     assert max(case.errors) < 1e-8

@@ -187,7 +187,7 @@ def test_ctrl_c_anywhere_is_no_traceback(run, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("beamdyn.config.scene_from_dict", interrupt)
+    monkeypatch.setattr("beamdyn.config.scenes.scene_from_dict", interrupt)
     code, out, err = run("modes", SCENE)
     assert (code, out, err) == (INTERRUPTED, "", "beamdyn: interrupted\n")
 

@@ -7,7 +7,7 @@ import pytest
 
 from beamdyn.cli.excitations import read_spectrum
 from beamdyn.cli.linear_models import parse_frequencies
-from beamdyn.config import ConfigError
+from beamdyn.common.edge.config import ConfigError
 
 G = 9.80665  # m/s2
 

@@ -13,7 +13,8 @@ from beamdyn.app.inputs import inputs_of
 from beamdyn.common.app.form_entries import entries_of, tables_of, toml_of
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.units import quantity
-from beamdyn.config import SceneInput, load_scene, parse_scene, scene_from_dict
+from beamdyn.config.scene_inputs import SceneInput
+from beamdyn.config.scenes import load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.scene.mount import Mount

@@ -7,8 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import describe
-from beamdyn.config import ConfigError, SceneInput, load_scene, parse_scene, scene_from_dict
+from beamdyn.config.scene_inputs import SceneInput
+from beamdyn.config.scenes import load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.scene import Scene
 from tests.unit.toml_scenes import (
     BY_STIFFNESS,

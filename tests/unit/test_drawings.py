@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import beamdyn as bd
+from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.label_places import Ground, Wish, place_labels
 from beamdyn.common.drawing.layout import Fit, arrange, follow
@@ -21,7 +22,7 @@ from beamdyn.common.drawing.sheet import Paper, lay_out
 from beamdyn.common.drawing.style import INKS
 from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped
-from beamdyn.config import ConfigError
+from beamdyn.common.edge.config import ConfigError
 from beamdyn.tables.rotor import rotor_csv
 from brakes import calipers
 from brakes.app.program import BRAKES
@@ -96,7 +97,31 @@ def named():
     yield pytest.param(rows, id="examples/caliper.py")
 
 
-ALL = [*rotors(), *screens(), *mechanisms(), *commands(), *named()]
+def sketches():
+    """Those of all forms, with each kind that may be chosen there."""
+    for program in (BRAKES, BEAMDYN):
+        for document in program.documents:
+            for name, entries in kinds(document).items():
+                for screen in document.screens[: None if program is BRAKES else 1]:
+                    yield pytest.param(
+                        lambda s=screen, e=entries: s.sketch(e), id=f"sketch of {screen.name} {name}"
+                    )
+
+
+def kinds(document):
+    """Entries of a document by the choice that makes them differ from the base."""
+    base = document.base_entries
+    made = {"": base}
+    made |= {name: {**base, "caliper": name} for name in calipers.NAMED if "caliper" in base}
+    if document.name == "mechanism":
+        made["that stops a vehicle"] = {**base, "stop.mass": "100 kg"}
+    if document.name == "scene":
+        plain = {path: text for path, text in base.items() if not path.startswith(("motion", "beam"))}
+        made["of a stiffness"] = {**plain, "beam.length": "1 m", "beam.bending_stiffness": "1 N m2"}
+    return made
+
+
+ALL = [*rotors(), *screens(), *mechanisms(), *commands(), *named(), *sketches()]
 
 
 def extents(figure):
@@ -468,15 +493,3 @@ def test_a_detail_has_a_scale_of_its_own_and_less_of_the_width():
     )
     assert left == 0 and end == start and right == 680.0
     assert right - start < end - left
-
-
-def test_no_label_stands_under_the_handle_of_a_point():
-    at = (0.0, 0.0)
-    around = Outline([(-1, -1), (1, 1)], "ghost", 0.0)
-    for points in ({}, {"a point": at}):
-        drawing = Drawing([around], [Label("here", at, "axis", (1.0, 0.0))], points=points)
-        layout = arrange(drawing, (0.0, 0.0, 400.0, 400.0))
-        (text,) = (text for text in layout.texts if text.lines == ("here",))
-        place = layout.fit.to_paper(at)
-        gap = float(np.hypot(*(np.clip(place, text.box[:2], text.box[2:]) - place)))
-        assert (gap > 7.0) == bool(points)

@@ -14,7 +14,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.cli.program import main
 from beamdyn.common.checks import InvalidValue
-from beamdyn.config import parse_scene
+from beamdyn.config.scenes import parse_scene
 from beamdyn.model_error.choice import Judged, choose_by
 from beamdyn.scene.physics_choice import PhysicsChoice
 

@@ -4,7 +4,8 @@ import copy
 
 import pytest
 
-from beamdyn.config import ConfigError, scene_from_dict
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.config.scenes import scene_from_dict
 
 HARVESTER = {
     "beam": {

@@ -90,6 +90,7 @@ class DraggableDrawing:
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
+        self._stepped_to: dict[int, Place] = {}  # by keys, further than the drawing shows
         self._handles: list[Any] = []
         self._places: dict[int, str] = {}
         self._said: Any = ui.label()
@@ -162,8 +163,14 @@ class DraggableDrawing:
     def _stepped(self, i: int, event: Any) -> None:
         across, up, far = event.args
         handle = self._sheet.handles[i]
+        x, y = self._stepped_to.get(i, handle.at)
         step = handle.step * (_FAR if far else 1)
-        self._moved(handle, (handle.at[0] + step * across, handle.at[1] + step * up), True)
+        self._stepped_to[i] = x + step * across, y + step * up
+        self._moved(handle, self._stepped_to[i], True)
+
+    def forget_steps(self) -> None:
+        """Let steps by keys start from where the drawing has the points: it shows the present entries."""
+        self._stepped_to.clear()
 
     async def _pulled(self, i: int, event: Any) -> None:
         """Move to the latest place received; places that arrive while one is drawn are skipped."""

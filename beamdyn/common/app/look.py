@@ -6,6 +6,7 @@ from beamdyn.common.app.chart_board import STYLE as CHARTS
 from beamdyn.common.app.draggable_drawing import STYLE as BOARD
 from beamdyn.common.app.list_editor import STYLE as LISTS
 from beamdyn.common.app.player import STYLE as PLAYER
+from beamdyn.common.app.sketch_panel import STYLE as SKETCH
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.edge.rendering import STYLE as TABLES
 
@@ -113,6 +114,6 @@ _NARROW = """
 }
 """
 STYLE = (
-    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW
+    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH
 )  # the later rules count
 STYLE += page_colours("body.body--dark", dark=True)

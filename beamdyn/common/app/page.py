@@ -14,7 +14,7 @@ from beamdyn.common.app.browser_memory import BrowserMemory, named_designs, read
 from beamdyn.common.app.comparison import OtherDesign
 from beamdyn.common.app.design_link import LinkedDesign
 from beamdyn.common.app.designs_dialog import DesignActions, DesignsDialog
-from beamdyn.common.app.document_report import report_of
+from beamdyn.common.app.downloads import download
 from beamdyn.common.app.examples import examples_of
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.header import Header
@@ -233,8 +233,14 @@ class Page:
         self._marks()
         work = self.works[document.name]
         title = work.entries.get("title", "").strip() or f"{self.program.title}: {document.name}"
-        sweeps = [made for screen in document.screens if (made := self.panels[screen.name].sweep_report())]
-        ui.download.content(report_of(work, title, sweeps).encode(), f"{document.name}.html")
+        sweeps = [
+            (screen.name, *made)
+            for screen in document.screens
+            if (made := self.panels[screen.name].sweep_report())
+        ]
+        given = dict(work.entries), dict(work.answered), title, sweeps
+        made = self.solver.submit(tasks.report, document, document.screens[0], *given)
+        await download(made, f"{document.name}.html")
 
     def reset(self) -> None:
         """Return to the base design."""

@@ -359,7 +359,7 @@ class _KeyItem(NamedTuple):
 def _entries(drawing: Drawing, frame: Frame, scale: float) -> list[_KeyItem]:
     known = [_KeyItem(_SWATCH, words, role, False) for role, words in drawing.legend.items()]
     longest = _BAR * (frame[2] - frame[0])
-    if scale > 0:
+    if scale > 0 and drawing.unit:
         metres = {"m": 1.0, "mm": 1e-3}[drawing.unit]
         size = round_below(longest / scale * metres)
         known.append(_KeyItem(size / metres * scale, length_text(size), "dimension", True))
@@ -400,8 +400,9 @@ def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tup
 
 
 def _key_height(drawing: Drawing, frame: Frame) -> float:
-    """Room for the key: its colours, and a line more for scales."""
-    return 3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * (1 + len(_lines_of_key(drawing, frame, 0.0)))
+    """Room for the key: its colours, and a line more for scales where there are some."""
+    scales = bool(drawing.unit or drawing.newton)
+    return 3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * (scales + len(_lines_of_key(drawing, frame, 0.0)))
 
 
 def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:

@@ -161,8 +161,8 @@ class Drawing:
         Above it.
     words : str
         What it shows, for those who do not see it.
-    unit : {"m", "mm"}
-        Of its coordinates.
+    unit : {"m", "mm", ""}
+        Of its coordinates; none of a sketch that has no scale.
     newton : float
         Length of an arrow for 1 N, in the drawing's unit; 0 where there are no forces.
     key : mapping

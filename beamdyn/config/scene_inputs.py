@@ -1,4 +1,4 @@
-"""Scenes in TOML: text with units in, core objects out, all mistakes in one message."""
+"""The tables of a scene's TOML file, as texts with units, and the core objects that they make."""
 
 from __future__ import annotations
 
@@ -6,24 +6,18 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.display_units import DisplayUnits, known_unit
 from beamdyn.common.edge.columns import read_columns
-from beamdyn.common.edge.config import ConfigError, CoreSection, parse, read, validated
-from beamdyn.common.edge.csv_columns import CsvTable, check_places, read_csv
-from beamdyn.common.edge.data_text import DataText, plain_name, read_data
+from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
-from beamdyn.common.edge.units import InvalidInput, unit_as_written
+from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.wording import of_file
-from beamdyn.property_inputs import BREAKPOINT, Along, Metres, Position, Varying
-from beamdyn.record_files import with_record_file
+from beamdyn.config.property_inputs import BREAKPOINT, Along, Metres, Position, Varying
 from beamdyn.scene.beam import Beam, PointMass, PointSpring, TipMass
 from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Rotation
@@ -31,95 +25,6 @@ from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
-
-__all__ = ["ConfigError", "SceneInput", "load_scene", "parse_scene", "scene_from_dict"]
-
-
-def load_scene(path: str | PathLike[str]) -> Scene:
-    """Read a scene from a TOML file, and the CSV files of its stations and its motion if it names some.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    ConfigError
-        If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
-        the CSV file is named by its line.
-
-    Examples
-    --------
-    >>> scene = bd.load_scene("examples/tyre_harvester.toml")
-    >>> scene.mount.radius  # m
-    0.215
-    """
-    try:
-        data = parse(read(path), str(path))
-    except ConfigError as error:
-        if Path(path).suffix.lower() == ".toml":
-            raise
-        hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
-        raise ConfigError(str(path), ["; ".join([*error.mistakes, hint])]) from None
-    return scene_from_dict(with_record_file(_with_station_file(data, Path(path).parent), path), str(path))
-
-
-def parse_scene(text: str, source: str = "scene") -> Scene:
-    """Read a scene from TOML text.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-    source : str
-        Name of its origin, for messages.
-
-    Raises
-    ------
-    ConfigError
-        If it does not describe a scene; the message lists all mistakes.
-    """
-    return scene_from_dict(parse(text, source), source)
-
-
-def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
-    """A scene from the tables of a TOML file.
-
-    Parameters
-    ----------
-    data : mapping
-        Tables "beam" and "mount", and where wanted "motion", "model", "damping" and "physics", as
-        tomllib reads them.
-    source : str
-        Name of its origin, for messages.
-
-    Raises
-    ------
-    ConfigError
-        If it does not describe a scene; the message lists all mistakes.
-    """
-    return replace(validated(SceneInput, data, source).core, units=_units_of(data))
-
-
-def _units_of(data: Mapping[str, Any]) -> DisplayUnits:
-    """Units in which the file gives the length of the beam and the speed of the motion, if it has one."""
-    length = unit_as_written(data["beam"].get("length"), "m")[0]
-    speed = unit_as_written(_speed_in(data.get("motion")), "rad/s")[0]
-    return DisplayUnits(known_unit("speed", speed), known_unit("length", length))
-
-
-def _speed_in(motion: Any) -> Any:
-    """The speed of a motion as its table has it, or that of the rotation within it."""
-    if not isinstance(motion, Mapping):
-        return motion
-    inner = motion.get("speed", motion.get("rotation"))
-    return _speed_in(inner)
-
 
 # Tables of the file -------------------------------------------------------------------------------
 
@@ -307,9 +212,8 @@ def _naming_missing_key(beam: type[BaseModel]) -> Iterator[None]:
 # A table of stations ------------------------------------------------------------------------------
 
 
-RADIUS = "r"  # in CSV files: distance from the axis of rotation
-_PLACES = {"x/L": Position(meaning="position"), "x": Position("m", meaning="position")}
-_VARYING = {
+PLACES = {"x/L": Position(meaning="position"), "x": Position("m", meaning="position")}
+VARYING = {
     entry.name: entry.quantity
     for section in (RectangularInput, StiffnessInput)
     for entry in describe(section)
@@ -325,8 +229,8 @@ def _with_columns(given: Any) -> Any:
     if isinstance(rows, str):
         remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
         raise InvalidInput("stations", rows, f"{remedy}; only a scene in a file may name another file")
-    columns = read_columns("stations", rows, _PLACES | _VARYING)
-    places = [name for name in columns if name in _PLACES]
+    columns = read_columns("stations", rows, PLACES | VARYING)
+    places = [name for name in columns if name in PLACES]
     if len(places) != 1 or len(columns) < 2:
         remedy = 'give the position in one column, "x/L" or "x [m]", and properties in others'
         raise InvalidInput("stations[0]", rows[0], remedy)
@@ -336,68 +240,14 @@ def _with_columns(given: Any) -> Any:
     return given | {name: Table(x, tuple(values)) for name, values in columns.items()}
 
 
-# Heads of CSV files, beside the keys of the beam.
-_HEADS = {
-    "x/L": ("span", "blfract", "sec_loc", "span_loc"),
-    "mass_per_length": ("mass", "mass per metre", "BMassDen", "mass_den"),
-    "bending_stiffness": ("EI", "EI flap", "flap EI", "flap stiffness", "FlpStff", "flp_stff"),
-    "second_bending_stiffness": ("EI edge", "edge EI", "edge stiffness", "EI lag", "EdgStff", "edge_stff"),
-    "axial_stiffness": ("EA", "axial_stff"),
-}
-_STATION_NAMES = {plain_name(name): name for name in [*_PLACES, *_VARYING]}
-_STATION_NAMES |= {plain_name(head): name for name, heads in _HEADS.items() for head in heads}
-
-
-def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None) -> CsvTable:
-    """Read stations from a CSV file: its columns by the keys of the beam, checked to ascend.
-
-    Parameters
-    ----------
-    text : DataText
-        The file.
-    more : mapping, optional
-        Further places or properties, by name.
-
-    Raises
-    ------
-    ConfigError
-        At the first mistake: names file, line, and what was expected.
-    """
-    known = _PLACES | _VARYING | dict(more or {})
-    table = read_csv(text, known, _STATION_NAMES | {plain_name(name): name for name in more or ()})
-    places = [name for name in table.named() if name in _PLACES or name == RADIUS]
-    if len(places) != 1:
-        wanted = "x/L, x [m] or r [m]" if more else "x/L or x [m]"
-        found = ", ".join(column.head for column in table.columns)
-        said = f"expected one column of positions, {wanted}; the heads are {found}"
-        raise text.refusal(table.head_line, said)
-    check_places(table, places[0])
-    return table
-
-
-def _with_station_file(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a file with the rows of the CSV file that `beam.stations` names, if it names one."""
-    beam = data.get("beam")
-    if not isinstance(beam, dict) or not isinstance(beam.get("stations"), str):
-        return data
-    table = read_station_file(read_data(folder / beam["stations"]))
-    if unknown := next((column.head for column in table.columns if not column.name), ""):
-        known = ", ".join([*_PLACES, *_VARYING])
-        raise table.text.refusal(table.head_line, f"unknown column '{unknown}'; known are {known}")
-    units = {name: (_PLACES | _VARYING)[name].unit for name in table.named()}
-    heads = [f"{name} [{unit}]" if unit else name for name, unit in units.items()]
-    rows = [list(row) for row in zip(*(column.values for column in table.columns), strict=True)]
-    return data | {"beam": beam | {"stations": [heads, *rows]}}
-
-
 @contextmanager
 def _of_stations(rows: list[Any] | None) -> Iterator[None]:
     """Within it, what the core says about a property's stations is said of the cells of the table."""
     keys: dict[str, str] = {}
     if rows:
-        place = next(c for c, head in enumerate(rows[0]) if head.partition("[")[0].strip() in _PLACES)
+        place = next(c for c, head in enumerate(rows[0]) if head.partition("[")[0].strip() in PLACES)
         cells = {f"[{r - 1}]": f"stations[{r}][{place}]" for r in range(1, len(rows))}
-        for name in _VARYING:
+        for name in VARYING:
             keys |= {f"{name}.stations": "stations", f"{name}.values": "stations"}
             keys |= {f"{name}.stations{index}": cell for index, cell in cells.items()}
     with of_file(keys):
