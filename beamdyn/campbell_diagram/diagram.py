@@ -221,6 +221,11 @@ def campbell(
     ValueError
         If an argument is out of its range.
 
+    References
+    ----------
+    Campbell (1924), The protection of steam-turbine disk wheels from axial vibration, Transactions of the
+    ASME 46.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -207,6 +207,11 @@ def natural_modes(
     ValueError
         If an argument is out of its range.
 
+    References
+    ----------
+    Lee and Yoo (2019), eqs. (14), corrected as docs/conventions.md lists; errors by Richardson's
+    extrapolation (standard).
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

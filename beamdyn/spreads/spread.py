@@ -96,6 +96,11 @@ def spread(
     StudyInterrupted
         If the executor breaks; finished parts are in the store.
 
+    References
+    ----------
+    Indices: Saltelli et al. (2010), Computer Physics Communications 181, 259; worst cases: Kolda, Lewis and
+    Torczon (2003), SIAM Review 45, 385.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -279,6 +279,11 @@ def steady_response(
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
 
+    References
+    ----------
+    Harmonic balance in two phases, stability by Hill's method (standard: Nayfeh and Mook, 1979); own
+    derivation: docs/conventions.md.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

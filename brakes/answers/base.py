@@ -127,6 +127,10 @@ class Answer(Result, ABC):
         """What the figure shows beside its drawings, with the slider at a place."""
         return None
 
+    def branches(self) -> Mapping[str, Answer]:
+        """The same answer with each of several solutions drawn, by their names; none where there is one."""
+        return {}
+
     def handles(self, place: float) -> Sequence[Handle]:
         """Points of the first drawing that can be moved there, with the slider at a place."""
         return ()
@@ -247,12 +251,15 @@ class BrakeType(ABC, Generic[FileModel]):
     def headline(self, answer: Answer) -> Iterator[KeyResult]:
         """The results that stand first on the screen; without key results the first outputs."""
         outputs = {output.name: output for output in self.outputs(answer.design)}  # type: ignore[arg-type]
-        first = tuple((output.words, name) for name, output in [*outputs.items()][:2])
-        for words, name in self.key_results or first:
+        for words, name in self.key_results or self._first(answer, outputs):
             value = float(outputs[name].shown(answer))
             if not math.isnan(value):
                 unit = outputs[name].unit if math.isfinite(value) else ""
                 yield KeyResult(words, f"{format_number(value)} {unit}".rstrip())
+
+    def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
+        """Words and names of the results that stand first where there are no key results."""
+        return [(output.words, name) for name, output in [*outputs.items()][:2]]
 
     @abstractmethod
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
@@ -261,6 +268,10 @@ class BrakeType(ABC, Generic[FileModel]):
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
         """Tables of a design that is drawn the same and solved sooner."""
         return tables
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """Drawings that show what the symbols of its form mean, for what is chosen there."""
+        return ()
 
     @abstractmethod
     def solve(self, design: FileModel) -> Answer:

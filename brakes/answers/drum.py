@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, curves_figure, free_body
+from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult
 
 _MM, _MPA = 1e-3, 1e6
@@ -171,6 +172,10 @@ class DrumType(ArrayBrakeType[DrumInput]):
     def solve(self, design: DrumInput) -> DrumAnswer:
         """Forces in the brake."""
         return DrumAnswer(design, design.solve())
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """What the symbols of the form mean."""
+        return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
         """Numbers of the brake and of its shoes."""

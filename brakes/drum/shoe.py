@@ -59,6 +59,11 @@ class Shoe:
         If a length is not positive, the pin not below the centre or far from the drum, the force not
         above the pin, or the arc empty, over the pin, or past the pressure's second zero.
 
+    References
+    ----------
+    Budynas and Nisbett, Shigley's Mechanical Engineering Design, section 16-2; Vardanyan et al. (2019), eq.
+    (2).
+
     Examples
     --------
     >>> lining = np.radians((30, 110))
@@ -322,6 +327,11 @@ def shoe_torque(
     With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
     sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
     d = r K - b S - c C; torque = mu A p0 r K.
+
+    References
+    ----------
+    Budynas and Nisbett, Shigley's Mechanical Engineering Design, section 16-2: pressure as the sine of the
+    angle from the pin. Vardanyan et al. (2019) count it from another line: `Shoe.pressure_zero`.
 
     Examples
     --------

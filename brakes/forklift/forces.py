@@ -176,6 +176,10 @@ def internal_forces(
         If neither torque nor friction is given, a value is out of bounds, or a torque is demanded of
         a lining whose friction is at or past self-locking.
 
+    References
+    ----------
+    Yoo et al. (1997), section 4, eqs. (27) to (36), corrected.
+
     Examples
     --------
     >>> brake = forklift.BENDIX_12_5
@@ -338,6 +342,10 @@ def equilibrium_equations(
     ndarray, shape (10, ...)
         In the paper's order: forces and moment of the leading, then of the trailing shoe; A normal to B,
         C to D; equal friction A D = B C; torque of the drum. Zero at a solution.
+
+    References
+    ----------
+    Yoo et al. (1997), eqs. (27) to (36), corrected.
 
     Examples
     --------

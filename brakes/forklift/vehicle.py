@@ -59,6 +59,10 @@ class Truck:
         If a mass or length is not positive, or the centre of gravity, of the truck alone or with its
         load, is not between the axles and above the ground.
 
+    References
+    ----------
+    Yoo et al. (1997), section 2.
+
     Examples
     --------
     >>> truck = forklift.Truck(
@@ -298,6 +302,10 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     ------
     ValueError
         If the truck would overturn at rest on the slope, or the shapes do not broadcast.
+
+    References
+    ----------
+    Yoo et al. (1997), section 2, corrected as the validation manual lists.
 
     Examples
     --------
