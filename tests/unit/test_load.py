@@ -241,7 +241,7 @@ def test_a_file_that_is_not_there_is_refused_in_a_sentence(tmp_path):
     ):
         bd.load(tmp_path / "none.json")
     with pytest.raises(
-        OSError, match="no result can be loaded: .*; give one that save or --json has written"
+        OSError, match=r"no result can be loaded: .*; give one that save or --json has written"
     ):
         bd.load(tmp_path)
 

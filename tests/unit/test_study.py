@@ -383,7 +383,7 @@ def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
 @pytest.mark.parametrize("store", ["", "  "])
 def test_a_store_without_a_name_is_refused(store, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(InvalidValue, match="^store = '.*': the name is empty; give a folder"):
+    with pytest.raises(InvalidValue, match=r"^store = '.*': the name is empty; give a folder"):
         bd.study(SCENE, {"speed": [0.0, 1.0]}, store=store)
     assert not [*tmp_path.iterdir()]
 
