@@ -115,9 +115,10 @@ def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.nda
 
 
 def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
-    arrays = (np.concatenate([answer[i] for answer in each]) for i in range(3))
     return SpeedAnswer(
-        *arrays,
+        value=np.concatenate([answer.value for answer in each]),
+        error=np.concatenate([answer.error for answer in each]),
+        status=np.concatenate([answer.status for answer in each]),
         warnings=tuple(dict.fromkeys(said for answer in each for said in answer.warnings)),
         warned=np.concatenate([answer.is_warned for answer in each]),
         refusals=tuple(dict.fromkeys(said for answer in each for said in answer.refusals)),

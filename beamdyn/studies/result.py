@@ -175,7 +175,7 @@ class Study(StatesModelError):
         unknown = np.flatnonzero(nothing & ~np.array(refused))
         if not unknown.size:
             return ""
-        more = f", and at {len(unknown) - 1} more of the {len(nothing)} designs judged,"
+        more = f", and at {len(unknown) - 1} more of the {len(refused)} designs judged,"
         return f"{self._say_place(int(unknown[0]))}{more if len(unknown) > 1 else ''}"
 
     def _say_place(self, i: int) -> str:

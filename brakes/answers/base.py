@@ -435,7 +435,7 @@ def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> 
 
     A design of which all results that are wanted are there has none to give.
     """
-    lacking = np.isnan([np.ravel(values) for values in made.found[:-1]]).any(axis=0)
+    lacking = np.any([np.isnan(values).ravel() for values in made.found[:-1]], axis=0)
     why = {} if answer is None else answer.refusals_of_cases(len(rows))
     unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
     return replace(made, unanswered=tuple(sorted(unanswered.items())))

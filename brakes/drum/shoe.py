@@ -197,8 +197,8 @@ class SlidesOrLocks(Result):
         if not locked.any():
             return "slides: the friction is below self-locking"
         where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
-        both = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
-        return _say_locked(*both, where)
+        mu, least = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
+        return _say_locked(mu, least, where)
 
     def messages_of_locked(self, count: int) -> dict[int, str]:
         """The message of each case that locks, of as many cases, by its row."""
