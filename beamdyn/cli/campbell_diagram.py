@@ -222,7 +222,7 @@ def _parse_range(text: str, top_text: str, top: float) -> tuple[float, float]:
     low, high = (parse_quantity("--operating", f"{part.strip()} {unit}", "rad/s") for part in ends)
     if not 0 <= low < high:
         raise ValueError(f'--operating = "{text}": it must begin at 0 or above and end above its beginning')
-    return low, _up_to(top, high, f'--operating = "{text}": it ends', top_text)
+    return low, _up_to(top, high, f"--operating = {ends[1].strip()} {unit}: it is", top_text)
 
 
 def _parse_orders(text: str) -> Sequence[int]:

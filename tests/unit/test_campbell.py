@@ -411,7 +411,7 @@ MISTAKES = {
     "range falls": ((BLADE, "--top-speed", "5 rpm", "--operating", "4:3 rpm"), ("--operating", "end above")),
     "range above the top": (
         (BLADE, "--top-speed", "60 rpm", "--operating", "10:80 rpm"),
-        ('--operating = "10:80 rpm"', "ends above", '--top-speed = "60 rpm"', "higher"),
+        ("--operating = 80 rpm", "above", '--top-speed = "60 rpm"', "higher"),
     ),
     "rated outside the range": (
         (BLADE, "--top-speed", "100 rpm", "--operating", "10:80 rpm", "--rated", "90 rpm"),

@@ -298,33 +298,6 @@ def test_fitted_polynomials_are_those_of_the_closed_form():
     assert edge.frequency == pytest.approx(2 * flap.frequency, rel=1e-9)
 
 
-def in_order(path, order):
-    """The blade file at a path with its columns, heads and units too, in another order."""
-    lines = path.read_text().splitlines()
-    first = next(i for i, line in enumerate(lines) if line.startswith("BlFract"))
-    for i in range(first, first + 2 + len(written.STATIONS)):
-        words = lines[i].split()
-        lines[i] = "  ".join(words[k] for k in order)
-    path.write_text("\n".join(lines) + "\n")
-
-
-def test_columns_in_another_order_than_elastodyn_reads_are_warned_of(folder, run):
-    assert not [said for said in bd.read_deck(folder / "main.dat").audit.warnings if "heads" in said]
-    in_order(folder / "sub" / "blade.dat", (0, 1, 2, 4, 3, 5))
-    deck = bd.read_deck(folder / "main.dat")
-    check_blade(deck.scene.beam, **ADJUSTED)  # by their heads
-    assert "for BMassDen what is under FlpStff" in deck.audit.warnings[0]
-    _, _, err = run("import", folder / "main.dat")
-    assert "expected BlFract, PitchAxis, StrcTwst, BMassDen, FlpStff, EdgStff" in err
-
-
-def test_a_blade_file_without_the_column_that_newer_versions_lack_is_in_order(folder):
-    in_order(folder / "blade.dat", (0, 2, 3, 4, 5))
-    assert not [
-        said for said in bd.read_deck(folder / "blade.dat", **GIVEN).audit.warnings if "heads" in said
-    ]
-
-
 def test_written_polynomials_are_read_back_and_audited(folder, run):
     path = folder / "shapes.dat"
     code, out, _ = run("import", folder / "main.dat", "--polynomials", path, "--speed", "18 rpm")

@@ -107,10 +107,9 @@ class InputSweep(Result):
         Where there is no answer, and why.
     combine : {"product", "zip"}
         Whether the inputs are combined each with each, or taken together.
-    refused : tuple of (int, str)
-        Designs that are refused, by their row (the last input changes fastest), each with the reason.
-    unanswered : tuple of (int, str)
-        Likewise designs that are accepted, but have not all of the results: a brake that locks.
+    refused, unanswered : tuple of (int, str)
+        Designs that are refused, and those that lack a result, such as a brake that locks: by their row (the
+        last input changes fastest), each with the reason.
     """
 
     inputs: tuple[str, ...]
