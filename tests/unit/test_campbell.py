@@ -17,6 +17,7 @@ from matplotlib.text import Text
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE
+from beamdyn.equations.directions import words_of_directions
 from beamdyn.modal.line_roots import find_roots
 from beamdyn.output.campbell import Curves, plot_campbell
 from benchmarks.cases.scenes import HARVESTER
@@ -126,6 +127,7 @@ def test_a_pitched_blade_has_flap_and_edge(degrees: float) -> None:
     mount = replace(TWO_PLANES.mount, bending_angle=math.radians(degrees))
     found = bd.campbell(replace(TWO_PLANES, mount=mount), SPEEDS[:2], modes=4)
     assert found.names == (("flap 1", "edge 1", "flap 2", "edge 2"),)
+    assert words_of_directions(found.loci[0].scene) == ("flap", "edge")  # of tables, loads among them
 
 
 def test_in_plane_of_a_pitched_blade_is_edge() -> None:
