@@ -15,6 +15,7 @@ _NAMES = {
     "campbell_diagram.crossings": ("LineCrossing",),
     "campbell_diagram.diagram": ("Campbell", "campbell"),
     "campbell_diagram.margins": ("Margin",),
+    "common.announced": ("OutsideLinearTheory",),
     "common.results": ("load",),
     "rotor": ("RotorDrawing", "draw"),
     "common.display_units": ("DisplayUnits",),
@@ -113,6 +114,7 @@ if TYPE_CHECKING:
     from beamdyn.campbell_diagram.crossings import LineCrossing
     from beamdyn.campbell_diagram.diagram import Campbell, campbell
     from beamdyn.campbell_diagram.margins import Margin
+    from beamdyn.common.announced import OutsideLinearTheory
     from beamdyn.common.designs import VariedInput
     from beamdyn.common.display_units import DisplayUnits
     from beamdyn.common.edge.config import ConfigError

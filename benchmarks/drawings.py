@@ -2,14 +2,19 @@
 
 Prints how long each screen's drawing takes to be laid out and written as SVG, and how large that is, and how
 long labels take.  With --browser instead, in Chromium, how many different pictures of a solved position are
-painted a second while a point is dragged, told by the id of the picture in the page.
+painted a second while a point or a slider is dragged, told by the id of the picture in the page; how much of
+the processor each takes; how soon all is solved after the release, or a screen that takes long says so.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from itertools import chain
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +25,7 @@ from beamdyn.common.drawing.label_places import Ground, Wish, place_labels
 from beamdyn.common.drawing.shapes import Arrow, Drawing, Label
 from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
+from benchmarks.hostile_entries import children_of
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop, up_to_date
 from brakes.app.program import BRAKES
@@ -27,24 +33,41 @@ from brakes.app.program import BRAKES
 RUNS = 15  # how often each is timed
 DRAG, STEP = 3.0, 0.012  # length of a drag, and between two moves of the mouse [s]
 LABELS, SHAPES, BOUND, PAINTED = 40, 180, 5, 20
+AT_REST, BUSY = 300, 300  # bounds of the full answer and of the busy sign [ms]
+REACH = 14  # how far the mouse goes to both sides [px]
 POINTS = {
     "Vehicle": "centre of gravity of the load",
     "Kinematics": "tip of the shoe",
     "Drum brake": "pin of the shoe",
     "Caliper": "pivot of the arm of the right pad",
-    "Mechanism": "C",
+    "Mechanism": "E",  # C soon leaves the reach of the hand
 }
+SLIDER = "radius, r [mm]"
+SLIDERS: dict[str, str] = dict.fromkeys(["Frequencies", "Rotor", "Mode shapes"], SLIDER)
+LONG = ("Steady response", "Transient")
 # Counts each picture that is there when a frame is painted, once.
 COUNT = """() => {
   window.pictures = new Set(); window.frames = 0; window.counting = true;
   const look = () => {
-    for (const it of document.querySelectorAll('svg.machine'))
-      if (it.getBoundingClientRect().width) window.pictures.add(it.id);
+    for (const it of document.querySelectorAll('[data-picture]'))
+      if (it.getBoundingClientRect().height > 50) window.pictures.add(it.dataset.picture);
     window.frames += 1;
     if (window.counting) requestAnimationFrame(look);
   };
   requestAnimationFrame(look);
 }"""
+# Waits for some events, and then for words of the page; in `window.told` the time between them [ms].
+WATCH = """([events, words]) => {
+  const seen = () => [...document.querySelectorAll(".status[role=status], .q-btn")].some(
+    (e) => e.innerText.trim() === words && e.checkVisibility());
+  window.told = new Promise((done) => {
+    let begin = null;
+    const look = () => seen() ? done(performance.now() - begin) : requestAnimationFrame(look);
+    const first = () => { if (begin === null) { begin = performance.now(); requestAnimationFrame(look); } };
+    for (const event of events.split(" ")) document.addEventListener(event, first, {capture: true});
+  });
+}"""
+TOLD = "() => window.told"
 
 
 def time_labels() -> Iterator[Row]:
@@ -92,27 +115,70 @@ def _time(action: Callable[[], object]) -> float:
     return min(times)
 
 
-def drag_points() -> Iterator[Row]:
-    """Pictures painted a second in Chromium while a point of each screen is dragged."""
-    process = start(port := free_port())
+def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
+    """How each screen of a program follows a drag, and how soon it is solved after the release."""
+    process = start(port := free_port(), program)
     try:
         with browser() as made:
             page = open_page(made.new_context(viewport={"width": 1280, "height": 900}), port)
-            for name, label in POINTS.items():
+            for name, label in things.items():
                 go(page, name)
-                painted, frames = _drag(page, label)
+                before = processor_time([process.pid, *children_of(process.pid)])
+                painted, frames, rest = _drag(page, label)
+                spent = processor_time([process.pid, *children_of(process.pid)]) - before
                 yield (
                     f"{name}: pictures painted a second ({frames:.0f} frames)",
                     f"{painted:.1f}",
                     f"{PAINTED}",
                 )
+                yield (
+                    "... of the program's processor time for each [ms]",
+                    f"{1e3 * spent / painted / DRAG:.0f}",
+                    "",
+                )
+                yield "... from release to the full answer [ms]", f"{rest:.0f}", f"{AT_REST}"
     finally:
         stop(process)
 
 
-def _drag(page: Any, label: str) -> tuple[float, float]:
-    """Drag a point in a small circle; different pictures and frames a second."""
-    handle = page.get_by_role("slider", name=label, exact=True).locator("visible=true")
+def wait_for_sign() -> Iterator[Row]:
+    """How soon the screens that take long say that they compute, after a slider has been moved by a key."""
+    process = start(port := free_port(), "beamdyn")
+    try:
+        with browser() as made:
+            page = open_page(made.new_context(viewport={"width": 1280, "height": 900}), port)
+            for name in LONG:
+                go(page, name)
+                _thing(page, SLIDER).focus()
+                page.evaluate(WATCH, ["keydown", "Cancel"])
+                page.keyboard.press("ArrowRight")
+                told = page.evaluate(TOLD)
+                yield f"{name}: from a change to the busy sign [ms]", f"{told:.0f}", f"{BUSY}"
+                up_to_date(page)
+    finally:
+        stop(process)
+
+
+def processor_time(ids: Iterable[int]) -> float:
+    """Time that processes have had the processor [s], as /proc tells it."""
+    ticks = 0
+    for process in ids:
+        with suppress(OSError):
+            fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+            ticks += int(fields[11]) + int(fields[12])
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def _thing(page: Any, label: str) -> Any:
+    """The handle of a point or of a slider in front."""
+    found = page.get_by_role("slider", name=label, exact=True).locator("visible=true")
+    thumb = found.locator("[tabindex='0']")
+    return thumb if thumb.count() else found
+
+
+def _drag(page: Any, label: str) -> tuple[float, float, float]:
+    """Drag in a small circle; pictures and frames a second, and the time from release to the answer [ms]."""
+    handle = _thing(page, label)
     handle.scroll_into_view_if_needed()
     box = handle.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -121,13 +187,15 @@ def _drag(page: Any, label: str) -> tuple[float, float]:
     page.evaluate(COUNT)
     begin, now = time.monotonic(), 0.0
     while now < DRAG:
-        page.mouse.move(x + 14 * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now))
+        page.mouse.move(x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now))
         time.sleep(STEP)
         now = time.monotonic() - begin
     found = page.evaluate("() => { window.counting = false; return [window.pictures.size, window.frames]; }")
+    page.evaluate(WATCH, ["pointerup mouseup", "Up to date."])
+    page.mouse.move(x, y)  # where there is an answer
     page.mouse.up()
-    up_to_date(page)
-    return found[0] / now, found[1] / now
+    rest = page.evaluate(TOLD)
+    return found[0] / now, found[1] / now, rest
 
 
 PARTS = time_labels, time_screens
@@ -135,7 +203,8 @@ PARTS = time_labels, time_screens
 
 def main() -> None:
     if "--browser" in sys.argv[1:]:
-        for row in drag_points():  # each at once: a browser on a machine that does much else takes its time
+        # each at once: a browser on a machine that does much else takes its time
+        for row in chain(drag("brakes", POINTS), drag("beamdyn", SLIDERS), wait_for_sign()):
             print("  ".join(row), flush=True)
     else:
         show("drawings", *PARTS)

@@ -174,7 +174,7 @@ def each_alone(program: Program, count: int, seed: int) -> Iterator[Row]:
 # In a tab beside another ------------------------------------------------------------------------------------
 
 # Types texts into fields, whether they are folded or not, with a pause after each.
-_ENTER = """async ([entries, pause]) => {
+ENTER = """async ([entries, pause]) => {
   for (const [path, text] of entries) {
     for (const field of document.querySelectorAll(`[data-path="${path}"]`)) {
       const box = field.querySelector("input, textarea") || field;
@@ -207,7 +207,7 @@ _ANSWER = """async ([path, text, patience]) => {
   watch.disconnect();
   return [reacted, performance.now() - begin];
 }"""
-_TYPING = 200.0  # that a field waits for a pause in typing [ms]
+_TYPING = 100.0  # that a field waits for a pause in typing [ms]
 
 
 class Memory(threading.Thread):
@@ -238,10 +238,11 @@ def beside_another_tab(program: Program, count: int, seed: int) -> Iterator[Row]
     try:
         with browser() as made:
             hostile, other = (open_page(made.new_context(), port) for _ in range(2))
+            numbers = (f"0.{digits} m" for digits in range(1100, 1_000_000))  # none twice: each is an entry
             times = [
                 time
                 for screen in _screens(program)
-                for time in _beside(hostile, other, program, screen, count, seed)
+                for time in _beside(hostile, other, program, screen, _entries(screen, count, seed), numbers)
             ]
         children = children_of(process.pid)
     finally:
@@ -260,16 +261,9 @@ def _screens(program: Program) -> list[tuple[Document, Screen]]:
     return [(document, screen) for document in program.documents for screen in document.screens]
 
 
-def _beside(
-    hostile: Any, other: Any, program: Program, place: tuple[Document, Screen], count: int, seed: int
-) -> Iterator[tuple[float, float]]:
-    """Times of the other tab [ms] while all fields of one screen get their entries."""
+def _entries(place: tuple[Document, Screen], count: int, seed: int) -> list[tuple[str, str]]:
+    """Paths and texts for all fields of a screen, in an order that follows from the seed."""
     document, screen = place
-    name, path = OTHER[program.name]
-    hostile.reload()
-    hostile.wait_for_function("window.did_handshake")
-    hostile.get_by_role("tab", name=screen.name).first.click()
-    go(other, name)
     entries = [
         (entry.path, text)
         for entry in document.inputs(document.base_entries)
@@ -277,8 +271,24 @@ def _beside(
         for text in hostile_texts(entry, count, seed)
     ]
     random.Random(seed).shuffle(entries)
-    hostile.evaluate(_BEGIN, [_ENTER, [entries, 1e3 * _PAUSE]])
-    numbers = (f"0.{digits} m" for digits in range(1100, 1_000_000))
+    return entries
+
+
+def _beside(
+    hostile: Any,
+    other: Any,
+    program: Program,
+    place: tuple[Document, Screen],
+    entries: list[tuple[str, str]],
+    numbers: Iterator[str],
+) -> Iterator[tuple[float, float]]:
+    """Times of the other tab [ms] while all fields of one screen get their entries."""
+    name, path = OTHER[program.name]
+    hostile.reload()
+    hostile.wait_for_function("window.did_handshake")
+    hostile.get_by_role("tab", name=place[1].name).first.click()
+    go(other, name)
+    hostile.evaluate(_BEGIN, [ENTER, [entries, 1e3 * _PAUSE]])
     while not hostile.evaluate("window.sent"):
         reacted, solved = other.evaluate(_ANSWER, [path, next(numbers), 60_000])
         yield (reacted or solved) - _TYPING, solved - _TYPING

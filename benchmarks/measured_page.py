@@ -39,6 +39,7 @@ from benchmarks import (
     tradeoff,
     transient,
 )
+from benchmarks.readme import write_between
 from benchmarks.resumable import SavedRows
 from benchmarks.rows import Row, show
 
@@ -62,8 +63,6 @@ SECTIONS = {
     "Brakes": brakes,
     "Screens of the interactive programs": screens,
 }
-README = PAGE.parents[1] / "README.md"
-MARKS = "<!-- measured -->", "<!-- end -->"
 _FIG_6 = "151 transients of 30 s (Fig. 6)"
 _TABLE_3 = "2 modes at 0 and at 55 rad/s, tolerance 1e-05"
 QUOTED = (
@@ -122,14 +121,11 @@ def measure_apart(title: str) -> list[Row]:
 
 
 def quote_in_readme(page: str) -> None:
-    """Write the rows that the README quotes between its marks."""
+    """Write the rows that the README quotes."""
     cells = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")]
     measured = {row[0].removeprefix("| "): row[1] for row in cells}
     table = ["| what | measured |", "|---|---|", *(f"| {name} | {measured[name]} |" for name in QUOTED)]
-    before, _, rest = README.read_text(encoding="utf-8").partition(MARKS[0])
-    after = rest.partition(MARKS[1])[2]
-    text = "\n".join([before + MARKS[0], "", *table, "", MARKS[1] + after])
-    README.write_text(text, encoding="utf-8")
+    write_between("measured", table)
 
 
 def main() -> None:

@@ -21,15 +21,23 @@ from brakes.app.program import BRAKES
 
 WIDTHS, SCHEMES = (390, 800, 1280, 1920), ("light", "dark")
 PROGRAMS = {program.name: program for program in (BRAKES, BEAMDYN)}
+_TO_TOP = "document.querySelectorAll('html, .left').forEach((e) => e.scrollTo(0, 0))"
 NO_AXE = "axe-core: pip install axe-playwright-python"
 _SERIOUS = ("serious", "critical")
 
-# Names of visible controls that the Tab key leaves out; of tabs one is enough, the others
-# are reached from it by arrow keys.
-_NOT_BY_KEYBOARD = """() => [...document.querySelectorAll(
+_STEPS, _MOST = 12, 30  # of the Tab key between two looks whether it has come round, and looks
+_BEGIN = """() => {
+  document.activeElement.blur();
+  if (!window.reached) document.addEventListener("focusin", (event) => window.reached.push(event.target));
+  window.reached = [];
+}"""
+_AROUND = "() => window.reached.indexOf(window.reached[0], 1) > 0"
+# Names of visible controls at which the Tab key has not stopped; of tabs one is enough, the others are
+# reached from it by arrow keys.
+_NOT_REACHED = """() => [...document.querySelectorAll(
   "button, input, textarea, a[href], summary, [role=slider], [role=tablist], [role=button], [role=switch]")]
   .filter((e) => e.checkVisibility({visibilityProperty: true}) && !e.disabled && e.type !== "file")
-  .filter((e) => e.tabIndex < 0 && !e.closest("[tabindex='0']") && !e.querySelector("[tabindex='0']"))
+  .filter((e) => !window.reached.some((stop) => e.contains(stop) || stop.contains(e)))
   .map((e) => e.getAttribute("aria-label") || e.innerText || e.outerHTML.slice(0, 80))"""
 # Names of controls that are covered where a finger would touch them, after the page has been scrolled there.
 _NOT_BY_TOUCH = """() => [...document.querySelectorAll("button, input, textarea, [role=tab], .handle")]
@@ -38,7 +46,7 @@ _NOT_BY_TOUCH = """() => [...document.querySelectorAll("button, input, textarea,
     e.scrollIntoView({block: "center", inline: "center"});
     const box = e.getBoundingClientRect();
     const hit = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-    return box.width > 1 && !(hit && (e.contains(hit) || hit.contains(e)
+    return box.width > 1 && !(hit && (e.contains(hit)
       || e.closest(".q-field")?.contains(hit)
       || (e.matches(".handle") && hit.matches(".handle"))));
   }).map((e) => e.getAttribute("aria-label") || e.innerText || e.outerHTML.slice(0, 80))"""
@@ -58,13 +66,26 @@ def serious_findings(page: Any) -> list[str] | None:
     ]
 
 
+def not_by_keyboard(page: Any) -> list[str]:
+    """Names of controls that the Tab key does not come to, pressed until it has gone all around the page."""
+    page.evaluate(_BEGIN)
+    for _ in range(_MOST):
+        for _ in range(_STEPS):
+            page.keyboard.press("Tab")
+        if page.evaluate(_AROUND):
+            break
+    found = page.evaluate(_NOT_REACHED)
+    page.evaluate("document.activeElement.blur()")
+    return found
+
+
 def faults(page: Any, width: int) -> dict[str, list[str]]:
     """What is wrong with the screen in front, by kind."""
     wide = page.evaluate("document.documentElement.scrollWidth")
     return {
         "axe-core": serious_findings(page) or [],
         "scrolls to": [f"{wide} px"] if wide > width else [],
-        "not by keyboard": page.evaluate(_NOT_BY_KEYBOARD),
+        "not by keyboard": not_by_keyboard(page),
         "not by touch": page.evaluate(_NOT_BY_TOUCH),
     }
 
@@ -91,7 +112,7 @@ def _of_width(browser: Any, port: int, program: Program, width: int, folder: Pat
             page.emulate_media(color_scheme=scheme)
             page.wait_for_timeout(300)  # colours change gradually
             name = f"{program.name}-{screen.name.lower().replace(' ', '-')}-{width}-{scheme}"
-            page.evaluate("window.scrollTo(0, 0)")
+            page.evaluate(_TO_TOP)
             page.screenshot(path=folder / f"{name}.png")
             wrong = [f"{kind} {', '.join(said)}" for kind, said in faults(page, width).items() if said]
             yield name, "; ".join(wrong) or "nothing wrong", "nothing wrong"

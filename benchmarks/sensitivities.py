@@ -35,6 +35,7 @@ from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 
 MODES = 3
+_SAME = 1e-6  # relative distance of two frequencies of the same mode
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,12 @@ def _measured(seed: int) -> Case:
     chosen = np.flatnonzero(known.any(axis=1))
     numbers = [at_its_size(found.inputs[k]) for k in chosen]
     start = process_time()
-    _, truths, doubts = frequency_derivatives(found.scene, speed, MODES, numbers)
+    values, truths, doubts = frequency_derivatives(found.scene, speed, MODES, numbers)
     seconds = process_time() - start
+    # The reference has no modes that do not vibrate, such as turning about a hinge at the axis.
+    apart = np.abs(found.value[:, None] - values) / values
+    partner, same = apart.argmin(axis=1), np.nanmin(apart, axis=1, initial=np.inf) < _SAME
+    known, truths, doubts = known & same, np.array(truths)[:, partner], np.array(doubts)[:, partner]
     names, errors, stated = [], [], []
     for k, number, truth, doubt in zip(chosen, numbers, truths, doubts, strict=True):
         there = known[k]

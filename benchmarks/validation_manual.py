@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,14 +17,15 @@ import numpy as np
 from beamdyn.common.comparison import Comparison
 from beamdyn.common.digits import supported
 from beamdyn.published import load
-from beamdyn.reproduce import motion, others, printed_tables, sections
-from beamdyn.reproduce.entries import PrintedValue
+from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables, sections
+from beamdyn.reproduce.entries import PrintedValue, half_unit
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.equilibria import equilibrium
 from beamdyn.spectrum.modes import natural_modes
+from benchmarks.cases import measured, single_answers, textbooks
 from brakes.published import load as load_brakes
 from brakes.published.errata import Erratum
 from brakes.reproduce import caliper, drum, drum_as_printed, forklift, forklift_as_printed
@@ -36,6 +37,10 @@ _TESTS_OF_TABLES = {  # by the beginning of the source's name
     "": "test_printed_tables.py::test_all_digits_or_a_proven_erratum",
 }
 _BLADES = "test_printed_tables.py::test_blades_of_wind_turbines"
+_SPIN_UP = "test_transient.py::test_spin_up_of_an_outward_beam"
+_BMODES = "test_two_planes.py::test_what_bmodes_prints_of_its_own_blade"
+_CARNEGIE = "test_two_planes.py::test_carnegies_theory_and_experiment_are_of_the_same_blade"
+_MEASURED = "test_measured.py::test_a_measured_straight_beam"
 _TESTS_OF_LEE_YOO = {  # by the beginning of the section's title
     "Table 2": "test_lee_yoo.py::test_table_2_within_a_thousandth_of_ansys",
     "Table 3 with large": "test_elastica_transient.py::test_table_3_with_large_deflection",
@@ -58,6 +63,7 @@ _TEXTBOOKS = {
     "shigley_16_2_problem": "test_drum.py::test_shigley_problem_16_2",
     "bhandari_12_9": "test_drum.py::test_bhandari_12_9",
 }
+_PINS_OF_16_1 = "test_drum.py::test_shigley_problem_16_1_pin_reactions"
 
 
 @dataclass(frozen=True)
@@ -122,6 +128,44 @@ def _rows(name: str, printed: Sequence[Any], ours: np.ndarray, error: np.ndarray
         absolute = abs(float(value * relative))
         entry = PrintedValue(name, i + 1, text, float(value), absolute)
         yield _row_of_entry(entry, test)
+
+
+def of_single_answers() -> Sections:
+    """Slopes, limits, a spin-up, growth where the speed varies, and branches of bent equilibria."""
+    return {
+        "Southwell's slopes, computed": _single(single_answers.slopes(), "test_slopes_at_rest"),
+        "Critical speed far from the axis, computed": _single(
+            [single_answers.limit_of_the_critical_speed()], "test_critical_speed_far_from_the_axis"
+        ),
+        "Varying speed, computed": _single(
+            single_answers.growth_factors(), "test_growth_where_the_speed_varies"
+        ),
+        "Kane, Ryan and Banerjee 1987; Simo and Vu-Quoc 1986": [
+            _row_of_comparison(single_answers.spin_up(), _SPIN_UP)
+        ],
+        "Branches of the harvester that bends, computed": _single(
+            single_answers.branches(), "test_branches_of_the_harvester"
+        ),
+    }
+
+
+def _single(comparisons: Iterable[Comparison], test: str) -> list[Row]:
+    return [_row_of_comparison(c, f"test_measured.py::{test}") for c in comparisons]
+
+
+def of_wider_models() -> Sections:
+    """Numbers that contain more than our models: of a program with torsion, and of experiments."""
+    paper = load("epps_chandra_1996")
+    title = f"{' and '.join(paper['authors'])} {paper['year']}, straight beam, flapping [Hz]"
+    return {
+        "BModes, Test01, as it prints them [Hz]": [
+            _row_of_comparison(c, _BMODES) for c in blades.printed_by_bmodes()
+        ],
+        title: [_row_of_comparison(c, _MEASURED) for c in measured.compare()],
+        "Carnegie 1959, blade twisted by 45 deg, at rest [Hz]": [
+            _row_of_comparison(c, _CARNEGIE) for c in measured.compare_carnegie()
+        ],
+    }
 
 
 def of_elastica() -> Sections:
@@ -202,21 +246,50 @@ def _cells(rows: Iterable[Any], test: str) -> list[Row]:
 
 
 def of_textbooks() -> Sections:
-    """Worked examples of drum brakes; the tests hold them to their printed digits."""
-    data = load_brakes("drum_textbooks")
-    return {data[key]["source"]: [*_printed_in(data[key], test)] for key, test in _TEXTBOOKS.items()}
+    """Worked examples of drum brakes, in the books' units."""
+    data, solved = load_brakes("drum_textbooks"), textbooks.answers()
+    return {
+        data[name]["source"]: [
+            _row_of_example(quantity, data[name][quantity], ours, _test_of(name, quantity))
+            for quantity, ours in solved[name].items()
+        ]
+        for name in _TEXTBOOKS
+    }
 
 
-def _printed_in(example: dict[str, Any], test: str) -> Iterator[Row]:
-    for name, given in example.items():
-        if isinstance(given, dict) and ("printed" in given or name.startswith("reference")):
-            value = given.get("printed", given.get("value"))
-            text, note = f"{_text(value)} {given['unit']}", given.get("note", "agrees")
-            yield Row(name.replace("_", " "), text, "in the test", "rounding", note, test)
+def _test_of(name: str, quantity: str) -> str:
+    return _PINS_OF_16_1 if name == "shigley_16_1" and "pin" in quantity else _TEXTBOOKS[name]
 
 
-def _text(printed: Any) -> str:
-    return ", ".join(printed) if isinstance(printed, list) else str(printed)
+def _row_of_example(quantity: str, given: dict[str, Any], ours: Sequence[float], test: str) -> Row:
+    printed = given.get("printed", given.get("value"))
+    texts = printed if isinstance(printed, list) else [str(printed)]
+    digits = max(6, max(map(_count_digits, texts)))
+    values = ", ".join(f"{value:.{digits}g}" for value in ours)
+    verdict = _verdict_of_example(given, texts, ours)
+    where = f"{quantity.replace('_', ' ')} [{given['unit']}]"
+    return Row(where, ", ".join(texts), values, "rounding", verdict, test)
+
+
+def _verdict_of_example(given: dict[str, Any], texts: Sequence[str], ours: Sequence[float]) -> str:
+    note = given.get("note", "")
+    if "right" in given:
+        return f"the print errs: {given['right']}; {note}"
+    close = all(
+        abs(value - float(text)) <= half_unit(_printed_by(text, given))
+        for text, value in zip(texts, ours, strict=True)
+    )
+    return "agrees" if close else f"differs: {note or 'unexpected'}"
+
+
+def _printed_by(text: str, given: dict[str, Any]) -> str:
+    """The printed number with its digits, of which the last may be zeros that only fill it."""
+    return f"{float(text):.{given['digits'] - 1}e}" if "digits" in given else text
+
+
+def _count_digits(text: str) -> int:
+    """Digits of a printed number."""
+    return sum(character.isdigit() for character in text)
 
 
 def problems_of_statics(tests: Path) -> Iterator[str]:
@@ -246,6 +319,7 @@ _HEADS_OF_VALUES = (
     "last digits off",
 )
 _HEADS_OF_ERRATA = ("where", "the paper has", "right", "what follows")
+_HEADS_OF_TEXTBOOKS = ("where", "the book has", "right", "why", "test")
 _ERRATA_OF_BRAKES = {
     "Vardanyan et al. 2019": (drum_as_printed, "test_drum.py::test_every_erratum_has_a_consequence"),
     "Yoo et al. 1997": (
@@ -268,6 +342,23 @@ def errata() -> Iterator[str]:
     for title, (module, test) in _ERRATA_OF_BRAKES.items():
         yield f"\n## {title}\n\nThe numbers that follow are computed both ways: `{test}`.\n"
         yield _table(_HEADS_OF_ERRATA, (_erratum(entry) for entry in module.errata()))
+    yield "\n## Textbooks\n\nThe proof: the book's own numbers, and equilibrium, which ours keeps.\n"
+    yield _table(_HEADS_OF_TEXTBOOKS, errata_of_textbooks())
+
+
+def errata_of_textbooks() -> Iterator[list[str]]:
+    """Where, printed, right, why and test of what worked examples have wrong."""
+    for name, example in load_brakes("drum_textbooks").items():
+        for quantity, given in example.items():
+            if isinstance(given, dict) and "right" in given:
+                where = f"{example['source']}: {quantity.replace('_', ' ')} [{given['unit']}]"
+                yield [
+                    where,
+                    given["printed"],
+                    given["right"],
+                    given["note"],
+                    f"`{_test_of(name, quantity)}`",
+                ]
 
 
 def _erratum(entry: Erratum) -> list[str]:
@@ -286,6 +377,8 @@ def _cell(text: object) -> str:
 PARTS = {
     "rotating_beams": ("Tables of rotating beams and blades", of_printed_tables),
     "references": ("Rotating and twisted beams in all digits", of_reference_tables),
+    "single_answers": ("Answers that are no row of a table", of_single_answers),
+    "wider_models": ("Numbers that contain more than our models", of_wider_models),
     "large_deflection": ("Beams that bend far", of_elastica),
     "inward_beam": ("The inward beam of Lee and Yoo", of_lee_and_yoo),
     "brakes": ("Brakes", of_brakes),
@@ -293,27 +386,49 @@ PARTS = {
 }
 
 
+NOTES: dict[str, tuple[Callable[[], Iterable[str]], ...]] = {  # to which numbers in verdicts refer
+    "inward_beam": (frequencies.notes, motion.notes, large_deflection.notes),
+    "wider_models": (blades.notes,),
+    "brakes": (drum.notes, forklift.notes, caliper.notes),
+}
+
+
 def write_pages(folder: Path) -> list[str]:
     """Write all pages and their overview; the names of the pages."""
     folder.mkdir(parents=True, exist_ok=True)
-    counts = []
-    for name, (title, part) in PARTS.items():
-        found = part()
-        text = [f"# {title}\n", f"{part.__doc__} Tests: in `{TESTS}`.\n"]
-        for source, rows in found.items():
-            text += [f"## {source}\n", _table(HEADS, (row.cells() for row in rows)), ""]
-            bad = sum(row.verdict.startswith("differs") for row in rows)
-            wrong = sum(row.verdict.startswith("the print errs") for row in rows)
-            counts.append([f"[{source}]({name}.md)", str(len(rows)), str(wrong), str(bad)])
-        (folder / f"{name}.md").write_text("\n".join(text), encoding="utf-8")
-    (folder / "statics.md").write_text(
-        "\n".join(problems_of_statics(Path(__file__).parents[1] / TESTS)), encoding="utf-8"
-    )
-    (folder / "errata.md").write_text("\n".join(errata()), encoding="utf-8")
+    found = {name: part() for name, (_, part) in PARTS.items()}
+    pages = {name: "\n".join(_page(name, sections)) for name, sections in found.items()}
+    pages["statics"] = "\n".join(problems_of_statics(Path(__file__).parents[1] / TESTS))
+    pages["errata"] = "\n".join(errata())
+    pages["overview"] = _overview(found)
+    for name, text in pages.items():
+        (folder / f"{name}.md").write_text(text, encoding="utf-8")
+    return list(pages)
+
+
+def _page(name: str, sections: Sections) -> Iterator[str]:
+    title, part = PARTS[name]
+    yield f"# {title}\n\n{part.__doc__} Tests: in `{TESTS}`.\n"
+    for source, rows in sections.items():
+        yield f"## {source}\n\n{_table(HEADS, (row.cells() for row in rows))}\n"
+    notes = [_cell(note) for make in NOTES.get(name, ()) for note in make()]
+    if notes:
+        yield "## Notes\n\n" + "\n\n".join(notes)
+
+
+def _overview(found: dict[str, Sections]) -> str:
+    counts = [
+        [f"[{source}]({name}.md)", str(len(rows)), _count(rows, "the print errs"), _count(rows, "differs")]
+        for name, sections in found.items()
+        for source, rows in sections.items()
+    ]
     heads = ("source", "values", "the print errs", "differ, with the reason there")
-    overview = ["# All sources\n", _table(heads, counts), "", f"{sum(int(row[1]) for row in counts)} values."]
-    (folder / "overview.md").write_text("\n".join(overview), encoding="utf-8")
-    return ["overview", *PARTS, "statics", "errata"]
+    values = sum(int(row[1]) for row in counts)
+    return f"# All sources\n\n{_table(heads, counts)}\n\n{values} values."
+
+
+def _count(rows: Sequence[Row], verdict: str) -> str:
+    return str(sum(row.verdict.startswith(verdict) for row in rows))
 
 
 if __name__ == "__main__":

@@ -24,8 +24,10 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "mathml",  # this and the next ones: docs/_ext
     "docstring_bars",
+    "docstring_pages",
     "repository_pages",
     "validation_pages",
+    "file_keys",
 ]
 exclude_patterns = ["build", "_ext", "_templates", "**/GALLERY_HEADER.rst"]
 templates_path = ["_templates"]
@@ -70,6 +72,8 @@ html_theme = "pydata_sphinx_theme"
 html_title = "beamdyn and brakes"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
+html_sidebars = {"tour": []}  # no pages below it
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sourcelink = False

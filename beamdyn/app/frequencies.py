@@ -13,6 +13,7 @@ from rich.console import RenderableType
 from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.app.headlines import of_locus
 from beamdyn.app.inputs import DRAGS, EFFORT, TABLES, read
+from beamdyn.app.sketches import sketch
 from beamdyn.app.speed_charts import Meeting, describe_margin, frequency_chart
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.campbell_diagram.margins import Margin, margins_at_rated
@@ -242,4 +243,5 @@ FREQUENCIES = Screen(
     coarser=coarser,
     charts=chart,
     effort=EFFORT,
+    sketch=sketch,
 )

@@ -54,8 +54,9 @@ def of_peak(peak: float, at: float) -> Iterator[KeyResult]:
     yield KeyResult("at the time", number(at, "s"))
 
 
-def of_trade(modes: Modes, time: float) -> Iterator[KeyResult]:
-    """The time that the chosen model takes [s], and its errors."""
+def of_trade(modes: Modes, time: float, cheapest: str) -> Iterator[KeyResult]:
+    """The cheapest model measured, in words; the time that the chosen one takes [s], and its errors."""
+    yield KeyResult("cheapest, physics included", cheapest)
     yield KeyResult("time of the chosen model", number(1e3 * time, "ms"))
     yield from [*of_modes(modes)][1:]
 

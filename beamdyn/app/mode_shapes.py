@@ -14,6 +14,7 @@ from beamdyn.app.bent_beam import bent_beam
 from beamdyn.app.headlines import of_modes
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_at_speed
 from beamdyn.app.left_out import left_out_table
+from beamdyn.app.sketches import sketch
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.screens import Drag, Screen, Slider
 from beamdyn.common.drawing.shapes import Drawing
@@ -85,4 +86,5 @@ MODE_SHAPES = Screen(
     drawings=drawings,
     headline=lambda modes: [*of_modes(modes)],
     effort=EFFORT,
+    sketch=sketch,
 )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from beamdyn import draw as draw_rotor
 from beamdyn.app.inputs import DRAGS, SCENE_TABLES, first_frequency, read_scene
+from beamdyn.app.sketches import sketch
 from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.views import rows_of
@@ -26,8 +28,13 @@ def solve(tables: Mapping[str, Any]) -> RotorDrawing:
 
 
 def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
-    """The rotor along its axis, and the section of its root."""
-    return rotor.drawings()
+    """The rotor along its axis and the section of its root, beside one another as a page is wide.
+
+    The beam by itself, where it is drawn, stands beside the section: both are details.
+    """
+    (plan,), *details = rotor.drawings()
+    apart = [replace(detail, own_scale=True) for (detail,) in details]
+    return [[plan], apart] if len(apart) > 1 else [[plan, *apart]]
 
 
 def handles(rotor: RotorDrawing, _: float = 0.0) -> Sequence[Handle]:
@@ -67,4 +74,5 @@ ROTOR = Screen(
     drags=DRAGS,
     drawings=drawings,
     handles=handles,
+    sketch=sketch,
 )

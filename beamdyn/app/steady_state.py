@@ -13,6 +13,7 @@ from beamdyn import resonance_speeds, steady_response
 from beamdyn.app.headlines import of_steady
 from beamdyn.app.inputs import DRAGS, EFFORT, TABLES, read
 from beamdyn.app.left_out import left_out_table
+from beamdyn.app.sketches import sketch
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve
@@ -127,4 +128,5 @@ STEADY_STATE = Screen(
     headline=lambda answer: [*of_steady(answer)],
     charts=chart,
     effort=EFFORT,
+    sketch=sketch,
 )

@@ -16,6 +16,7 @@ from beamdyn import natural_modes
 from beamdyn.app.headlines import of_trade
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_aside, read_at_speed
 from beamdyn.app.left_out import left_out_table
+from beamdyn.app.sketches import sketch
 from beamdyn.cautions import notes_of, warnings_of
 from beamdyn.common.app.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.app.screens import Drag, Screen
@@ -182,8 +183,20 @@ def headline(answer: Trade) -> Sequence[str]:
     return said
 
 
+def cheapest_in_all(answer: Trade) -> str:
+    """The cheapest model that keeps the digits with its physics, in words."""
+    diagram = answer.of_physics if answer.of_physics.measurements else answer.numerical
+    digit = answer.cheapest(diagram)
+    return "none measured" if digit is None else f"{_physics(digit.family)}, {digit.setting}"
+
+
+def _physics(family: str) -> str:
+    """A family in words: the physics that a model has."""
+    return "physics as given" if family == "as given" else family
+
+
 def _say(digit: Digit) -> str:
-    return f"{digit.family}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
+    return f"{_physics(digit.family)}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
 
 
 def _best(diagram: Diagram) -> str:
@@ -249,6 +262,7 @@ TRADE = Screen(
     rows,
     drags=(Drag("trade.digits", 1, 10, 1, ""), Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     charts=charts,
-    headline=lambda answer: [*of_trade(answer.modes, answer.time)],
+    headline=lambda answer: [*of_trade(answer.modes, answer.time, cheapest_in_all(answer))],
     effort=EFFORT,
+    sketch=sketch,
 )

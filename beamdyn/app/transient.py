@@ -15,14 +15,17 @@ from beamdyn.app.bent_beam import bent_beam, drawn_larger
 from beamdyn.app.headlines import of_peak
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, first_frequency, read_aside, read_scene
 from beamdyn.app.left_out import left_out_table
+from beamdyn.app.sketches import sketch
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
-from beamdyn.common.app.screens import Screen, Slider
+from beamdyn.common.app.courses import Onward
+from beamdyn.common.app.screens import KeyResult, Screen, Slider
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.views import rows_of
+from beamdyn.common.one_line import number
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.output.notes import note_below
 from beamdyn.scene.scene import Scene
@@ -222,6 +225,12 @@ def tables(answer: Playable) -> Sequence[RenderableType]:
     return [transient_table(answer.run, answer.window), *said, *describe_choice(answer.run), effects]
 
 
+def _of_passages(answer: Playable) -> Iterator[KeyResult]:
+    """When the speed first passes a resonance."""
+    for at, _ in answer.passages[:1]:
+        yield KeyResult("passes a resonance at", number(at, "s"))
+
+
 def draw(answer: Playable, _: float = 1.0) -> Figure:
     """The tip over time."""
     figure = Figure(figsize=(9.0, 5.4), layout="constrained")
@@ -239,10 +248,11 @@ TRANSIENT = Screen(
     draw,
     lambda answer: warnings_of(answer.run),
     lambda answer: rows_of(answer.run),
-    slider=Slider("time", ("start", "end"), 0.001, 20.0),
+    slider=Slider("time", ("start", "end"), 0.001, 20.0, Onward),
     drags=DRAGS,
     drawings=drawings,
     charts=charts,
-    headline=lambda answer: [*of_peak(answer.peak, answer.peak_at)],
+    headline=lambda answer: [*of_peak(answer.peak, answer.peak_at), *_of_passages(answer)],
     effort=EFFORT,
+    sketch=sketch,
 )

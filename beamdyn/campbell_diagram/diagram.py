@@ -53,8 +53,8 @@ class Campbell(StatesModelError):
         One a scene.
     names : tuple of tuple of str
         Names of the modes of each scene: "flap 1", "edge 1" by the direction in which they mostly bend at the
-        first speed; "mode 1" where the bending angle is no whole number of quarter turns, and of a beam in
-        one plane that does not point outward.
+        first speed; "mode 1" of a beam that does not point outward where it has one plane, or its bending
+        angle is no whole number of quarter turns.
     loci : tuple of Locus
         Natural frequencies of each scene, tracked, with errors and confidence.
     lines : tuple of Line
@@ -156,7 +156,7 @@ class Campbell(StatesModelError):
         locus, label, names = self.loci[i], self.labels[i], self.names[i]
         if locus.scene.physics.planes == 1:
             return Curves(locus.speeds, locus.frequency, names, label)
-        drawn, words = first_drawn(locus.scene.mount), name_directions(locus.scene.mount)
+        drawn, words = first_drawn(locus.scene), name_directions(locus.scene)
         solid = locus.plane_share[:, :, drawn] >= 0.5
         directions = words[drawn][1], words[1 - drawn][1]
         return Curves(locus.speeds, locus.frequency, names, label, solid, directions)
@@ -220,6 +220,11 @@ def campbell(
     ------
     ValueError
         If an argument is out of its range.
+
+    References
+    ----------
+    Campbell (1924), The protection of steam-turbine disk wheels from axial vibration, Transactions of the
+    ASME 46.
 
     Examples
     --------
@@ -382,7 +387,7 @@ def _with_operation(
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
     """Names of the modes by the direction in which each mostly bends at the first speed."""
-    words, mount = [word for _, word in name_directions(locus.scene.mount)], locus.scene.mount
+    words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0  # it points outward
     if "flap" not in words or not is_blade:
         return tuple(f"mode {i}" for i in range(1, locus.frequency.shape[1] + 1))

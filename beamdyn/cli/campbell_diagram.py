@@ -15,6 +15,7 @@ from beamdyn.cli.values import (
     ModeCount,
     PhysicsOption,
     Text,
+    naming_option,
     parse_positive,
     parse_quantity,
 )
@@ -112,11 +113,12 @@ def campbell(
         length=length, hub_radius=hub_radius, **options, physics=physics,
     )  # fmt: skip
     by_label = _label(inputs, labels, physics)
-    range_ = None if operating is None else _parse_range(operating)
-    result = campbell(
-        by_label, speeds, per_rev=_parse_orders(per_rev), rated=_parse_rated(rated, top_speed, speeds[-1]),
-        operating=range_, unit=unit, bounds=bounds, **options,
-    )  # fmt: skip
+    at, range_ = _parse_operation(rated, operating, top_speed, speeds[-1])
+    with naming_option("per_rev", "--per-rev", per_rev):
+        result = campbell(
+            by_label, speeds, per_rev=_parse_orders(per_rev), rated=at, operating=range_, unit=unit,
+            bounds=bounds, **options,
+        )  # fmt: skip
     if crossings is not None:
         write_text(crossings, csv_text(crossings_of_lines_csv(result)))
     ignored = (warning for given in inputs for warning in given.warnings)
@@ -187,18 +189,31 @@ def _parse_top(text: str) -> tuple[Any, str]:
     return np.linspace(0.0, top, _SPEEDS), "rpm" if unit == "rpm" else "rad/s"
 
 
+def _parse_operation(
+    rated: str | None, operating: str | None, top_text: str, top: float
+) -> tuple[float | None, tuple[float, float] | None]:
+    """The rated speed, and the lowest and highest operating speed [rad/s]."""
+    at = _parse_rated(rated, top_text, top)
+    range_ = None if operating is None else _parse_range(operating, top_text, top)
+    if at is not None and range_ is not None and not range_[0] <= at <= range_[1]:
+        raise ValueError(f'--rated = "{rated}": it lies outside --operating = "{operating}"; widen the range')
+    return at, range_
+
+
 def _parse_rated(text: str | None, top_text: str, top: float) -> float | None:
     if text is None:
         return None
-    rated = parse_positive("--rated", text, "rad/s")
-    if rated > top * (1 + 1e-12):
-        raise ValueError(
-            f'--rated = "{text}": it is above --top-speed = "{top_text}"; give a higher top speed'
-        )
-    return min(rated, top)
+    return _up_to(top, parse_positive("--rated", text, "rad/s"), f'--rated = "{text}": it is', top_text)
 
 
-def _parse_range(text: str) -> tuple[float, float]:
+def _up_to(top: float, speed: float, words: str, top_text: str) -> float:
+    """A speed [rad/s] that the diagram has; `words` are the beginning of the refusal."""
+    if speed > top * (1 + 1e-12):
+        raise ValueError(f'{words} above --top-speed = "{top_text}"; give a higher top speed')
+    return min(speed, top)
+
+
+def _parse_range(text: str, top_text: str, top: float) -> tuple[float, float]:
     """Lowest and highest operating speed [rad/s]."""
     numbers, _, unit = text.strip().rpartition(" ")
     ends = numbers.split(":")
@@ -207,7 +222,7 @@ def _parse_range(text: str) -> tuple[float, float]:
     low, high = (parse_quantity("--operating", f"{part.strip()} {unit}", "rad/s") for part in ends)
     if not 0 <= low < high:
         raise ValueError(f'--operating = "{text}": it must begin at 0 or above and end above its beginning')
-    return low, high
+    return low, _up_to(top, high, f"--operating = {ends[1].strip()} {unit}: it is", top_text)
 
 
 def _parse_orders(text: str) -> Sequence[int]:

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from beamdyn.cli.program import app, deliver
@@ -27,7 +32,6 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.studies.result import Study
 
-_MOST = 1_000_000  # designs
 _FACTOR = "factor of a property along the beam"
 
 
@@ -54,7 +58,7 @@ def study(
 ) -> None:
     """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs.
 
-    Or their ranges over tolerances, and the input that matters most.
+    Or their ranges over tolerances, and the input that matters most. At most a million designs are answered.
 
     Parameters
     ----------
@@ -87,7 +91,7 @@ def study(
     """
     from beamdyn import study
     from beamdyn.cautions import warnings_of
-    from beamdyn.common.designs import check_designs
+    from beamdyn.common.designs import MOST_DESIGNS, check_designs
     from beamdyn.common.edge.html_report import Question
     from beamdyn.common.edge.input_sweep import designs_of, parse_axis
     from beamdyn.common.edge.progress import at_work
@@ -98,10 +102,10 @@ def study(
     spreading.check(varying)
     if not varying.vary and not spreading.spread:
         raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
-    loaded = load_with(scene, physics)
+    loaded = load_with(scene, physics, speed, *_speeds_of(varying))
     known = _inputs(loaded)
-    axes = [parse_axis(known, text, OPTION, _MOST) for text in varying.vary]
-    check_designs(designs_of(axes, varying.combine), _MOST, OPTION)
+    axes = [parse_axis(known, text, OPTION, MOST_DESIGNS) for text in varying.vary]
+    check_designs(designs_of(axes, varying.combine), option=OPTION)
     options = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     asked = varying.options | spreading.options | {"what": what, "speed": speed, "window": window} | options
     question = Question.on_file("beamdyn study", scene, **asked, physics=physics)
@@ -111,7 +115,7 @@ def study(
         how |= {"workers": varying.workers, "store": varying.store}
         answer_spread(loaded, known, spreading, outputs, question, how)
         return
-    with at_work("designs") as progress, of_file({}):
+    with at_work("designs") as progress, of_file({}), _refused_as_given(axes):
         result = study(
             loaded,
             {axis.input.path: axis.values for axis in axes},
@@ -126,8 +130,51 @@ def study(
         )
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
     tables, rows = [study_table(result, units)], study_csv(result)
-    warnings, refusal = warnings_of(result, tolerance), _refusal(result)
+    warnings = [_as_given(axes, said) for said in warnings_of(result, tolerance)]
+    refusal = _refusal(result)
     deliver(result, outputs, question, tables, rows, on_axes(result.plot), warnings, refusal)
+
+
+# Values as they were given ------------------------------------------------------------------------
+
+
+def _speeds_of(varying: VaryOptions) -> Iterator[str]:
+    """Yield the speeds that are varied, of which the unit is that of the answer."""
+    for text in varying.vary:
+        key, _, values = text.partition("=")
+        if key.strip() == "speed":
+            yield values
+
+
+def _as_given(axes: Sequence[Axis], said: str) -> str:
+    """A sentence on designs with their inputs as they were given: rounded, they would not be found again."""
+    for axis in axes:
+        if axis.unit:
+            pattern = rf"(?<![\w.])({re.escape(axis.input.path)} = )(-?\d[\d.e+-]*) ([\w/]+)"
+            said = re.sub(pattern, partial(_nearest_given, axis), said)
+    return said
+
+
+def _nearest_given(axis: Axis, found: re.Match[str]) -> str:
+    known = axis.given if found[3] == axis.unit else axis.values
+    nearest = axis.given[abs(known - float(found[2])).argmin()]
+    return f"{found[1]}{nearest:.6g} {axis.unit}"
+
+
+@contextmanager
+def _refused_as_given(axes: Sequence[Axis]) -> Iterator[None]:
+    """Within it, a refusal of an input shows its value and its bound in the unit in which it was given."""
+    from beamdyn.common.checks import InvalidValue
+
+    try:
+        yield
+    except InvalidValue as error:
+        axis = next((axis for axis in axes if axis.input.path == error.field and axis.unit), None)
+        if axis is None or not isinstance(error.value, float):
+            raise
+        unit, si = _unit_of(axis)
+        limit = None if error.limit is None else error.limit / si
+        raise replace(error, value=error.value / si, limit=limit, unit=unit, cases=None) from None
 
 
 def _refusal(result: Study) -> str:
@@ -149,8 +196,10 @@ def _inputs(scene: Scene) -> list[Input]:
     from beamdyn.config.scene_inputs import SceneInput
     from beamdyn.studies.inputs import NAMES, SCALE, SPEED, unit_of
     from beamdyn.studies.listed_numbers import listed_names
+    from beamdyn.studies.motion_numbers import motion_names
 
-    by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in NAMES}
+    known = {*NAMES, *motion_names(scene)}
+    by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in known}
     factors = (name for name in NAMES if name.startswith(SCALE))
 
     class ByWholeName(Input):

@@ -33,7 +33,7 @@ def tradeoff(
         Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion,
         or 0 without one.
     modes
-        Number of modes, from the lowest.
+        Number of modes, from the lowest; at most 20.
     t_end
         End of the transients with its unit, e.g. "2 s"; default: a hundred periods of the first mode after
         the spin-up, or from rest if the spin-up is long.

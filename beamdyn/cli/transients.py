@@ -26,6 +26,7 @@ from beamdyn.cli.values import (
 )
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 from beamdyn.common.edge.program import Interrupted, examples
+from beamdyn.common.edge.varying import Folder
 
 if TYPE_CHECKING:
     import numpy as np
@@ -122,7 +123,7 @@ def sweep(
     scheduler: Annotated[
         str | None, Parameter(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
     ] = None,
-    store: Path | None = None,
+    store: Folder = None,
     physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
 ) -> None:

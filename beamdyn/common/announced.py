@@ -18,7 +18,30 @@ _within_another: ContextVar[bool] = ContextVar("within_another", default=False)
 
 
 class OutsideLinearTheory(UserWarning):
-    """A number of linear theory about a beam that bends further than this theory allows."""
+    """A number of linear theory about a beam that bends further than this theory allows.
+
+    Analyses issue this warning of Python, once each, where the beam bends by more than a
+    tenth of its length; the result says so in its ``warnings``, too.  With ``physics="auto"`` of the scene,
+    analyses add the effects that matter instead.
+
+    Examples
+    --------
+    To stop where one is issued, and to go on without:
+
+    >>> import warnings
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=0.785))
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", bd.OutsideLinearTheory)
+    ...     try:
+    ...         modes = bd.natural_modes(scene, speed=100.0)
+    ...     except bd.OutsideLinearTheory:
+    ...         print("bent too far")
+    bent too far
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", bd.OutsideLinearTheory)
+    ...     modes = bd.natural_modes(scene, speed=100.0)
+    """
 
 
 def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:

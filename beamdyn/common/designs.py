@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue, one_of
 
 COMBINATIONS = ("product", "zip")
-MOST_DESIGNS = 10_000_000  # whose answers fit into memory
+MOST_DESIGNS = 1_000_000  # whose answers fit into memory
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def check_writable(
     path : str or Path
         File to write; a link stands for the file that it points to.
     suffixes : sequence of str
-        Suffixes allowed, in lower case, with their dots; any if there are none.
+        Suffixes allowed, in lower case, with their dots; "" for a name without one; any if there are none.
     force : bool
         Overwrite a file that exists.
     remedy : str
@@ -72,7 +72,8 @@ def check_writable(
     """
     path = as_path("path", path)
     if suffixes and path.suffix.lower() not in suffixes:
-        raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {', '.join(suffixes)}")
+        known = ", ".join(filter(None, suffixes))
+        raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {known}")
     if os.path.isdir(path):
         raise IsADirectoryError(f"{path}: it is a folder; give the name of a file")
     if os.path.isfile(path) and not _is_stream(path) and not force:

@@ -105,7 +105,7 @@ def load(path: str | Path) -> Any:
     """
     file = as_path("path", path)
     try:
-        content = unseal(file.read_bytes())
+        content = unseal(_read(file))
         if "record" in content:
             return _result_from(content["record"])
         reason = "it has numbers only"
@@ -113,6 +113,15 @@ def load(path: str | Path) -> Any:
         reason = str(error)
     remedy = "compute the result again; any JSON reader gets its numbers"
     raise ValueError(f"{path}: no result can be loaded: {reason}; {remedy}")
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
+        remedy = "give one that save or --json has written"
+        raise type(error)(f"{file}: no result can be loaded: {reason}; {remedy}") from None
 
 
 def _record_of(result: Saved) -> dict[str, Any]:

@@ -168,7 +168,7 @@ def audit(blade: Blade, scene: Scene) -> DeckAudit:
         steps=find_steps(blade),
         shapes=shapes,
         shape_speed=speed,
-        warnings=tuple(_warnings(shapes)),
+        warnings=(*blade.doubts, *_warnings(shapes)),
     )
 
 

@@ -82,6 +82,8 @@ class Blade:
         Coefficients of x/L to the powers 2 to 6 of the deck's mode shapes, by mode, such as "flap 1".
     ignored : tuple of IgnoredProperty
         What of the deck is not in this blade.
+    doubts : tuple of str
+        What the deck's own program would read otherwise.
     """
 
     kind: str
@@ -98,6 +100,7 @@ class Blade:
     damping: float = 0.0
     polynomials: dict[str, np.ndarray] = field(default_factory=dict)
     ignored: tuple[IgnoredProperty, ...] = ()
+    doubts: tuple[str, ...] = ()
 
 
 def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, reason: str) -> tuple:

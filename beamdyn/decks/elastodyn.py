@@ -8,7 +8,7 @@ direction c b2 + s b3 is the same line at psi = 90 deg - twist - pitch: a twist 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -44,6 +44,7 @@ COLUMNS = (
     *(Column(name, "m") for name in ("PrecrvRef", "PreswpRef", "FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")),
 )
 _USED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
+_UNUSED_SECOND = "PitchAxis", "AeroCent"
 _UNREAD = "ElastoDyn does not use it either"
 _REASONS = {
     "PitchAxis": "of aerodynamics",
@@ -179,7 +180,23 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
         damping=float(damping[0]) if np.ptp(damping) == 0 else 0.0,
         polynomials={mode: numbers(*names) for mode, names in _SHAPES.items()},
         ignored=(*_ignored_settings(damping, numbers(*_TUNERS)), *ignore_columns(table, _USED, _REASONS)),
+        doubts=tuple(_doubt_order([*table.columns])),
     )
+
+
+def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
+    """Yield a warning of heads that stand in another order than that in which ElastoDyn reads the numbers.
+
+    Its second column, which it does not use, was AeroCent, then PitchAxis, and is gone in newer versions.
+    """
+    second = [name for name in heads[1:2] if name in _UNUSED_SECOND]
+    wanted = [_USED[0], *second, *_USED[1:]]
+    if heads[: len(wanted)] != wanted:
+        here = next(i for i, name in enumerate(wanted) if heads[i : i + 1] != [name])
+        said = (
+            f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
+        )
+        yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
 
 
 def _title(text: DataText) -> str:

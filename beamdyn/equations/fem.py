@@ -39,6 +39,10 @@ class Fem:
     on_each : int
         Fewest elements on each segment between breakpoints, so that half as many are a coarser mesh.
 
+    References
+    ----------
+    Standard: cubic Hermite elements, extrapolated after Richardson (1911).
+
     Examples
     --------
     >>> scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0))

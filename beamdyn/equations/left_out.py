@@ -84,7 +84,7 @@ def _second_plane(scene: Scene) -> Iterator[OmittedEffect]:
     beam = scene.beam
     has_data = beam.second_bending_stiffness is not None
     given = _how(scene.physics, "planes=2", has_data, "second_bending_stiffness")
-    across = name_directions(scene.mount)[1][0]
+    across = name_directions(scene)[1][0]
     yield OmittedEffect("second plane of bending", f"the beam is rigid {across}; {given}", "planes")
     if beam.twist is not None:
         yield OmittedEffect("twist", f"sections stand as at the root; {given}", "planes")

@@ -44,6 +44,11 @@ class Ritz:
         and whose error falls slowly, as N^-5, under rotation; or deflections by bending moments that are
         polynomials over the whole beam, for beams of many segments.
 
+    References
+    ----------
+    Integrated Legendre polynomials: Szabo and Babuska (1991), Finite Element Analysis; eigenfunctions: Lee
+    and Yoo (2019).
+
     Examples
     --------
     >>> scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0))

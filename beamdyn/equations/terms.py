@@ -142,6 +142,10 @@ def terms(scene: Scene) -> Terms:
     -------
     Terms
 
+    References
+    ----------
+    Lee and Yoo (2019), eqs. (13) and (14), corrected; section Equations of docs/conventions.md.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -176,6 +176,11 @@ def frequency_response(
         If an argument is out of its range, the speed is past the critical speed, or an undamped beam is
         excited at a natural frequency.
 
+    References
+    ----------
+    Modes with the residual flexibility of all others: Craig and Kurdila (2006), Fundamentals of Structural
+    Dynamics, section 11.4.
+
     Examples
     --------
     >>> scene = bd.load_scene("examples/rough_road.toml")

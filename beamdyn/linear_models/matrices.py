@@ -137,6 +137,10 @@ def matrices(
     ValueError
         If an argument is out of its range, or an input is periodic at this speed.
 
+    References
+    ----------
+    Lee and Yoo (2019), eqs. (14), corrected; section Equations of docs/conventions.md.
+
     Examples
     --------
     >>> from scipy.linalg import eigh

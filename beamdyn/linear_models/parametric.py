@@ -44,6 +44,10 @@ class ParametricTerm:
         Estimated relative change of the root mean square of the lowest mode by the random variation; inf
         where it would grow without limit.
 
+    References
+    ----------
+    Roberts and Spanos (1986), International Journal of Non-Linear Mechanics 21, 111-134.
+
     Examples
     --------
     >>> scene = bd.load_scene("examples/harvester_on_road.toml")

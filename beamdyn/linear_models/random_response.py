@@ -165,6 +165,11 @@ def random_response(
         the critical speed, or a road is given without a wheel, or with white noise an acceleration or a
         moment, whose mean square is not finite.
 
+    References
+    ----------
+    Spectral density |H|^2 G (standard), integrated by partial fractions (own: docs/responses.md); parametric
+    term: Roberts and Spanos (1986), International Journal of Non-Linear Mechanics 21, 111-134.
+
     Examples
     --------
     >>> scene = bd.load_scene("examples/rough_road.toml")

@@ -76,6 +76,10 @@ class PowerSpectrum:
         If a density is negative, the frequencies do not ascend from 0 or more, their numbers differ, or a
         frequency or a density is 0 on logarithmic axes.
 
+    References
+    ----------
+    Standard: one-sided spectral densities.
+
     Examples
     --------
     >>> flat = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])
@@ -153,6 +157,10 @@ class RoadRoughness:
     ------
     ValueError
         If a value is not positive, the class is unknown, or the frequencies do not ascend.
+
+    References
+    ----------
+    ISO 8608:2016, table C.1.
 
     Examples
     --------

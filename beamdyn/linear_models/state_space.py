@@ -63,6 +63,10 @@ def state_space(
         If an argument is out of its range, an input is periodic at this speed, or a kept coordinate has no
         mass.
 
+    References
+    ----------
+    Craig and Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

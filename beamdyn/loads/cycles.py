@@ -138,6 +138,10 @@ def count_cycles(
     ImportError
         If the package that counts is missing: the extra `fatigue` installs it.
 
+    References
+    ----------
+    Rainflow counting: ASTM E1049; damage by Miner (1945).
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -76,6 +76,11 @@ class RandomStatistics:
     rate_rms : ndarray, shape (S, K)
         Root mean square of its rate [same unit / s].
 
+    References
+    ----------
+    Rice (1944), Mathematical analysis of random noise; Davenport (1964), Proceedings of the Institution of
+    Civil Engineers 28, 187-196.
+
     Examples
     --------
     >>> scene = bd.load_scene("examples/harvester_on_road.toml")
@@ -309,6 +314,11 @@ def random_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, a mode is not damped, the speed
         is past the critical speed, or the scene has springs along the span or damping that is not modal.
+
+    References
+    ----------
+    Rice (1944), Mathematical analysis of random noise; Davenport (1964), Proceedings of the Institution of
+    Civil Engineers 28, 187-196.
 
     Examples
     --------

@@ -117,6 +117,11 @@ def static_loads(
         An ArithmeticError: if rotation or its weight buckles the straight beam, or turns freely about its
         root.
 
+    References
+    ----------
+    Equilibrium of the part beyond the cut (standard); modes left out are static: Craig and Kurdila (2006),
+    Fundamentals of Structural Dynamics, section 11.4.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -126,6 +126,11 @@ def steady_loads(
         If an argument is out of its range, a point lies outside the section, or the response is one of large
         deflection.
 
+    References
+    ----------
+    As `static_loads`, with inertia (d'Alembert, standard); modes left out are static: Craig and Kurdila
+    (2006), Fundamentals of Structural Dynamics, section 11.4.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -94,12 +94,12 @@ class LeftOutEffects:
         """The effects that are not known, those of one reason together."""
         reasons: dict[str, list[str]] = {}
         for name, why in self.not_known.items():
-            place = self._where_unknown(name, speeds)
+            place = self.where_unknown(name, speeds)
             full = why if not place or place == where else f"{why}; {place}"
             reasons.setdefault(full, []).append(name)
         yield from (f"{', '.join(names)} ({why})" for why, names in reasons.items())
 
-    def _where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
+    def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
         """The speeds at which a change is not known; empty if these are not given, or none is known."""
         change = self.changes.get(name)
         if speeds is None or change is None or not len(speeds):
@@ -129,11 +129,21 @@ class LeftOutEffects:
         return f"{what} {np.nanargmax(np.abs(change)) % change.shape[-1] + 1}"
 
     def warnings(
-        self, tolerance: float | None = None, where: str = "", speeds: np.ndarray | None = None
+        self,
+        tolerance: float | None = None,
+        where: str = "",
+        where_unknown: Callable[[str], str] = lambda name: "",
     ) -> Iterator[str]:
         """Yield a warning if the changes exceed a tolerance, or 1 %, and if they may, being unknown.
 
-        The parameters `where` and `speeds` are as for `sentence`.
+        Parameters
+        ----------
+        tolerance : float, optional
+            The tolerance.
+        where : str
+            Where the largest change is, as for `sentence`.
+        where_unknown : callable
+            Where the change by an effect of a name is not known; empty if that is where the largest is.
         """
         limit = LARGE_MODEL_ERROR if tolerance is None else tolerance
         at_least = float(self.total_of_known.max(initial=0.0))
@@ -144,7 +154,7 @@ class LeftOutEffects:
         unknown: dict[tuple[str, str], list[str]] = {}
         for name, why in self.not_known.items():
             if name in self.changes and np.isnan(self.changes[name]).any():
-                unknown.setdefault((self._where_unknown(name, speeds) or where, why), []).append(name)
+                unknown.setdefault((where_unknown(name) or where, why), []).append(name)
         for (place, why), names in unknown.items():
             what = f"what {', '.join(names)}, left out, changes is not known: {why}"
             yield f"{place and place + ' '}{MODEL_ERROR} may exceed {say_size(limit)}: {what}"
@@ -227,8 +237,9 @@ class StatesModelError(OfChosenPhysics):
     def model_warnings(self, tolerance: float | None = None) -> list[str]:
         """Warnings of a model error past a tolerance, or 1 %, and of one that is not known."""
         speeds = getattr(self, "left_out_speeds", None)
-        where = "" if speeds is None else where_worst(self.left_out_effects, speeds)
-        return [*self.left_out_effects.warnings(tolerance, where, speeds)]
+        effects = self.left_out_effects
+        where = "" if speeds is None else where_worst(effects, speeds)
+        return [*effects.warnings(tolerance, where, lambda name: effects.where_unknown(name, speeds))]
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out.

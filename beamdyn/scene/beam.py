@@ -69,6 +69,10 @@ class Beam(FieldsOnly, OneLine):
     point_springs : sequence of PointSpring
         Springs that hold points of the beam to the carrier; those at one place add up.
 
+    References
+    ----------
+    Standard: Euler and Bernoulli; shear of rectangles by Cowper (1966), Journal of Applied Mechanics 33, 335.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(

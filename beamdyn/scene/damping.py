@@ -33,6 +33,10 @@ class Damping:
     ValueError
         If a value is not finite or out of its range.
 
+    References
+    ----------
+    Standard: modal ratios, Rayleigh damping, a viscous damper; section Damping of docs/conventions.md.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -52,6 +52,10 @@ class Mount(OneLine):
     UserWarning
         If an angle seems to be in degrees: beyond half a turn, with at most two decimals, such as 5.
 
+    References
+    ----------
+    Lee and Yoo (2019), setting angle; others: section Axes and signs of docs/conventions.md.
+
     Examples
     --------
     >>> bd.Mount(radius=0.215, setting_angle=np.pi).setting_angle == np.pi  # outward

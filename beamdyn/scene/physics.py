@@ -38,6 +38,11 @@ class Physics:
         If `planes` is neither 1 nor 2, another value is no truth value, or large deflection cannot be
         combined with another effect.
 
+    References
+    ----------
+    Yoo and Shin (1998), stretch; Timoshenko (1921), shear, with tension after Engesser; others: own
+    derivation: docs/conventions.md.
+
     Examples
     --------
     >>> wire = bd.Beam.rectangular(0.05, 0.0004, 0.0002, 200e9, 7850.0)

@@ -34,6 +34,10 @@ class TipMass:
         If a value is not finite, the mass or an inertia is negative, or one moment of inertia exceeds the
         sum of the other two.
 
+    References
+    ----------
+    Standard: a rigid body; own derivation: docs/conventions.md, section Equations.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, tip=bd.TipMass(mass=0.004))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import TypeAlias
 
 import numpy as np
 
@@ -11,12 +12,15 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.model import Model
-from beamdyn.sensitivities.interpolation import evaluate_nearby
+from beamdyn.sensitivities.interpolation import Nearby, evaluate_nearby
 from beamdyn.sensitivities.perturbation import PencilChange
 from beamdyn.sensitivities.scene_numbers import SceneNumber
 from beamdyn.studies.inputs import scene_of
 
-_EPSILON = 16 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
+_EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
+_RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
+_CONVERGES = 0.1  # most that a narrower interval leaves of it, where it is no rounding
+_Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,8 @@ class Changes:
     ----------
     of : tuple of list of PencilChange
         Those of the model, and those of the coarser one.
+    missed : list of PencilChange
+        What those of the model may lack, as their dependence on a number is not resolved.
     rounding : ndarray, shape (n,)
         Their rounding error, relative to the matrices [1 / unit of the number].
     refusals : tuple of str
@@ -34,6 +40,7 @@ class Changes:
     """
 
     of: tuple[list[PencilChange], list[PencilChange]]
+    missed: list[PencilChange]
     rounding: np.ndarray
     refusals: tuple[str, ...]
 
@@ -41,25 +48,60 @@ class Changes:
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
     """Evaluate the equations of a model around each number."""
-    fine, coarse, rounding, refusals = [], [], [], []
+    fine, coarse, missed, rounding, refusals = [], [], [], [], []
     for number in numbers:
         try:
-            both, weights = evaluate_nearby(
-                number, lambda value, name=number.name: _pencils(model, name, value)
-            )
+            nearby = _resolved(number, lambda value, name=number.name: _pencils(model, name, value))
         except InvalidValue as error:
-            of_both = [_unknown(len(pencil.M)) for pencil in steady_pencils(model, model.equations.coarse)]
+            of_fine, of_coarse = (
+                _unknown(len(pencil.M)) for pencil in steady_pencils(model, model.equations.coarse)
+            )
             refusals.append(f"{number.name} cannot change alone, so that it has no derivative: {error}")
-            weights = np.zeros(1)
+            lacks, weights = of_fine, np.zeros(1)
         else:
-            of_both = [PencilChange.of([pair[k] for pair in both], weights) for k in (0, 1)]
-        fine.append(of_both[0])
-        coarse.append(of_both[1])
+            weights = nearby.weights
+            of_fine, of_coarse = (
+                PencilChange.of([pair[k] for pair in nearby.values], weights) for k in (0, 1)
+            )
+            lacks = _last(nearby)
+        fine.append(of_fine)
+        coarse.append(of_coarse)
+        missed.append(lacks)
         rounding.append(_EPSILON * np.abs(weights).sum())
-    return Changes((fine, coarse), np.array(rounding), tuple(refusals))
+    return Changes((fine, coarse), missed, np.array(rounding), tuple(refusals))
 
 
-def _pencils(model: Model, name: str, value: float) -> tuple[SteadyPencil, SteadyPencil]:
+def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nearby[_Pencils]:
+    """Evaluate the equations within the widest interval that resolves them, or else leaves rounding alone."""
+    before, best = np.inf, None
+    for nearby in evaluate_nearby(number, evaluate):
+        share = _missed_share(nearby)
+        if best is not None and share > _CONVERGES * before:
+            return best
+        before, best = share, nearby
+        if share <= _RESOLVED:
+            break
+    assert best is not None
+    return best
+
+
+def _missed_share(nearby: Nearby[_Pencils]) -> float:
+    """The last term of a model's matrices within an interval, relative to each of them: the largest."""
+    last, whole = _last(nearby), nearby.values[0][0]
+    pairs = ((getattr(last, f.name), getattr(whole, f.name)) for f in fields(last))
+    return max(_largest(part) * nearby.width / (_largest(matrix) or 1.0) for part, matrix in pairs)
+
+
+def _last(nearby: Nearby[_Pencils]) -> PencilChange:
+    """The last term of the derivatives of a model's matrices."""
+    return PencilChange.of([fine for fine, _ in nearby.values], nearby.last)
+
+
+def _largest(matrix: np.ndarray) -> float:
+    return float(np.abs(matrix).max(initial=0.0))
+
+
+def _pencils(model: Model, name: str, value: float) -> _Pencils:
     """The equations of both models with another value of a number."""
     scene = scene_of(model.scene, {name: value})
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):

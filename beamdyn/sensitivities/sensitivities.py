@@ -71,6 +71,10 @@ def frequency_sensitivities(
     ValueError
         If an argument is out of its range, a name is unknown, or large deflection is modelled.
 
+    References
+    ----------
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -89,12 +93,10 @@ def frequency_sensitivities(
     derivative, error = _frequency_derivatives(fine, coarse, changes)
     if with_speed:
         numbers = (*numbers, SceneNumber(SPEED, "rad/s", found.speed, 0.0))
-        by_speed = np.imag(fine.speed_derivatives()) * _HZ
-        distance = np.abs(by_speed - np.imag(coarse.speed_derivatives()) * _HZ)
-        derivative = np.vstack([derivative, by_speed])
-        error = np.vstack([error, distance])
-    error += found.error * np.abs(derivative)  # which is inversely proportional to the frequency
+        by_speed, its_error = _speed_derivatives(fine, coarse, found)
+        derivative, error = np.vstack([derivative, by_speed]), np.vstack([error, its_error])
     lost, words = _without_derivative(found)
+    error += np.where(lost, 0.0, found.error) * np.abs(derivative)  # as derivatives are over the frequency
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     return Sensitivities(
         answers=tuple(f"mode {k}" for k in range(1, modes + 1)),
@@ -136,6 +138,10 @@ def critical_speed_sensitivities(
     ValueError
         If an argument is wrong, or there is no critical speed, or none is known.
 
+    References
+    ----------
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -151,19 +157,19 @@ def critical_speed_sensitivities(
     model = _linear(found.model)
     numbers = numbers_of(model.scene, names)
     changes = changes_of(model, numbers)
+    pencils, speeds = _pencils(model), (model.solver.critical_speed, model.coarse_solver.critical_speed)
     fine, coarse = (
-        _critical_derivatives(pencil, solver.critical_speed, changes.of[k])
-        for k, (pencil, solver) in enumerate(
-            zip(_pencils(model), (model.solver, model.coarse_solver), strict=True)
-        )
+        _critical_derivatives(pencil, speed, of)
+        for pencil, speed, of in zip(pencils, speeds, changes.of, strict=True)
     )
+    missed = np.abs(_critical_derivatives(pencils[0], speeds[0], changes.missed))
     return Sensitivities(
         answers=("critical speed",),
         unit="rad/s",
         value=np.array([found.speed]),
         inputs=numbers,
         derivative=fine,
-        error=np.abs(fine - coarse) + changes.rounding[:, None] * found.speed,
+        error=np.abs(fine - coarse) + missed + changes.rounding[:, None] * found.speed,
         warnings=(*found.warnings, *changes.refusals),
         provenance=_provenance(model, start),
         scene=model.scene,
@@ -202,6 +208,11 @@ def crossing_sensitivities(
     ------
     ValueError
         If an argument is wrong, or large deflection is modelled.
+
+    References
+    ----------
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7, along the line of the excitation
+    (own).
 
     Examples
     --------
@@ -274,9 +285,20 @@ def _frequency_derivatives(
         np.array([np.imag(modes.derivatives(change)) * _HZ for change in changes.of[k]])
         for k, modes in enumerate((fine, coarse))
     ]
+    rates.append(np.array([np.abs(fine.derivatives(change)) * _HZ for change in changes.missed]))
     shape = len(changes.of[0]), len(fine.eigenvalue)
-    found, other = (rate.reshape(shape) for rate in rates)
-    return found, np.abs(found - other) + changes.rounding[:, None] * fine.scales() * _HZ
+    found, other, missed = (rate.reshape(shape) for rate in rates)
+    return found, np.abs(found - other) + missed + changes.rounding[:, None] * fine.scales() * _HZ
+
+
+def _speed_derivatives(
+    fine: PerturbedModes, coarse: PerturbedModes, found: Modes
+) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives of frequencies by the speed [Hz s/rad] and their errors, shape (k,)."""
+    rate, other = (np.imag(modes.speed_derivatives()) * _HZ for modes in (fine, coarse))
+    with np.errstate(invalid="ignore"):  # of a mode that does not vibrate
+        of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
+    return rate, np.abs(rate - other) + of_shapes
 
 
 def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
@@ -316,14 +338,20 @@ def _crossing_derivatives(
     A line m omega meets the sum of the angular frequencies lambda of one mode or two:
     d omega = -sum d lambda / (sum d lambda / d omega - m).
     """
-    rates = []
-    for k, found in enumerate(_modes_of(model, crossing.speed, modes)):
-        sums = _sums(np.imag(found.eigenvalue), crossing)
-        by_speed = np.imag(found.speed_derivatives()) @ sums
-        by_number = np.array([np.imag(found.derivatives(change)) @ sums for change in changes.of[k]])
-        rates.append(-by_number / (by_speed - crossing.line.multiple))
-    scale = crossing.speed
-    return rates[0], np.abs(rates[0] - rates[1]) + changes.rounding * scale
+    fine, coarse = _modes_of(model, crossing.speed, modes)
+    found, other, missed = (
+        _crossing_rates(of_model, of, crossing)
+        for of_model, of in ((fine, changes.of[0]), (coarse, changes.of[1]), (fine, changes.missed))
+    )
+    return found, np.abs(found - other) + np.abs(missed) + changes.rounding * crossing.speed
+
+
+def _crossing_rates(found: PerturbedModes, changes: Sequence[PencilChange], crossing: Crossing) -> np.ndarray:
+    """Changes of the speed of a crossing where the matrices of a model change, shape (n,)."""
+    sums = _sums(np.imag(found.eigenvalue), crossing)
+    by_speed = np.imag(found.speed_derivatives()) @ sums
+    by_number = np.array([np.imag(found.derivatives(change)) @ sums for change in changes])
+    return -by_number / (by_speed - crossing.line.multiple)
 
 
 def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:

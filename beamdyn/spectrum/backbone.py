@@ -97,6 +97,10 @@ def backbone(
     ValueError
         If the mode does not vibrate about the equilibrium.
 
+    References
+    ----------
+    Method of Lindstedt and Poincare (standard): Nayfeh and Mook (1979), Nonlinear Oscillations, chapter 2.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

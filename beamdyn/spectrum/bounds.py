@@ -114,6 +114,10 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
         rotary inertia, damping, springs at the root, or two planes that the precone couples.
 
+    References
+    ----------
+    The theorem that docs/bounds.md states and proves (own).
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -125,6 +125,10 @@ def critical_speed(
     -------
     float
 
+    References
+    ----------
+    As `critical_point`: Lee and Yoo (2019), section 4.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -163,6 +167,11 @@ def critical_point(
     Returns
     -------
     CriticalPoint
+
+    References
+    ----------
+    Lee and Yoo (2019), section 4: the speed at which the stiffness K0 + omega^2 K2 is singular (standard,
+    Euler's criterion).
 
     Examples
     --------

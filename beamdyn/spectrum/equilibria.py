@@ -144,6 +144,10 @@ def equilibrium(
     NoEquilibrium
         An ArithmeticError: if the branch has no equilibrium at this speed.
 
+    References
+    ----------
+    Inextensible elastica (Euler); own derivation: docs/conventions.md, section Large deflection.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -313,6 +317,10 @@ def equilibrium_branches(
     Returns
     -------
     EquilibriumBranches
+
+    References
+    ----------
+    As `equilibrium`; followed by Keller's (1977) pseudo-arclength continuation.
 
     Examples
     --------

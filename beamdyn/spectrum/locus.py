@@ -192,6 +192,10 @@ def frequency_locus(
     ValueError
         If an argument is out of its range.
 
+    References
+    ----------
+    As `natural_modes`; between Chebyshev points of the speed by interpolation (standard).
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -166,7 +166,7 @@ class Modes(StatesModelError):
 
 def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
     """Directions that are drawn solid and dashed, and their names."""
-    solid, names = first_drawn(scene.mount), name_directions(scene.mount)
+    solid, names = first_drawn(scene), name_directions(scene)
     return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
 
@@ -206,6 +206,11 @@ def natural_modes(
     ------
     ValueError
         If an argument is out of its range.
+
+    References
+    ----------
+    Lee and Yoo (2019), eqs. (14), corrected as docs/conventions.md lists; errors by Richardson's
+    extrapolation (standard).
 
     Examples
     --------

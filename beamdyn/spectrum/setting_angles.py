@@ -102,6 +102,10 @@ def setting_angle_limits(
     ValueError
         If the top speed is not positive, or infinite without a basis of given size, or the root is a hinge.
 
+    References
+    ----------
+    Lee and Yoo (2019), section 3.3; by the slopes of Southwell (1921), as docs/conventions.md has them.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

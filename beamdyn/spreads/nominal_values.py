@@ -11,6 +11,7 @@ from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.inputs import SCALE, SPEED
 from beamdyn.studies.listed_numbers import listed_value, unit_of_listed
+from beamdyn.studies.motion_numbers import motion_value, unit_of_motion_number
 
 _SECTION = ("width", "thickness", "youngs_modulus", "density", "poissons_ratio")
 
@@ -39,6 +40,8 @@ def nominal_value(scene: Scene, name: str, speed: float) -> float:
     table, _, key = name.partition(".")
     if unit_of_listed(name) is not None:
         value = listed_value(scene, name)
+    elif unit_of_motion_number(name) is not None:
+        value = motion_value(scene, name)
     else:
         value = _of_beam(scene.beam, name, key) if table == "beam" else _attribute(scene, table, key)
     if value is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
@@ -33,7 +32,7 @@ from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.spreads.derivatives import known_derivatives
 from beamdyn.spreads.nominal_values import nominal_value
-from beamdyn.studies.inputs import NAMES, SPEED, is_input, scene_of, unit_of
+from beamdyn.studies.inputs import SPEED, check_name, scene_of, unit_of
 from beamdyn.studies.questions import KINDS
 from beamdyn.studies.result import Study
 from beamdyn.studies.study import speed_of_study, study
@@ -96,6 +95,11 @@ def spread(
         has an answer.
     StudyInterrupted
         If the executor breaks; finished parts are in the store.
+
+    References
+    ----------
+    Indices: Saltelli et al. (2010), Computer Physics Communications 181, 259; worst cases: Kolda, Lewis and
+    Torczon (2003), SIAM Review 45, 385.
 
     Examples
     --------
@@ -196,10 +200,8 @@ def check_tolerances(
     return tuple(_check_tolerance(scene, name, given, speed) for name, given in inputs.items())
 
 
-def _check_tolerance(scene: Scene, name: str, given: str | Distribution, speed: float) -> SpreadInput:
-    if not is_input(name):
-        near = difflib.get_close_matches(str(name), NAMES, n=1)
-        raise InvalidValue("inputs", name, "unknown input", f"give {near[0] if near else ', '.join(NAMES)}")
+def _check_tolerance(scene: Scene, key: object, given: str | Distribution, speed: float) -> SpreadInput:
+    name = check_name("inputs", key)
     nominal, unit = nominal_value(scene, name, speed), unit_of(name)
     if name == SPEED and not nominal and isinstance(given, str) and "%" in given:
         bound = "a percentage is of the speed, which is 0"

@@ -78,6 +78,11 @@ def resonance_speeds(
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
 
+    References
+    ----------
+    Lee and Yoo (2019), Fig. 7, the forced ones; parametric ones: Nayfeh and Mook (1979), Nonlinear
+    Oscillations, chapter 5.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

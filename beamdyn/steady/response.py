@@ -129,6 +129,7 @@ class SteadyResponse(StatesModelError):
     harmonics: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
+    vibration: np.ndarray = field(repr=False)  # largest size [m] of what is not static, (S,)
     request: ResponseRequest = field(repr=False)
 
     judged_by_solving: ClassVar[bool] = True
@@ -147,6 +148,17 @@ class SteadyResponse(StatesModelError):
     def scene(self) -> Scene:
         """Scene."""
         return self.request.scene
+
+    @property
+    def is_warned(self) -> np.ndarray:
+        """Whether a warning holds at each speed, (S,)."""
+        undecided = (np.abs(self.growth_rate) < self.growth_rate_error) & np.isin(
+            self.status, ("stable", UNSTABLE)
+        )
+        judged = self.status, self.vibration, self.error, undecided
+        each = ([values[[i]] for values in (self.speeds, *judged)] for i in range(len(self.speeds)))
+        alone = (_warnings(replace(self.request, speeds=at), *values) for at, *values in each)
+        return np.array([next(said, None) is not None for said in alone])
 
     @cached_property
     def refined(self) -> SteadyResponse | None:
@@ -267,6 +279,11 @@ def steady_response(
     ValueError
         If an argument is out of its range, or the motion's steady state is not known.
 
+    References
+    ----------
+    Harmonic balance in two phases, stability by Hill's method (standard: Nayfeh and Mook, 1979); own
+    derivation: docs/conventions.md.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -327,6 +344,7 @@ class ResponseRequest(FieldsOnly):
             harmonics=harmonic,
             warnings=tuple(_warnings(self, status, vibrated, error * share, undecided)),
             provenance=self._provenance(len(used), start),
+            vibration=vibrated,
             request=self,
         )
 

@@ -17,6 +17,7 @@ from beamdyn.scene.profile import as_profile, to_profile
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.listed_numbers import check_listed, unit_of_listed, with_damping, with_points
+from beamdyn.studies.motion_numbers import all_motion_names, check_motion, unit_of_motion_number, with_motion
 
 SPEED = "speed"
 SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
@@ -54,13 +55,26 @@ NAMES = tuple(_UNITS)
 
 def unit_of(name: str) -> str:
     """SI unit of an input."""
-    listed = unit_of_listed(name)
-    return _UNITS[name] if listed is None else listed
+    units = _UNITS.get(name), unit_of_listed(name), unit_of_motion_number(name)
+    return next(unit for unit in units if unit is not None)
 
 
 def is_input(name: str) -> bool:
     """Whether a name is that of an input, be it one in a list, such as "beam.point_mass[0].mass"."""
-    return name in _UNITS or unit_of_listed(name) is not None
+    listed, of_motion = unit_of_listed(name), unit_of_motion_number(name)
+    return name in _UNITS or listed is not None or of_motion is not None
+
+
+def check_name(argument: str, name: object) -> str:
+    """The name of an input, that of an argument of names; refused if there is no such input."""
+    if not isinstance(name, str):
+        bound = "the name of an input is a string"
+        raise InvalidValue(argument, name, bound, 'give one such as "beam.thickness"')
+    if not is_input(name):
+        known = *NAMES, *all_motion_names()
+        near = difflib.get_close_matches(name, known, n=1)
+        raise InvalidValue(argument, name, "unknown input", f"give {near[0] if near else ', '.join(known)}")
+    return name
 
 
 def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
@@ -77,10 +91,8 @@ def check_inputs(vary: Mapping[str, Any]) -> tuple[VariedInput, ...]:
     return tuple(_check_input(name, values) for name, values in vary.items())
 
 
-def _check_input(name: str, values: Any) -> VariedInput:
-    if not is_input(name):
-        near = difflib.get_close_matches(str(name), NAMES, n=1)
-        raise InvalidValue("vary", name, "unknown input", f"give {near[0] if near else ', '.join(NAMES)}")
+def _check_input(given: object, values: Any) -> VariedInput:
+    name = check_name("vary", given)
     array = real_array(name, values)
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
@@ -107,11 +119,12 @@ def scene_of(scene: Scene, design: Mapping[str, float]) -> Scene:
         material of one is given.
     """
     check_listed(scene, design)
+    check_motion(scene, design)
     with _naming_inputs(design):
         of_model = _part(design, "model.")
         mount = replace(scene.mount, **_part(design, "mount."))
         changed = replace(scene, beam=_beam_of(scene.beam, design), mount=mount, **of_model)
-        return with_damping(changed, design)
+        return with_motion(with_damping(changed, design), design)
 
 
 @contextmanager

@@ -106,7 +106,7 @@ def join_effects(each: Sequence[LeftOutEffects | None], numbers: int) -> LeftOut
 
     return LeftOutEffects(
         changes={name: np.array([of(effects, name) for effects in each]) for name in names},
-        not_known={name: why for effects in known for name, why in effects.not_known.items()},
+        not_known={name: why for effects in reversed(known) for name, why in effects.not_known.items()},
         assumed={name: why for effects in known for name, why in effects.assumed.items()},
         not_modelled=known[0].not_modelled if known else (),
         reasons={name: why for effects in known for name, why in effects.reasons.items()},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
 from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
-from beamdyn.studies.inputs import scene_of
+from beamdyn.studies.inputs import scene_of, unit_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
 from beamdyn.transient.sweep import sweep
@@ -30,12 +30,23 @@ _FAILURES = (ValueError, ArithmeticError)
 
 
 class SpeedAnswer(NamedTuple):
-    """Answer of one design at S speeds: values, errors and states (S, k), and its warnings."""
+    """Answer of one design at S speeds: values, errors and states (S, k), and its warnings.
+
+    `warned` says at which speeds these hold; at all if it is None.  `refusals` say why there is no answer.
+    """
 
     value: np.ndarray
     error: np.ndarray
     status: np.ndarray
     warnings: tuple[str, ...]
+    warned: np.ndarray | None = None
+    refusals: tuple[str, ...] = ()
+
+    @property
+    def is_warned(self) -> np.ndarray:
+        """Whether a warning holds at each speed, (S,)."""
+        everywhere = np.full(len(self.value), bool(self.warnings))
+        return everywhere if self.warned is None else self.warned
 
 
 @dataclass(frozen=True)
@@ -68,18 +79,24 @@ class SingleDesigns(FieldsOnly):
         self, designs: Sequence[Mapping[str, float]], found: Sequence[SpeedAnswer]
     ) -> list[Caution]:
         """How many answers are refused, and how many have warnings, with those of the first."""
-        made, speeds = [], self.speeds.shape[1]
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
-        warned = [
-            0 if no or not answer.warnings else speeds for answer, no in zip(found, refused, strict=True)
-        ]
-        for counts, words in ((refused, "there is no answer"), (warned, "there are warnings")):
-            if any(counts):
-                first = next(i for i, count in enumerate(counts) if count)
-                at = ", ".join(f"{name} = {value:.6g}" for name, value in designs[first].items())
-                said = "; ".join(found[first].warnings)
-                made.append(Caution(words, sum(counts), 0.0, f" {words}{at and '; at ' + at}: {said}"))
-        return made
+        warned = [int(answer.is_warned.sum()) for answer in found]
+        without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
+        limited = _caution("there are warnings", designs, warned, [answer.warnings for answer in found])
+        return [*without, *limited]
+
+
+def _caution(
+    words: str,
+    designs: Sequence[Mapping[str, float]],
+    counts: Sequence[int],
+    reasons: Sequence[tuple[str, ...]],
+) -> Iterator[Caution]:
+    """Yield of how many answers something holds, and why of the first."""
+    if any(counts):
+        first = next(i for i, count in enumerate(counts) if count)
+        at = ", ".join(f"{name} = {v:.6g} {unit_of(name)}".rstrip() for name, v in designs[first].items())
+        yield Caution(words, sum(counts), 0.0, f" {words}{at and '; at ' + at}: {'; '.join(reasons[first])}")
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
@@ -91,15 +108,20 @@ def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.nda
         if len(speeds) == 1:
             shape = 1, question.numbers
             states = np.full(shape, REFUSED)
-            return SpeedAnswer(np.full(shape, np.nan), np.full(shape, np.inf), states, (str(error),))
+            nothing = np.full(shape, np.nan), np.full(shape, np.inf), states
+            return SpeedAnswer(*nothing, warnings=(), refusals=(str(error),))
     each = [_answer(question, design, speeds[[i]]) for i in range(len(speeds))]
     return _together(each)
 
 
 def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
-    arrays = (np.concatenate([answer[i] for answer in each]) for i in range(3))
     return SpeedAnswer(
-        *arrays, warnings=tuple(dict.fromkeys(said for answer in each for said in answer.warnings))
+        value=np.concatenate([answer.value for answer in each]),
+        error=np.concatenate([answer.error for answer in each]),
+        status=np.concatenate([answer.status for answer in each]),
+        warnings=tuple(dict.fromkeys(said for answer in each for said in answer.warnings)),
+        warned=np.concatenate([answer.is_warned for answer in each]),
+        refusals=tuple(dict.fromkeys(said for answer in each for said in answer.refusals)),
     )
 
 
@@ -152,7 +174,8 @@ def _amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> Spe
         error = (found.error + found.mode_error) * found.bound / found.amplitude
     error = np.where(np.isnan(error), np.inf, error)
     columns = (values[order, None] for values in (found.amplitude, error, np.asarray(found.status)))
-    return SpeedAnswer(*columns, warnings=found.warnings)
+    warned = found.is_warned[order] if found.warnings else None
+    return SpeedAnswer(*columns, warnings=found.warnings, warned=warned)
 
 
 def _peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
@@ -165,7 +188,8 @@ def _peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAns
     failed = [status for status in found.status if status != DONE]
     status = np.where(np.isin(found.status, failed), "failed", DONE)
     columns = (values[order, None] for values in (found.peaks, error, status))
-    return SpeedAnswer(*columns, warnings=(*found.warnings, *dict.fromkeys(failed)))
+    warned = found.is_warned(tolerance)[order] if found.warnings else None
+    return SpeedAnswer(*columns, warnings=(*found.warnings, *dict.fromkeys(failed)), warned=warned)
 
 
 def _ascending(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

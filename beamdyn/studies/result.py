@@ -14,7 +14,7 @@ from beamdyn.common.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results import Provenance
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.answers import NO_ANSWERS
+from beamdyn.studies.answers import NO_ANSWERS, REFUSED
 from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.left_out_of_designs import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
@@ -158,7 +158,7 @@ class Study(StatesModelError):
 
     def model_warnings(self, tolerance: float | None = None) -> list[str]:
         """Warnings of a model error past a tolerance, or 1 %, with the design where it is largest."""
-        return [*self.left_out_effects.warnings(tolerance, self.left_out_where)]
+        return [*self.left_out_effects.warnings(tolerance, self.left_out_where, self._where_unknown)]
 
     @property
     def left_out_where(self) -> str:
@@ -166,7 +166,20 @@ class Study(StatesModelError):
         total = self.left_out_effects.total_of_known
         if not total.size:
             return ""
-        design = self.design(*self.left_out_places[int(total.max(axis=1).argmax())])
+        return self._say_place(int(total.max(axis=1).argmax()))
+
+    def _where_unknown(self, name: str) -> str:
+        """The first design of `left_out_places` of which the change by an effect is not known, in words."""
+        nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
+        refused = [(self.status[place] == REFUSED).all() for place in self.left_out_places]
+        unknown = np.flatnonzero(nothing & ~np.array(refused))
+        if not unknown.size:
+            return ""
+        more = f", and at {len(unknown) - 1} more of the {len(refused)} designs judged,"
+        return f"{self._say_place(int(unknown[0]))}{more if len(unknown) > 1 else ''}"
+
+    def _say_place(self, i: int) -> str:
+        design = self.design(*self.left_out_places[i])
         return "at " + ", ".join(_at(each, design[each.name]) for each in self.inputs)
 
     def to_dict(self) -> dict[str, Any]:

@@ -37,6 +37,7 @@ from beamdyn.studies.critical_speeds import SimilarCriticalSpeeds
 from beamdyn.studies.crossings import SimilarCrossings, list_resonances
 from beamdyn.studies.frequencies import SimilarFrequencies
 from beamdyn.studies.inputs import SPEED, check_inputs, scene_of
+from beamdyn.studies.motion_numbers import unit_of_motion_number
 from beamdyn.studies.one_by_one import SingleDesigns
 from beamdyn.studies.questions import KINDS, StudyQuestion
 from beamdyn.studies.refinement import Refinement
@@ -85,7 +86,8 @@ def study(
         The scene; its motion is used for crossings, amplitudes and peaks.
     vary : mapping of str to sequence of float
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
-        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; and
+        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; numbers of
+        the motion, of amplitudes and peaks, such as "motion.road.wavelength"; and
         "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
         Sides and material are those of a rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak"}
@@ -139,6 +141,7 @@ def study(
     modes, tolerance = count("modes", modes), _check_tolerance(tolerance)
     run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
     at = speed_of_study(scene, what, speed, SPEED in {each.name for each in designs.inputs})
+    _check_motion_matters(what, designs)
     question = StudyQuestion(scene, what, at, modes, discretization, tolerance, _check_window(window))
     request = _Request(question, designs)
     request.check()
@@ -192,8 +195,17 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
     if what == "crossings":
         positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
     if varied and not kind.has_speed:
-        raise InvalidValue("vary", SPEED, f"{what} belong to no speed", "vary other inputs")
+        bound = f"a {kind.word} is itself a speed that is sought, and belongs to no other"
+        raise InvalidValue("vary", SPEED, bound, "leave speed out and vary other inputs")
     return at
+
+
+def _check_motion_matters(what: str, designs: Designs) -> None:
+    """Refuse numbers of the motion where the answer is not that of one motion."""
+    varied = (each.name for each in designs.inputs if unit_of_motion_number(each.name) is not None)
+    if not KINDS[what].needs_motion and (name := next(varied, None)):
+        bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
+        raise InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
 
 
 def _check_window(window: tuple[float, float]) -> tuple[float, float]:

@@ -85,7 +85,7 @@ def _share(result: Campbell, crossing: LineCrossing) -> list[str]:
     if not _two_planes(result):
         return []
     scene = result.loci[result.labels.index(crossing.label)].scene
-    return [f"{crossing.plane_share[first_drawn(scene.mount)]:.3f}" if scene.physics.planes == 2 else "-"]
+    return [f"{crossing.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"]
 
 
 def _margins_table(result: Campbell) -> Group:

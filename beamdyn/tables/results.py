@@ -93,12 +93,12 @@ def _say_model_error(size: float, lacks_data: bool) -> str:
 def _share_heads(scene: Scene) -> list[str]:
     """Head of the column of the shares of a plane; none where one plane is modelled."""
     words = words_of_directions(scene)
-    return [f"share of {words[first_drawn(scene.mount)]}"] if words else []
+    return [f"share of {words[first_drawn(scene)]}"] if words else []
 
 
 def _share_cells(scene: Scene, share: np.ndarray) -> list[str]:
     """Share of a mode's energy in the direction that `_share_heads` names."""
-    return [] if scene.physics.planes == 1 else [f"{share[first_drawn(scene.mount)]:.3f}"]
+    return [] if scene.physics.planes == 1 else [f"{share[first_drawn(scene)]:.3f}"]
 
 
 def locus_table(result: Locus) -> Group:

@@ -44,9 +44,16 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
     title = f"{number} design{'s' * (number > 1)}, by {result.provenance.method}"
     made = table(title, (*heads, *own, "error"), rows, (), len(heads))
     notes = [f"{len(shown)} of {number} designs are shown; --csv has all."] if len(shown) < number else []
-    where = f"at the worst of {len(result.left_out_places)} designs"
-    left_out = as_in_files(result.left_out_effects.sentence("number" if len(own) > 1 else "", where))
-    return Group(made, *map(Text, (*notes, left_out)))
+    return Group(made, *map(Text, (*notes, _left_out(result, "number" if len(own) > 1 else ""))))
+
+
+def _left_out(result: Study, what: str) -> str:
+    """The line on the model error; `what` is as for `LeftOutEffects.sentence`."""
+    judged = len(result.left_out_places)
+    if not judged:
+        return "What the model leaves out is not computed: no design has an answer."
+    where = f"at the worst of {judged} design{'s' * (judged > 1)}"
+    return as_in_files(result.left_out_effects.sentence(what, where))
 
 
 def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterator[str]:

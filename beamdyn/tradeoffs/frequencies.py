@@ -100,8 +100,11 @@ def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedMo
 
 
 def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> EstimatedModes:
-    """Solve for modes and their errors with a number of Ritz functions on each segment."""
-    return solve_with_error(Model(scene, Ritz(max(functions, 12, modes + 3))), speeds, modes)
+    """Solve for modes and their errors with a number of Ritz functions on each segment.
+
+    They are as many that the coarser basis, which gives the errors, has all modes, too.
+    """
+    return solve_with_error(Model(scene, Ritz(max(functions, 12, 5 * modes // 4 + 3))), speeds, modes)
 
 
 def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str:

@@ -16,7 +16,6 @@ from beamdyn.common.announced import OUTSIDE, announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.one_line import counted, warned
 from beamdyn.common.results import Provenance, Result
-from beamdyn.equations.ritz import MOST_FUNCTIONS
 from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
@@ -32,7 +31,9 @@ from beamdyn.tradeoffs.transients import integrators_diagram, transient_modes_di
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+MOST_MODES = 20  # that the references resolve, also beside those of a second plane
 LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # [s]
+_REMEDY = "the times of fewer tell how those of more grow"
 _DEFAULT_PERIODS = 100  # of the first mode, after the start, in a run whose length is not given
 _LONGEST_START = 900  # periods of the first mode; a longer start is not waited for
 _LOCUS, _STEADY = 101, 50  # numbers of speeds
@@ -114,7 +115,7 @@ def tradeoff(
     speed : float, optional
         Speed of the frequencies [rad/s]; by default the final speed of the motion, or 0.
     modes : int
-        Number of modes.
+        Number of modes, from 1 to 20.
     t_end : float, optional
         End of the transients [s]; by default a hundred periods of the first mode after the motion has
         settled, or from its start if settling takes too long.
@@ -142,7 +143,7 @@ def tradeoff(
     start = perf_counter()
     check_scene(scene)
     unresolved, scene = scene, plain_physics(scene)
-    modes, budget = count("modes", modes, most=MOST_FUNCTIONS - 3), _check_budget(budget)
+    modes, budget = count("modes", modes, 1, MOST_MODES, _REMEDY), _check_budget(budget)
     if progress is not None:
         function("progress", progress, "it takes the numbers of finished diagrams and of all")
     if t_end is not None and scene.motion is None:

@@ -39,6 +39,10 @@ class GaussCollocation(OdeSolver):
     ValueError
         If the end lies before the beginning.
 
+    References
+    ----------
+    Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, sections II.1.3 and IV.2.1.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

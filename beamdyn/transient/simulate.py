@@ -81,6 +81,11 @@ def simulate(
     ArithmeticError
         If the motion grows without bound.
 
+    References
+    ----------
+    Lee and Yoo (2019), eqs. (14), corrected; integrated as Hairer, Lubich and Wanner (2006), Geometric
+    Numerical Integration, sections II.1.3 and IV.2.1.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

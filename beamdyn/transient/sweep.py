@@ -171,6 +171,17 @@ class Sweep(StatesModelError):
             run = simulate(replace(self.scene, motion=motion), self.t_end)
         return left_out_of_transient(run, self.window).at(np.newaxis)
 
+    def is_warned(self, tolerance: float) -> np.ndarray:
+        """Whether a warning holds at each speed, (S,), of a run with that tolerance."""
+        if any(warn_of_missed_modes(self.mode_error, tolerance, "")):
+            return np.ones(len(self.speeds), dtype=bool)
+        return np.array([any(_warnings(self._at(i), tolerance)) for i in range(len(self.speeds))])
+
+    def _at(self, i: int) -> Sweep:
+        """One of the cases alone."""
+        names = "speeds", "peaks", "largest", "time_error", "status"
+        return replace(self, **{name: getattr(self, name)[i : i + 1] for name in names})
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""
         from beamdyn.output.plots import plot_sweep

@@ -1,4 +1,4 @@
-"""Run all that is installed, print the tables, write docs/peers.md and docs/peers.png."""
+"""Run all that is installed, print the tables, write docs/peers.md, docs/peers.png and the README's table."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from rich.table import Table
 
 from benchmarks.peers import calculix, exudyn, ours, page, pybmodes, stock, tables
 from benchmarks.peers.measure import Point
+from benchmarks.readme import write_between
+from benchmarks.rows import markdown_table
 
 PEERS: tuple[tables.Peer, ...] = (calculix, pybmodes, exudyn, stock)
 
@@ -32,6 +34,8 @@ def main() -> None:
             table.add_row(*map(escape, row))
         console.print(table)
     page.write_measurements(tables.markdown(points, ours, PEERS))
+    targets = markdown_table(tables.TARGET_HEAD, tables.target_rows(points, PEERS))
+    write_between("peers", targets.splitlines())
     tables.picture(points, page.DOCS / "peers.png")
 
 

@@ -8,6 +8,7 @@ import platform
 from collections.abc import Iterator, Sequence
 from datetime import date
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Protocol
 
 from benchmarks.peers.measure import ALONE, CASES, DEFAULT, OURS, Point
@@ -15,9 +16,17 @@ from benchmarks.rows import markdown_table, time_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 MISSING = "not installed"
-MARKERS = {OURS: "o", "CalculiX": "s", "pyBModes": "^", "Exudyn": "D", "solve_ivp": "X"}
+MARKERS = {  # and colours, the same in all frames
+    OURS: ("o", "C0"),
+    "CalculiX": ("s", "C1"),
+    "pyBModes": ("^", "C2"),
+    "Exudyn": ("D", "C3"),
+    "solve_ivp": ("X", "C4"),
+}
+TITLE_WIDTH = 42  # characters of a line of a frame's title, which fit its frame
 INTRODUCTION = """# Beside other programs
 
 Written by `python -m benchmarks.peers` on {day} (Python {python}, {machine}), which installs nothing;
@@ -135,24 +144,32 @@ def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
 
 
 def picture(points: Sequence[Point], path: Path) -> None:
+    """Error against time, as a file."""
+    drawn(points).savefig(path, dpi=120)
+
+
+def drawn(points: Sequence[Point]) -> Figure:
     """Error against time, a frame for each case."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(13.0, 4.2), layout="constrained")
+    figure = Figure(figsize=(13.0, 4.4), layout="constrained")
     for ax, case in zip(figure.subplots(1, len(CASES)), CASES, strict=True):
         frame(ax, case, [p for p in points if p.case == case])
-    figure.savefig(path, dpi=120)
+    return figure
 
 
 def frame(ax: Axes, case: str, points: Sequence[Point]) -> None:
     """Error against time; hollow where a locus is not used."""
     for program, alone in dict.fromkeys((p.program, p.setting.startswith(ALONE)) for p in points):
         own = [p for p in points if (p.program, p.setting.startswith(ALONE)) == (program, alone)]
-        label, fill = (f"{program}, {ALONE}", "none") if alone else (program, None)
-        ax.loglog(
-            *([p.time for p in own], [p.error for p in own], MARKERS[program]), label=label, fillstyle=fill
-        )
-    ax.set(title=case, xlabel="time per speed [s]" if "frequency" in case else "time of the run [s]")
+        label, style = (f"{program}, {ALONE}", "none") if alone else (program, None)
+        marker, colour = MARKERS[program]
+        times, errors = [p.time for p in own], [p.error for p in own]
+        ax.loglog(times, errors, marker, color=colour, label=label, fillstyle=style)
+    ax.set(
+        title=fill(case, TITLE_WIDTH),
+        xlabel="time per speed [s]" if "frequency" in case else "time of the run [s]",
+    )
     ax.title.set_fontsize("medium")
     ax.set_ylabel("relative error")
     ax.grid(alpha=0.3)

@@ -83,6 +83,10 @@ class Answer(Result, ABC):
         """Why the model has no answer, such as a brake that locks: one sentence each, none if it has."""
         return ()
 
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """Why there is no answer to some of as many designs that were solved together, by their row."""
+        return {}
+
     def loadable(self) -> Result | None:
         """The result of the mechanics, if a single one is all that there is to know; else None."""
         return None
@@ -122,6 +126,10 @@ class Answer(Result, ABC):
     def curves(self, place: float) -> Figure | None:
         """What the figure shows beside its drawings, with the slider at a place."""
         return None
+
+    def branches(self) -> Mapping[str, Answer]:
+        """The same answer with each of several solutions drawn, by their names; none where there is one."""
+        return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
         """Points of the first drawing that can be moved there, with the slider at a place."""
@@ -243,12 +251,15 @@ class BrakeType(ABC, Generic[FileModel]):
     def headline(self, answer: Answer) -> Iterator[KeyResult]:
         """The results that stand first on the screen; without key results the first outputs."""
         outputs = {output.name: output for output in self.outputs(answer.design)}  # type: ignore[arg-type]
-        first = tuple((output.words, name) for name, output in [*outputs.items()][:2])
-        for words, name in self.key_results or first:
+        for words, name in self.key_results or self._first(answer, outputs):
             value = float(outputs[name].shown(answer))
             if not math.isnan(value):
                 unit = outputs[name].unit if math.isfinite(value) else ""
                 yield KeyResult(words, f"{format_number(value)} {unit}".rstrip())
+
+    def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
+        """Words and names of the results that stand first where there are no key results."""
+        return [(output.words, name) for name, output in [*outputs.items()][:2]]
 
     @abstractmethod
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
@@ -257,6 +268,10 @@ class BrakeType(ABC, Generic[FileModel]):
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
         """Tables of a design that is drawn the same and solved sooner."""
         return tables
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """Drawings that show what the symbols of its form mean, for what is chosen there."""
+        return ()
 
     @abstractmethod
     def solve(self, design: FileModel) -> Answer:
@@ -394,7 +409,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         if answer is not None:
             values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
         more = () if answer is None else answer.refusals
-        made = swept(designs, outputs, [*values], more, refused)
+        made = _with_reasons(swept(designs, outputs, [*values], more, refused), answer, rows)
         return made, (*(() if answer is None else answer.warnings), *made.warnings)
 
     def _solve_accepted(
@@ -413,6 +428,17 @@ class ArrayBrakeType(BrakeType[FileModel]):
                 refused.update((int(rows[i]), str(each)) for i, each in bad.items())
                 rows = rows[~error.cases.bad]
         return None, rows, refused
+
+
+def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> InputSweep:
+    """The sweep with the reasons why the model has no answer to designs of some rows, such as that they lock.
+
+    A design of which all results that are wanted are there has none to give.
+    """
+    lacking = np.any([np.isnan(values).ravel() for values in made.found[:-1]], axis=0)
+    why = {} if answer is None else answer.refusals_of_cases(len(rows))
+    unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
+    return replace(made, unanswered=tuple(sorted(unanswered.items())))
 
 
 class TableBrakeType(BrakeType[FileModel]):

@@ -22,14 +22,16 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range
-from brakes.answers.base import TableBrakeType
+from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import PlanarAnswer
+from brakes.answers.planar_friction import unknown_loads
 from brakes.answers.planar_tables import (
     describe_statics,
     format_size,
     joint_outputs,
     largest_error,
+    name_output,
     reactions_table,
     select_rows,
 )
@@ -38,6 +40,7 @@ from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
 from brakes.drawings.caliper import caliper_drawing, caliper_figure, curves_figure, title_of
+from brakes.drawings.caliper_sketches import caliper_sketch, mechanism_sketch
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.diagnosis import join_names
 
@@ -321,6 +324,20 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         with in_range():
             return _answer_to(design)
 
+    def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
+        """The loads that equilibrium gives, then the others."""
+        if not isinstance(answer, MechanismAnswer):
+            return super()._first(answer, outputs)
+        mechanism = answer.equilibrium.position.mechanism
+        given = {load.name for load in mechanism.loads} - {load.name for load in unknown_loads(mechanism)}
+        loads = sorted(mechanism.loads, key=lambda load: load.name in given)
+        when = "at the end of the stroke" if answer.motion else "as drawn"
+        return [(f"{load.name} {when}", name_output(load.name)) for load in loads][:3]
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """The signs of joints; of a caliper with a vehicle that too."""
+        return mechanism_sketch(any(text for path, text in entries.items() if path.startswith("stop.")))
+
     def outputs(self, design: CaliperInput | MechanismInput) -> Sequence[Output]:
         """Numbers at the end of the stroke, and the largest force of each joint."""
         core = design.core
@@ -364,6 +381,10 @@ class CaliperType(MechanismType):
         run = {key: value for key, value in dict(tables.get("run", {})).items() if key != "wear"}
         friction = {"friction": 0.0} if "friction" in run else {}
         return {**tables, "run": {**run, "points": 2, **friction}}
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """The caliper that is chosen, with the names of its dimensions."""
+        return caliper_sketch(entries.get("caliper", "").strip())
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
         """Caliper that tables describe; without a name the message says which names there are."""

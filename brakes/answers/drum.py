@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, curves_figure, free_body
+from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult
 
 _MM, _MPA = 1e-3, 1e6
@@ -80,6 +81,10 @@ class DrumAnswer(Answer):
     def refusals(self) -> Sequence[str]:
         """That the brake locks."""
         return (self.result.message,) if np.any(self.result.locked) else ()
+
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """That the brake locks, of the designs of which it does."""
+        return self.result.messages_of_locked(count)
 
     def tables(self) -> list[RenderableType]:
         """The brake as a whole, and shoe by shoe."""
@@ -167,6 +172,10 @@ class DrumType(ArrayBrakeType[DrumInput]):
     def solve(self, design: DrumInput) -> DrumAnswer:
         """Forces in the brake."""
         return DrumAnswer(design, design.solve())
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """What the symbols of the form mean."""
+        return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
         """Numbers of the brake and of its shoes."""

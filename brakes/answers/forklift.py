@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -27,6 +27,7 @@ from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resu
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings
+from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
 _MM, _KN, _DEG = 1e-3, 1e3, pi / 180
@@ -148,6 +149,11 @@ class ForkliftAnswer(Answer):
         stop = [] if self.stop is None or np.all(self.stop.stops) else [self.stop.message]
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
         return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
+
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """The same of each of as many designs, by its row."""
+        stop = {} if self.stop is None else self.stop.messages_of_cases(count)
+        return stop | ({} if self.forces is None else self.forces.messages_of_cases(count))
 
     @property
     def error(self) -> Any:
@@ -358,6 +364,10 @@ class VehicleType(ForkliftType):
     )
     stages = ("vehicle",)
 
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """What the symbols of the form mean."""
+        return truck_sketch()
+
 
 class KinematicsType(ForkliftType):
     """The motion of the shoes of one brake."""
@@ -377,6 +387,10 @@ class KinematicsType(ForkliftType):
     slider = Slider("stage", ("at rest", "linings on the drum", "piston at its bottom"))
     stages = ("kinematics",)
 
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """What the symbols of the form mean."""
+        return duo_servo_sketch()
+
 
 class ForcesType(ForkliftType):
     """The forces in one brake."""
@@ -395,6 +409,10 @@ class ForcesType(ForkliftType):
         ("margin to self-locking", "margin"),
     )
     stages = ("forces",)
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """What the symbols of the form mean."""
+        return levers_sketch()
 
 
 FORKLIFT = ForkliftType()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
@@ -18,7 +18,7 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results import plain
 from brakes.answers.planar import PlanarAnswer
-from brakes.answers.planar_friction import MechanismFriction, unknown_loads
+from brakes.answers.planar_friction import BRANCHES, WITHOUT, MechanismFriction, unknown_loads
 from brakes.answers.planar_tables import (
     describe_statics,
     format_force,
@@ -31,7 +31,7 @@ from brakes.answers.planar_tables import (
 )
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
-from brakes.drawings.mechanism import open_and_closed, with_points
+from brakes.drawings.mechanism import open_and_closed, with_lock, with_points
 from brakes.drawings.mechanism_stroke import StrokeChart, chart_figure, mechanism_figure
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
 from brakes.planar.diagnosis import join_names
@@ -98,10 +98,17 @@ class MechanismAnswer(PlanarAnswer):
         Equilibrium at each position of the stroke.
     friction : MechanismFriction, optional
         With friction, if any joint rubs and statics determines the forces of a single motion.
+    branch : {"without friction", "squeezing", "releasing"}
+        Whose forces are drawn.
     """
 
     over: Equilibrium | None
     friction: MechanismFriction | None
+    branch: str = WITHOUT
+
+    def branches(self) -> Mapping[str, MechanismAnswer]:
+        """The same with the forces of each branch drawn: without friction, squeezing, releasing."""
+        return {name: replace(self, branch=name) for name in BRANCHES} if self.friction else {}
 
     @classmethod
     def of(cls, mechanism: Mechanism, design: CaliperInput | MechanismInput) -> MechanismAnswer:
@@ -245,18 +252,22 @@ class MechanismAnswer(PlanarAnswer):
     def _drawing(self, index: int) -> Drawing:
         caption = self.friction.caption(index) if self.friction else ""
         title = "\n".join(filter(None, (self._heading(index), *caption.split("; "))))
-        drawn = open_and_closed(self.equilibrium.position, self._equilibrium_at(index), title)
+        now = self._equilibrium_at(index)
+        drawn = open_and_closed(self.equilibrium.position, now, title)
+        if now.status == "self-locking":
+            drawn = with_lock(drawn, now, unknown_loads(self._mechanism)[-1].name)
         points = getattr(self.design, "points", {})  # of a file; a named caliper has dimensions
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _heading(self, index: int) -> str:
-        """Title and position."""
+        """Title, position and branch."""
+        way = f", {self.branch}" if self.friction else ""
         if self.motion is None:
-            return self.design.title
+            return f"{self.design.title}{way}"
         driver = self.motion.driver
         factor, unit, _ = units_of(self._mechanism.load(driver))
-        moved = f"{factor * self.motion.values[index]:.3g} {unit} of {driver}; grey: as drawn"
-        return f"{self.design.title}: {moved if index else 'as drawn'}"
+        moved = f"{factor * self.motion.values[index]:.3g} {unit} of {driver}{way}; grey: as drawn"
+        return f"{self.design.title}: {moved if index else f'as drawn{way}'}"
 
     def _chart(self, index: int) -> StrokeChart | None:
         """Forces and moments over the stroke, if there is one."""
@@ -274,13 +285,15 @@ class MechanismAnswer(PlanarAnswer):
         }
         travel = factor * self.motion.values
         label = f"travel of {self.motion.driver} [{unit}]"
-        return StrokeChart(travel, label, sizes[False], sizes[True], float(travel[index]))
+        locked = self.friction.locked() if self.friction else {}
+        return StrokeChart(travel, label, sizes[False], sizes[True], float(travel[index]), locked)
 
     def _equilibrium_at(self, index: int) -> Equilibrium:
-        if self.motion is None:
-            return self.equilibrium
-        position = self.motion.position[index]
-        return solve(position.mechanism, position)
+        """Forces of the branch that is drawn."""
+        position = self.equilibrium.position if self.motion is None else self.motion.position[index]
+        if self.friction is not None and self.branch != WITHOUT:
+            return self.friction.at(position, self.branch)
+        return self.equilibrium if self.motion is None else solve(position.mechanism, position)
 
 
 def _driver(design: CaliperInput | MechanismInput, mechanism: Mechanism) -> str:

@@ -13,9 +13,19 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.one_line import error_at_most
 from beamdyn.common.results import Result, plain
 from brakes.answers.planar_tables import format_force, format_size, largest_error
-from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Stroke, solve_with_friction
+from brakes.planar import (
+    Equilibrium,
+    FrictionalEquilibrium,
+    Load,
+    Mechanism,
+    Position,
+    Stroke,
+    solve_with_friction,
+)
 from brakes.planar.rows import Row
 
+WITHOUT = "without friction"
+BRANCHES = (WITHOUT, "squeezing", "releasing")
 _ROUNDING = (
     1e-9  # a load of this part of the largest is shown as 0, such as a brake's torque without friction
 )
@@ -122,6 +132,25 @@ class MechanismFriction(Result):
                 f"{load.name}: {without} without friction, {squeezing} squeezing, {releasing} releasing"
             )
         return "; ".join(sentences)
+
+    def at(self, position: Position, branch: str) -> Equilibrium:
+        """Equilibrium of a branch at one position."""
+        found = solve_with_friction(position.mechanism, self.driver, position)
+        return _ways(found)[BRANCHES.index(branch)]
+
+    def locked(self) -> dict[str, np.ndarray]:
+        """Where the mechanism locks over the stroke, by the name of each curve on which it does anywhere.
+
+        It jams, so that there is no force, or the unknown load has to act the other way.
+        """
+        over = self.last
+        found = {}
+        for load, name, size in self._curves():
+            without = over.without.amplitudes[load.name]
+            least = _ROUNDING * np.nanmax(np.abs([*over.without.amplitudes.values()]), initial=0.0)
+            turned = (np.abs(without) > least) & (size * np.sign(without) < -least)
+            found[name] = np.isnan(size) | turned
+        return {name: where for name, where in found.items() if where.any()}
 
     def to_dict(self) -> dict[str, Any]:
         """As drawn, by the way of motion."""

@@ -218,7 +218,8 @@ def _with_point(tables: dict[str, Any], item: Item, key: str, text: str) -> dict
         if not text or "." in text or text in points:
             return tables
         return _renamed(tables, _POINTS, item.name, text)
-    at = {cell.key: cell.text for cell in item.cells} | {key: _with_unit(text, "mm")}
+    now = {cell.key: cell.text for cell in _point(item.name, points.get(item.name, ["", ""])).cells}
+    at = now | {key: _with_unit(text, "mm")}
     return {**tables, "points": {**points, item.name: [at["x"], at["y"]]}}
 
 
@@ -273,12 +274,14 @@ def _fresh(word: str, taken: Sequence[str]) -> str:
 
 
 def _new_point(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """A point beside the last one, named by the next letter."""
+    """A point beside the last one where there is none, named by the next letter."""
     points = _points(tables)
     letters = [chr(code) for code in range(ord("A"), ord("Z") + 1)]
     name = next((letter for letter in letters if letter not in points), _fresh("P", list(points)))
+    taken = {tuple(at) for at in points.values() if isinstance(at, list)}
     column, row = len(points) % 4, len(points) // 4
-    return {name: [f"{_APART * column:g} mm", f"{_APART * row:g} mm"]}
+    places = ((f"{_APART * column:g} mm", f"{_APART * (row + i):g} mm") for i in range(len(points) + 1))
+    return {name: [*next(place for place in places if place not in taken)]}
 
 
 def _first(entry: Input, kind: str, tables: Mapping[str, Any]) -> Any:

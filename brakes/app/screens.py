@@ -85,6 +85,8 @@ def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]
         curves=lambda answer, place: answer.curves(place),
         coarser=brake.coarser,
         headline=lambda answer: [*brake.headline(answer)],
+        sketch=brake.sketch,
+        branches=lambda answer: answer.branches(),
         effort="It takes longer with more positions of the stroke, and with friction in more joints.",
     )
 

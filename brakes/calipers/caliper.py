@@ -81,6 +81,10 @@ class Caliper:
     name : str
         For titles.
 
+    References
+    ----------
+    As `planar.solve`; advantage is force over force, and by virtual work travel over travel (standard).
+
     Examples
     --------
     >>> caliper = calipers.VBrake().build()

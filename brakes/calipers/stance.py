@@ -48,6 +48,10 @@ class Stance:
     ValueError
         If a value is out of its bounds, or one is given without those it needs.
 
+    References
+    ----------
+    Standard: moments about the front wheel's contact.
+
     Examples
     --------
     >>> stance = calipers.Stance(cg_height=1.1, cg_behind_front=0.6)

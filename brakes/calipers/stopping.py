@@ -110,6 +110,11 @@ def stop(
     ValueError
         If a value is out of its bounds, or the tyre's radius is missing.
 
+    References
+    ----------
+    Energy (standard): M v^2 = 4 mu F L at a constant force F of each pad; limits of grip and pitching as in
+    `Stance`.
+
     Examples
     --------
     >>> found = calipers.stop(mass=80.0, speed=30 / 3.6, pad_force=224.0, friction=0.4)

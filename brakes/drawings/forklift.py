@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 
 from beamdyn.common.array_checks import Numbers
 from beamdyn.common.curves import curves
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.duo_servo import free_bodies, positions
-from brakes.forklift import InternalForces, Kinematics, Stop
+from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
@@ -63,7 +63,10 @@ def truck(stop: Stop) -> Drawing:
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.conditions.friction) * float(stop.front_load)
     arrows = ForceArrows(1.1 * L / weight)
-    _draw_chassis(arrows, stop, turn)
+    draw_chassis(arrows.shapes, t, turn)
+    if has_load(t):
+        at = np.array([float(t.load_cg[0]), float(t.load_cg[1]) + r1]) @ turn
+        arrows.labels.append(Label(f"load\n{float(t.load_mass):.5g} kg", at, "neutral", (0.0, 1.0)))
     cg = np.array([float(t.cg[0]), float(t.cg[1]) + r1])
     places = {
         "N_A": (np.zeros(2), np.array([0.0, float(stop.front_load)]), "normal"),
@@ -95,13 +98,12 @@ def _title(stop: Stop) -> str:
     return f"{where}: {how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
 
 
-def _draw_chassis(arrows: ForceArrows, stop: Stop, turn: np.ndarray) -> None:
+def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
     """Add ground, wheels, body, mast and load; x down the slope, y up from the ground."""
-    t = stop.truck
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     r2 = 0.75 * r1
     ground = np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn
-    arrows.shapes.append(Outline(ground, "ground", 2.0))
+    shapes.append(Outline(ground, "ground", 2.0))
     body = [
         (0.1 * L, r1),
         (0.1 * L, 2.6 * r1),
@@ -113,17 +115,21 @@ def _draw_chassis(arrows: ForceArrows, stop: Stop, turn: np.ndarray) -> None:
     cab = [(0.25 * L, 2.6 * r1), (0.3 * L, 4.9 * r1), (0.85 * L, 4.9 * r1), (0.95 * L, 2.5 * r1)]
     mast = [(-0.2 * L, 0.3 * r1), (-0.2 * L, 5.6 * r1), (-0.12 * L, 5.6 * r1), (-0.12 * L, 0.3 * r1)]
     for shape, role in ((cab, "second"), (body, "body"), (mast, "body")):
-        arrows.shapes.append(Outline(np.array(shape) @ turn, role, 1.0, closed=True, filled=True))
-    _draw_load(arrows, stop, turn)
+        shapes.append(Outline(np.array(shape) @ turn, role, 1.0, closed=True, filled=True))
+    if has_load(t):
+        shapes += _load(t, turn)
     for x, r in ((0.0, r1), (L, r2)):
         hub = np.array([x, r]) @ turn
-        arrows.shapes += [Disc(hub, r, "wheel", 1.2, filled=True), Symbol("cross", hub, "axis", 6.0)]
+        shapes += [Disc(hub, r, "wheel", 1.2, filled=True), Symbol("cross", hub, "axis", 6.0)]
 
 
-def _draw_load(arrows: ForceArrows, stop: Stop, turn: np.ndarray) -> None:
-    t = stop.truck
-    if not float(t.load_mass) or float(t.load_cg[0]) >= 0:
-        return
+def has_load(t: Truck) -> bool:
+    """Whether there is a load on the fork."""
+    return bool(float(t.load_mass)) and float(t.load_cg[0]) < 0
+
+
+def _load(t: Truck, turn: np.ndarray) -> list[DrawnShape]:
+    """The load and its fork."""
     x, y, r1 = (
         float(t.load_cg[0]),
         float(t.load_cg[1]) + float(t.front_wheel_radius),
@@ -133,12 +139,11 @@ def _draw_load(arrows: ForceArrows, stop: Stop, turn: np.ndarray) -> None:
     box = np.array([(-half, -half), (half, -half), (half, half), (-half, half)]) + np.array([x, y])
     fork = np.array([(-0.16 * float(t.wheelbase), y - half), (x - half, y - half)])
     at = np.array([x, y]) @ turn
-    arrows.shapes += [
+    return [
         Outline(box @ turn, "second", 1.0, closed=True, filled=True),
         Outline(fork @ turn, "neutral", 3.0),
         Symbol("dot", at, "neutral", 3.0),
     ]
-    arrows.labels.append(Label(f"load\n{float(t.load_mass):.5g} kg", at, "neutral", (0.0, 1.0)))
 
 
 def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) -> Axes:

@@ -184,6 +184,30 @@ def with_points(drawing: Drawing, points: Mapping[str, tuple[float, float]]) -> 
     )
 
 
+def with_lock(drawing: Drawing, locked: Equilibrium, load: str) -> Drawing:
+    """A drawing of a mechanism that locks itself, with a mark at the point of the load that should move it.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        The drawing.
+    locked : Equilibrium
+        One that locks, at one position.
+    load : str
+        The load that should move it.
+    """
+    acting = locked.position.mechanism.load(load)
+    ends = [locked.position.point(*end) for shape in acting.shapes() for end in shape.ends]
+    at = _MM * np.mean(ends[:1] or parts.outline(locked.position, acting.acts_on[0]), axis=0)
+    jams = not np.isfinite(locked.amplitudes[load]).all()
+    words = f"locks: no {load} moves it" if jams else f"locks: {load} has to act the other way"
+    return replace(
+        drawing,
+        shapes=(*drawing.shapes, Symbol("cross", at, "inside", 16.0)),
+        labels=(*drawing.labels, Label(words, at, "inside", (0.0, 1.0), priority=4)),
+    )
+
+
 def _add_rim(sketch: _Sketch, pads: np.ndarray) -> None:
     """Add the rim between the faces of two pads."""
     low, high = np.sort(pads[:, 0]) * _MM

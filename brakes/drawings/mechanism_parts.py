@@ -9,6 +9,8 @@ import numpy as np
 
 from brakes.planar import GROUND, Equilibrium, Mechanism, Position, Shape, free_body
 
+_FLAT = 1e-12  # area over the square of the size below which three points lie on a line
+
 
 class Member(NamedTuple):
     """A bar or cable: its name, points (k, 2) [m], and force [N], tension positive, nan if not known."""
@@ -42,13 +44,31 @@ def outline(position: Position, body: str) -> np.ndarray:
 
 
 def _hull(points: np.ndarray) -> np.ndarray:
-    """The convex hull, or the points themselves where they lie on a line."""
-    from scipy.spatial import ConvexHull, QhullError
+    """The convex hull, or the points themselves where they lie on a line.
 
-    try:
-        return points[ConvexHull(points).vertices]
-    except QhullError:
-        return points[np.lexsort(points.T)]
+    By the monotone chain of Andrew (Inf. Process. Lett. 9, 1979): of few points, so that a drawing does not
+    wait for a library of geometry to be loaded.
+    """
+    ordered = points[np.lexsort(points.T)]
+    flat = _FLAT * float(np.ptp(points, axis=0).max()) ** 2
+    corners = [*_chain(ordered, flat), *_chain(ordered[::-1], flat)]
+    return np.array(corners) if len(corners) > 2 else ordered
+
+
+def _chain(points: np.ndarray, flat: float) -> list[np.ndarray]:
+    """Corners on the side of sorted points where one turns left all along, without the last."""
+    kept: list[np.ndarray] = []
+    for point in points:
+        while len(kept) > 1 and _turn(kept[-2], kept[-1], point) <= flat:
+            kept.pop()
+        kept.append(point)
+    return kept[:-1]
+
+
+def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+    """Twice the area of the triangle from three points, positive anticlockwise."""
+    (x, y), (u, v) = b - a, c - a
+    return float(x * v - y * u)
 
 
 def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
@@ -102,10 +122,11 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
 
 
 def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
-    """Forces on the mechanism from outside: loads, and reactions of the ground."""
+    """Forces on the mechanism from outside: loads, and reactions and friction of the ground."""
     mechanism = equilibrium.position.mechanism
     loads = {load.name for load in mechanism.loads}
     outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}
+    outer |= {f"friction of {name}" for name in outer & {*mechanism.friction}}
     return [
         OuterForce(action.name, action.at, action.force, action.name not in loads)
         for body in mechanism.bodies

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ class StrokeChart(NamedTuple):
     label : of its axis.
     forces, moments : (S,) by name [N], [N m].
     place : the travel to mark.
+    locked : (S,) by name, where the mechanism locks.
     """
 
     travel: np.ndarray
@@ -31,6 +33,7 @@ class StrokeChart(NamedTuple):
     forces: Mapping[str, np.ndarray]
     moments: Mapping[str, np.ndarray]
     place: float
+    locked: Mapping[str, np.ndarray] = MappingProxyType({})
 
 
 def mechanism_figure(drawing: Drawing, chart: StrokeChart | None) -> Figure:
@@ -73,7 +76,19 @@ def plot_chart(figure: Figure, chart: StrokeChart, left: float) -> None:
         xlabel = chart.label if last else ""
         axes = plot_curves(chart.travel, curves, figure.add_subplot(cells[row, 0]), xlabel, label)
         axes.axvline(chart.place, color="0.4", linewidth=1, linestyle=":")
+        _mark_locked(axes, chart, curves)
         axes.tick_params(labelbottom=last)
+
+
+def _mark_locked(axes: Axes, chart: StrokeChart, curves: Mapping[str, np.ndarray]) -> None:
+    """Mark on the axis of zero force where the mechanism locks."""
+    for k, name in enumerate(curves):
+        if name in chart.locked:
+            x = chart.travel[chart.locked[name]]
+            label = f"{name}: locks"
+            axes.plot(x, np.zeros_like(x), "x", color=COLOURS[k % len(COLOURS)], markersize=5, label=label)
+    if chart.locked:
+        axes.legend(fontsize="small")
 
 
 def _panels(chart: StrokeChart) -> list[tuple[Mapping[str, np.ndarray], str]]:

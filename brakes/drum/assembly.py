@@ -167,6 +167,10 @@ def brake_torque(
     ValueError
         As for `shoe_torque`.
 
+    References
+    ----------
+    As `shoe_torque`, for each shoe.
+
     Examples
     --------
     >>> lining = np.radians((30, 110))
@@ -232,6 +236,10 @@ def _largest(values: list[Numbers]) -> Numbers:
 def wheel_cylinder_force(bore: Numbers, line_pressure: Numbers) -> Numbers:
     """Compute the force [N] of a wheel cylinder's piston from its bore [m] and the line pressure [Pa].
 
+    References
+    ----------
+    Standard: pressure times area.
+
     Examples
     --------
     >>> round(float(drum.wheel_cylinder_force(bore=0.02, line_pressure=5e6)), 1)  # N: p pi d^2 / 4
@@ -277,6 +285,10 @@ def stop_energy(
     ValueError
         If a value is out of bounds, the final speed is not below the first, or the radius is missing.
 
+    References
+    ----------
+    Standard: kinetic and potential energy.
+
     Examples
     --------
     >>> drum.stop_energy(mass=1000.0, speed=20.0)  # J: m v^2 / 2
@@ -321,6 +333,10 @@ def temperature_rise(
     ------
     ValueError
         If a value is out of bounds.
+
+    References
+    ----------
+    Standard: all energy stays in the drum, of one temperature.
 
     Examples
     --------

@@ -59,6 +59,11 @@ class Shoe:
         If a length is not positive, the pin not below the centre or far from the drum, the force not
         above the pin, or the arc empty, over the pin, or past the pressure's second zero.
 
+    References
+    ----------
+    Budynas and Nisbett, Shigley's Mechanical Engineering Design, section 16-2; Vardanyan et al. (2019), eq.
+    (2).
+
     Examples
     --------
     >>> lining = np.radians((30, 110))
@@ -192,12 +197,26 @@ class SlidesOrLocks(Result):
         if not locked.any():
             return "slides: the friction is below self-locking"
         where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
-        both = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
-        mu, least = (float(values.flat[0]) for values in both)
-        return (
-            f"locked{where}: friction {mu:.4g} is at or past self-locking, {least:.4g}; the shoe grips by "
-            "itself, and no torque follows from the force"
-        )
+        mu, least = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
+        return _say_locked(mu, least, where)
+
+    def messages_of_locked(self, count: int) -> dict[int, str]:
+        """The message of each case that locks, of as many cases, by its row."""
+        given = self.friction, self.locking_friction, self.locked
+        mu, least, locked = (np.broadcast_to(x, (count,)) for x in given)
+        return {i: _say_locked(mu[i], least[i]) for i in np.flatnonzero(locked).tolist()}
+
+
+def _say_locked(friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:
+    return (
+        f"locked{where}: friction {_say_range(friction)} is at or past self-locking, {_say_range(locking)}; "
+        "the shoe grips by itself, and no torque follows from the force"
+    )
+
+
+def _say_range(values: np.ndarray) -> str:
+    ends = f"{float(np.min(values)):.4g}", f"{float(np.max(values)):.4g}"
+    return " to ".join(dict.fromkeys(ends))
 
 
 @dataclass(frozen=True)
@@ -308,6 +327,11 @@ def shoe_torque(
     With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
     sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
     d = r K - b S - c C; torque = mu A p0 r K.
+
+    References
+    ----------
+    Budynas and Nisbett, Shigley's Mechanical Engineering Design, section 16-2: pressure as the sine of the
+    angle from the pin. Vardanyan et al. (2019) count it from another line: `Shoe.pressure_zero`.
 
     Examples
     --------

@@ -49,6 +49,10 @@ class DuoServo:
     ValueError
         If a length is not positive, or a pin is not inside the drum on its side.
 
+    References
+    ----------
+    Yoo et al. (1997), section 3.
+
     Examples
     --------
     >>> forklift.BENDIX_12_5.drum_radius  # m

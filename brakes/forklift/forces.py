@@ -126,6 +126,11 @@ class InternalForces(Result):
             return ", ".join(f"{name}: {count} cases" for name, count in zip(names, counts, strict=True))
         return _SENTENCES[str(self.status)]
 
+    def messages_of_cases(self, count: int) -> dict[int, str]:
+        """The message of each case that is not in equilibrium, of as many cases, by its row."""
+        each = np.broadcast_to(self.status, (count,)).tolist()
+        return {i: _SENTENCES[status] for i, status in enumerate(each) if status != "equilibrium"}
+
 
 _SENTENCES = {
     "equilibrium": "the shoes are in equilibrium, all forces positive",
@@ -170,6 +175,10 @@ def internal_forces(
     ValueError
         If neither torque nor friction is given, a value is out of bounds, or a torque is demanded of
         a lining whose friction is at or past self-locking.
+
+    References
+    ----------
+    Yoo et al. (1997), section 4, eqs. (27) to (36), corrected.
 
     Examples
     --------
@@ -333,6 +342,10 @@ def equilibrium_equations(
     ndarray, shape (10, ...)
         In the paper's order: forces and moment of the leading, then of the trailing shoe; A normal to B,
         C to D; equal friction A D = B C; torque of the drum. Zero at a solution.
+
+    References
+    ----------
+    Yoo et al. (1997), eqs. (27) to (36), corrected.
 
     Examples
     --------

@@ -173,6 +173,10 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     ValueError
         If the clearance is not positive, or larger than the drum allows.
 
+    References
+    ----------
+    Yoo et al. (1997), section 3, in closed form (own).
+
     Examples
     --------
     >>> followed = forklift.follow_shoes(forklift.BENDIX_12_5, clearance=0.0106, positions=5)
@@ -193,6 +197,10 @@ def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "r
 
     Its loads have no size: they measure the piston's travel and drive the clearance to zero.
 
+    References
+    ----------
+    Yoo et al. (1997), section 3, stage 1.
+
     Examples
     --------
     >>> len(forklift.build_seating_mechanism(forklift.BENDIX_12_5, 0.0106).joints) > 0
@@ -210,6 +218,10 @@ def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "r
 
 def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
     """Build the mechanism of stage 2, described with the linings seated and the tips at these points [m].
+
+    References
+    ----------
+    Yoo et al. (1997), section 3, stage 2.
 
     Examples
     --------
@@ -295,6 +307,10 @@ def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
         Number of independent rows.
     least : ndarray, shape (S,)
         Smallest singular value over the largest.
+
+    References
+    ----------
+    Standard: the rank of the constraints' Jacobian; Yoo et al. (1997), section 3.
 
     Examples
     --------

@@ -38,6 +38,10 @@ class Levers:
     ValueError
         If a length is not positive, or P_L and Q, or P_T and Q, more than 90 degrees apart.
 
+    References
+    ----------
+    Yoo et al. (1997), section 4.
+
     Examples
     --------
     >>> levers = forklift.BENDIX_12_5.move_shoes(0.0106).levers

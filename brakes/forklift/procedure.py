@@ -92,6 +92,10 @@ def brake_procedure(
     ValueError
         As for `stop` and `internal_forces`.
 
+    References
+    ----------
+    Yoo et al. (1997), section 5, with the mechanics corrected.
+
     Examples
     --------
     >>> truck = forklift.Truck(

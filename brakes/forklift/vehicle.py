@@ -59,6 +59,10 @@ class Truck:
         If a mass or length is not positive, or the centre of gravity, of the truck alone or with its
         load, is not between the axles and above the ground.
 
+    References
+    ----------
+    Yoo et al. (1997), section 2.
+
     Examples
     --------
     >>> truck = forklift.Truck(
@@ -264,6 +268,11 @@ class Stop(Result):
             return f"{short} of {np.size(self.stops)} cases do not stop" if short else "every case stops"
         return _SENTENCES[str(self.status)]
 
+    def messages_of_cases(self, count: int) -> dict[int, str]:
+        """The message of each case that does not stop, of as many cases, by its row."""
+        each = np.broadcast_to(self.status, (count,)).tolist()
+        return {i: _SENTENCES[status] for i, status in enumerate(each) if status == "never stops"}
+
 
 _SENTENCES = {
     "stops": "the truck stops",
@@ -293,6 +302,10 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     ------
     ValueError
         If the truck would overturn at rest on the slope, or the shapes do not broadcast.
+
+    References
+    ----------
+    Yoo et al. (1997), section 2, corrected as the validation manual lists.
 
     Examples
     --------

@@ -57,6 +57,10 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     tuple of Action
         Joints, then loads, then friction; forces and moments of all add up to zero.
 
+    References
+    ----------
+    Standard: Newton's third law at each joint.
+
     Examples
     --------
     >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))

@@ -81,6 +81,10 @@ def solve_with_friction(
     ValueError
         If the mobility is not 1, or equilibrium without friction is not determined.
 
+    References
+    ----------
+    Coulomb's law; pins by their friction circle (standard).
+
     Examples
     --------
     >>> axle = planar.Pin("axle", "drum", "ground", at=(0.0, 0.0), radius=0.01, friction=0.1)

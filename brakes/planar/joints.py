@@ -34,6 +34,10 @@ class Pin(Joint):
     radius, friction : float
         Radius of the pivot [m] and coefficient of friction.
 
+    References
+    ----------
+    Standard: two equal points; friction circle.
+
     Examples
     --------
     >>> pin = planar.Pin("axle", "drum", "ground", at=(0.25, -0.2), radius=0.015, friction=0.1)
@@ -143,6 +147,10 @@ class Slot(Joint):
     friction : float
         Coefficient of friction.
 
+    References
+    ----------
+    Standard: a point on a line; Coulomb's law of friction.
+
     Examples
     --------
     >>> guide = planar.Slot("guide", "slider", "ground", at=(0.1, 0.0), along=(1, 0))
@@ -189,6 +197,10 @@ class Contact(Joint):
         A point of the face [m], if it does not pass through `at` in the drawing.
     friction : float
         Coefficient of friction.
+
+    References
+    ----------
+    Standard: contact without penetration; Coulomb's law of friction.
 
     Examples
     --------

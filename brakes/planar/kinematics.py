@@ -123,6 +123,11 @@ def assemble(mechanism: Mechanism) -> Position:
     AssemblyError
         If they cannot be: by how much, and which joint is furthest apart.
 
+    References
+    ----------
+    Constraint equations by Newton's method (standard): Nikravesh (1988), Computer-Aided Analysis of
+    Mechanical Systems.
+
     Examples
     --------
     >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
@@ -182,6 +187,10 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     ValueError
         If the mobility is not 1, or the driver does not move.
 
+    References
+    ----------
+    As `assemble`, from one position to the next.
+
     Examples
     --------
     >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))
@@ -230,6 +239,10 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     Returns
     -------
     Stroke
+
+    References
+    ----------
+    As `assemble`, along the arc of the motion (standard continuation).
 
     Examples
     --------

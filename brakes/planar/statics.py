@@ -146,6 +146,11 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     AssemblyError
         If no position is given and the joints cannot be brought together.
 
+    References
+    ----------
+    Virtual work (standard): the transposed Jacobian of the constraints balances the loads; own: what its null
+    spaces name.
+
     Examples
     --------
     >>> hinge = planar.Pin("hinge", "lever", "ground", at=(0.0, 0.0))

@@ -10,7 +10,7 @@ FOLDER = Path(__file__).parents[1] / "validation" / "generated"
 
 def write(app) -> None:
     if not (FOLDER / "overview.md").exists():
-        from beamdyn.common.announced import OutsideLinearTheory
+        from beamdyn import OutsideLinearTheory
         from benchmarks.validation_manual import write_pages
 
         with warnings.catch_warnings():  # where the papers leave linear theory, so does this

@@ -85,9 +85,23 @@ def test_clients_do_not_see_each_others_values(simulate, fields, number):
     simulate(BRAKES, body)
 
 
+def test_form_is_made_when_its_screen_comes_to_the_front(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        assert {"stop.speed"} <= paths(page) and "dimensions.side_pivot" not in paths(page)
+        page.go("Caliper")
+        assert "dimensions.side_pivot" in paths(page)
+
+    def paths(page):
+        return {e.props.get("data-path") for e in page.user.client.elements.values()}
+
+    simulate(BRAKES, body)
+
+
 def test_another_caliper_changes_the_form(simulate, fields):
     async def body(client):
         page = fields(await client())
+        page.go("Caliper")
         assert page.field("dimensions.side_pivot")
         page.enter("caliper", "v-brake")
         assert page.field("dimensions.pivot")
@@ -103,6 +117,8 @@ def test_another_caliper_changes_the_form(simulate, fields):
 def test_every_field_has_a_label_and_help(simulate, fields):
     async def body(client):
         page = fields(await client())
+        for name in SCREENS:
+            page.go(name)
         made = [e for e in page.user.client.elements.values() if e.props.get("data-path")]
         assert len(made) > 60
         assert all(e.props.get("label") and e.props.get("hint") for e in made)

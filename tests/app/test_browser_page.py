@@ -133,3 +133,45 @@ def test_page_that_is_open_while_its_program_stops_says_so_and_goes_on(opened, p
         redrawn(page, before)
     finally:
         stop(process)
+
+
+def test_page_that_becomes_narrow_and_wide_again_is_drawn_for_its_width(page):
+    def paper():
+        return page.locator(f"{DRAWING}:visible svg.machine").get_attribute("viewBox").split()[2]
+
+    wide, before = paper(), drawing(page)
+    page.set_viewport_size({"width": 390, "height": 900})
+    redrawn(page, before)
+    assert float(paper()) < 0.7 * float(wide)
+    box = in_front(page).bounding_box()
+    assert 300 < box["width"] <= 390 and page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.set_viewport_size({"width": 1280, "height": 900})
+    expect(page.locator(f"{DRAWING}:visible")).to_have_attribute("data-picture", before)
+    assert paper() == wide
+
+
+def test_chart_is_zoomed_moved_and_shown_whole_by_keys(opened):
+    page = opened("beamdyn")
+    chart = page.locator(".chart:visible").first
+    chart.wait_for()
+
+    def numbers():
+        return [text for text in chart.locator("text").all_text_contents() if text.isdigit()]
+
+    def pressed(key):
+        before = numbers()
+        page.keyboard.press(key)
+        page.wait_for_function(
+            "([chart, before]) => [...chart.querySelectorAll('text')].map((e) => e.textContent)"
+            ".filter((t) => /^[0-9]+$/.test(t)).join() !== before.join()",
+            arg=[chart.element_handle(), before],
+        )
+        return numbers()
+
+    whole = numbers()
+    chart.focus()
+    assert "150" in whole and "150" not in pressed("+")
+    for _ in range(3):
+        page.keyboard.press("+")
+    pressed("ArrowRight")
+    assert pressed("0") == whole

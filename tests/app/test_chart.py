@@ -128,6 +128,26 @@ def test_names_are_text_and_no_option_is_a_script(hostile):
     assert not [key for key in keys(options) if key.startswith(":")]  # which the page would run
 
 
+def axes_over(y, **of_y):
+    curve = ChartCurve("error", np.arange(1.0, len(y) + 1), np.array(y))
+    return options_of(Chart("Errors", X, ChartAxis("error", **of_y), [curve]))["yAxis"]
+
+
+def test_axis_over_decades_ends_with_whole_ones_and_has_a_number_at_each():
+    axis = axes_over([0.4, 3e-7, np.nan, 0.0], logarithmic=True)
+    assert axis["min"] == pytest.approx(1e-7) and axis["max"] == pytest.approx(1.0)
+    assert axis["axisLabel"]["customValues"] == pytest.approx([10.0**k for k in range(-7, 1)])
+    assert axes_over([0.4, 3e-7], logarithmic=True, high=5.0)["max"] == 5.0
+    for nothing in ([-1.0], [np.nan]):
+        axis = axes_over(nothing, logarithmic=True)
+        assert 0 < axis["min"] < axis["max"]
+
+
+@pytest.mark.parametrize("high, shown", [(70.0, True), (71.0, False), (150.0, True), (69.87, False)])
+def test_number_at_the_end_of_an_axis_is_left_out_where_it_would_cover_another(high, shown):
+    assert axes_over([1.0, 2.0], low=0.0, high=high)["axisLabel"]["showMaxLabel"] is shown
+
+
 def test_words_say_what_it_shows():
     chart = made(ChartCurve("mode 1", [0], [1]), marks=[ChartMark(1.0, "critical speed 164 rad/s")])
     assert chart.words == "A chart: frequency [Hz] over speed [rad/s]; mode 1; critical speed 164 rad/s"

@@ -97,6 +97,14 @@ def test_drawing_has_the_point_that_a_handle_moves(case):
         assert min(*np.hypot(*(points - at).T), *on_circle) < 1e-9 * handle.scale, handle.label
 
 
+def test_no_label_lies_under_a_handle(case):
+    layout = case.sheet.view.layout
+    for place in map(layout.fit.to_paper, layout.drawing.points.values()):
+        for text in layout.texts:
+            nearest = np.clip(place, text.box[:2], text.box[2:])
+            assert np.hypot(*(nearest - place)) > 6.0, text.lines  # radius of a handle [pt]
+
+
 def test_place_and_point_are_inverse():
     _, answer = answered(FORKLIFT, VEHICLE)
     made = draw_sheet(VEHICLE, answer, 1.0)

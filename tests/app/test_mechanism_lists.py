@@ -76,6 +76,23 @@ def test_a_toggle_clamp_is_built_from_nothing():
     assert not SCREEN.notes(one)
 
 
+def test_a_coordinate_keeps_the_other_that_was_typed_before():
+    """A field of the page is made once: what it knows of the point is older than what was typed beside it."""
+    entries = empty(MECHANISM.base_entries)
+    made = item(entries, "B")
+    entries = put(put(entries, made, "x", "7"), made, "y", "9")
+    assert tables(entries)["points"]["B"] == ["7 mm", "9 mm"]
+
+
+def test_a_point_that_is_added_lies_on_no_other():
+    """The third point of a mechanism from nothing lay on the second, which could not be dragged."""
+    entries = empty(MECHANISM.base_entries)
+    for _ in range(12):
+        entries = add(entries, "point")
+        places = [tuple(at) for at in tables(entries)["points"].values()]
+        assert len(set(places)) == len(places)
+
+
 def test_at_each_step_advice_says_what_is_missing():
     _, said = built()
     words = (

@@ -7,12 +7,20 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-from beamdyn.common.app.player import BackAndForth, Onward
+from beamdyn.app.transient import TRANSIENT
+from beamdyn.common.app.courses import BackAndForth, Onward
 from brakes.app.program import BRAKES
 from tests.app.browsing import go
 from tests.app.serving import IN_BROWSER
 
 PAINTED = re.compile(r".*requestAnimationFrame", re.DOTALL)
+
+
+def test_time_goes_on_and_strokes_go_back():
+    """A transient that ran backwards would show a motion that there is not."""
+    assert isinstance(TRANSIENT.slider.course(1.0, 20.0), Onward)
+    for screen in (screen for document in BRAKES.documents for screen in document.screens if screen.slider):
+        assert isinstance(screen.slider.course(1.0, 2.5), BackAndForth)
 
 
 @pytest.mark.parametrize("course", [BackAndForth(2.0, 3.0), Onward(7.0, 4.0)])
@@ -123,7 +131,7 @@ def test_a_stroke_is_played_by_the_space_bar(page, motion):
     page.evaluate("""() => {
       window.seen = new Set();
       const look = () => {
-        for (const it of document.querySelectorAll('svg.machine'))
+        for (const it of document.querySelectorAll('.board svg.machine'))
           if (it.getBoundingClientRect().width) window.seen.add(it.id);
         requestAnimationFrame(look);
       };

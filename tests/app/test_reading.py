@@ -49,6 +49,25 @@ def test_what_is_a_quantity_or_none_is_left_to_the_checks(typed):
     assert (found.text, found.remark) == (typed, "")
 
 
+@pytest.mark.parametrize(
+    ("typed", "text"),
+    [
+        ("26.9, 4", '["26.9 mm", "4 mm"]'),
+        ("(26,9; 4)", '["26.9 mm", "4 mm"]'),
+        ("2.69 cm, -4 mm", '["2.69 cm", "-4 mm"]'),
+    ],
+)
+def test_a_point_is_read_without_brackets_and_quotes(typed, text):
+    given = read_entry(typed, entry("dimensions.side_pivot", "caliper"), "mm")
+    assert (given.text, given.remark) == (text, f"read as {text}")
+
+
+@pytest.mark.parametrize("typed", ['["26.5 mm", "4 mm"]', "26.9", "26.9, four", "1, 2, 3", ""])
+def test_what_is_no_pair_is_left_to_the_checks(typed):
+    given = read_entry(typed, entry("dimensions.side_pivot", "caliper"), "mm").text
+    assert given == typed or "," not in typed
+
+
 def test_words_and_choices_are_left_alone():
     for path, document in (("caliper", "caliper"), ("title", "caliper"), ("brake.assembly", "drum")):
         assert read_entry("1,5", entry(path, document), "").text == "1,5"

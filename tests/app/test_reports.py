@@ -1,14 +1,18 @@
 """The report on a document of an interactive program."""
 
+import pickle
 import re
 import tomllib
+from datetime import datetime
 from html import unescape
 
 import pytest
 
 from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
+from beamdyn.common.app import tasks
 from beamdyn.common.app.document_report import report_of
+from beamdyn.common.app.input_words import NOT_GIVEN, default_words, label
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.rendering import html
 from brakes.app.caliper import CALIPER
@@ -74,3 +78,26 @@ def test_answer_that_is_stale_is_left_out():
     assert not work.solve(CALIPER.screens[0])
     page = report_of(work, "Mine")
     assert f"<h2>{CALIPER.screens[0].name}</h2>" not in page and inputs(page)["run"]["finger"] == "much"
+
+
+def test_report_has_title_date_every_input_and_the_sweeps_that_are_shown():
+    """What the page asks for: made of the answers alone, in a process that holds nothing of the page."""
+    work = solved(DRUM)
+    (screen,) = DRUM.screens
+    swept = tasks.sweep(DRUM, screen, work.entries, "brake.friction=0.2:0.4:5", "torque")
+    shown = [(screen.name, "Sweep of friction", swept)]
+    sent = pickle.loads(pickle.dumps((work.entries, work.answered, "My drum", shown)))
+    page = unescape(tasks.report(DRUM, screen, *sent))
+    assert "<h1>My drum</h1>" in page and "<h2>Sweep of friction</h2>" in page
+    assert re.search(rf"<p>{datetime.now().year}-\d\d-\d\d \d\d:\d\d", page)
+    table = page.partition("<h2>Every input</h2>")[2]
+    inputs = DRUM.inputs(work.entries)
+    for entry in inputs:
+        assert label(entry) in table, entry.path
+        default = default_words(entry)
+        assert (work.entries.get(entry.path, "").strip() or default) in table, entry.path
+    given = [bool(work.entries.get(entry.path, "").strip()) for entry in inputs]
+    usual = [default_words(entry) != NOT_GIVEN for entry in inputs]
+    assert table.count(">given<") == sum(given)
+    assert table.count(">default<") == sum(u and not g for g, u in zip(given, usual, strict=True))
+    assert page.count("data:image/svg+xml;base64,") == 2

@@ -123,3 +123,63 @@ def test_every_public_name_is_in_the_reference_once() -> None:
     names = [f"{module.__name__}.{name}" for module in MODULES for name in module.__all__]
     assert sorted(listed) == sorted(names)
     assert all(hasattr(import_module(name.rpartition(".")[0]), name.rpartition(".")[2]) for name in listed)
+
+
+# What computes physics has its source: a paper or book by its year, a norm, a page of our own derivation, or
+# "standard", what textbooks of the field have.  "As `name`" is that of the other name.
+SOURCE = re.compile(
+    r"\((?:[^()]*, )?\d{4}\)|\beqs?\. \(|\bASTM|\bISO|\bShigley|[Ss]tandard\b|\bCoulomb|docs/\w+\.md|^As `"
+)
+WITHOUT_PHYSICS = {  # functions that read, draw, or put the questions of others
+    *(
+        f"beamdyn.{name}"
+        for name in ("draw", "load", "load_scene", "read_deck", "study", "sweep", "tradeoff")
+    ),
+    "brakes.drum.duplex",
+    "brakes.drum.simplex",
+}
+MODELS = {  # classes that bring physics: results have that of their functions, others hold what is given
+    *(
+        f"beamdyn.{name}"
+        for name in ("Beam", "Damping", "Fem", "GaussCollocation", "Mount", "Physics", "Ritz")
+    ),
+    *(f"beamdyn.{name}" for name in ("PowerSpectrum", "RoadRoughness", "RoadWave", "RollingWheel", "SpinUp")),
+    *(
+        f"beamdyn.{name}"
+        for name in ("FirstOrderRange", "ParametricTerm", "RandomStatistics", "SobolIndices")
+    ),
+    *(f"beamdyn.{name}" for name in ("TipMass", "WorstCases")),
+    *(f"brakes.calipers.{name}" for name in ("Caliper", "Stance")),
+    "brakes.drum.Shoe",
+    *(f"brakes.forklift.{name}" for name in ("DuoServo", "Levers", "Truck")),
+    *(f"brakes.planar.{name}" for name in ("Contact", "Pin", "Slot")),
+}
+
+
+def source_of(item: Any) -> str:
+    """The section References, of numpydoc, in one line."""
+    found = re.search(
+        r"^References\n-+\n(.*?)(?=\n\n\w+\n-+\n|\Z)", documentation(item), re.DOTALL | re.MULTILINE
+    )
+    return " ".join(found[1].split()) if found else ""
+
+
+def test_what_computes_physics_has_its_source() -> None:
+    functions = {name for name, item in NAMES.items() if inspect.isfunction(item)}
+    assert functions >= WITHOUT_PHYSICS
+    assert set(NAMES) - functions >= MODELS
+    without = {
+        name for name in (functions - WITHOUT_PHYSICS) | MODELS if not SOURCE.search(source_of(NAMES[name]))
+    }
+    assert without == set(CHECKED["without_source"])
+
+
+def test_sources_lead_to_pages_and_names_that_there_are() -> None:
+    sources = {name: source_of(item) for name, item in NAMES.items()}
+    pages = {page for text in sources.values() for page in re.findall(r"docs/\w+\.md", text)}
+    assert pages
+    assert [page for page in pages if not (ROOT / page).exists()] == []
+    for name, text in sources.items():
+        for other in re.findall(r"As `([\w.]+)`", text):
+            of_module = f"{name.rpartition('.')[0]}.{other}"
+            assert source_of(NAMES.get(of_module) or NAMES[f"brakes.{other}"]), name

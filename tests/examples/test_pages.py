@@ -1,7 +1,8 @@
 """The Python and the commands of the site's pages run as they stand, and print what stands below them.
 
-Blocks of a page run one after the other, in a folder that has the examples. A comment ``<!-- given`` before a
-block has what the text around it gives; ``<!-- not run: why -->`` says why one is not run: docs/README.md.
+Blocks of a page run one after the other, in a folder that has the examples. Below commands stand lines of
+what they print, and a block with a caption is a file of that name. A comment ``<!-- given`` before a block
+has what the text around it gives; ``<!-- not run: why -->`` says why one is not run: docs/README.md.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ from brakes.cli import main as brakes
 ROOT = Path(__file__).parents[2]
 PARTS = re.compile(
     r"^<!-- given\n(?P<given>.*?)-->|^<!-- not run: (?P<skip>.+?) -->\n+```.*?^```|"
-    r"^```python\n(?P<python>.*?)^```(?:\n+```text\n(?P<text>.*?)^```)?|^```sh\n(?P<sh>.*?)^```",
+    r"^```\{code-block\} \w+\n:caption: (?P<file>\S+)\n\n(?P<content>.*?)^```|"
+    r"^```python\n(?P<python>.*?)^```(?:\n+```text\n(?P<text>.*?)^```)?|"
+    r"^```sh\n(?P<sh>.*?)^```(?:\n+```text\n(?P<lines>.*?)^```)?",
     re.DOTALL | re.MULTILINE,
 )
 ELSEWHERE = {  # run by tests of their own, shortened or with errors left out
@@ -61,7 +64,12 @@ def test_blocks_of_a_page(
         exec(part["given"] or part["python"] or "", names)
         if part["text"]:
             assert capsys.readouterr().out.split() == part["text"].split()
+        if part["file"]:
+            Path(part["file"]).write_text(part["content"], encoding="utf-8")
         run_commands(part["sh"] or "")
+        if part["lines"]:
+            shown = " ".join("".join(capsys.readouterr()).split())
+            assert [line for line in part["lines"].splitlines() if " ".join(line.split()) not in shown] == []
     from matplotlib import pyplot
 
     pyplot.close("all")

@@ -1,6 +1,7 @@
 """The comparison with other programs: all that works without them."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -191,6 +192,15 @@ def test_page_and_picture(tmp_path):
     assert "| CalculiX | coarse | 10 ms | 2.0e-04 | 1000 | 0.2 |" in page and "solid elements" in page
     tables.picture(POINTS, tmp_path / "peers.png")
     assert (tmp_path / "peers.png").stat().st_size > 1000
+
+
+def test_titles_of_the_picture_stand_apart_and_within_it():
+    figure = tables.drawn(POINTS)
+    figure.canvas.draw()
+    boxes = [ax.title.get_window_extent() for ax in figure.axes]
+    assert len(boxes) == 3
+    assert boxes[0].x0 >= 0 and boxes[-1].x1 <= figure.bbox.x1
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
 
 
 def test_peak_between_samples():

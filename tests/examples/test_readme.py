@@ -1,4 +1,4 @@
-"""The Python of the README and of the page on sweeps runs as it stands."""
+"""The Python of the README, of the tour and of the page on sweeps runs; the README's tables are written."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import matplotlib
 import pytest
 
 from beamdyn.cli import main
+from benchmarks.readme import write_between
 
 ROOT = Path(__file__).parents[2]
 
@@ -18,15 +19,34 @@ def blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / page).read_text(), re.DOTALL | re.MULTILINE)
 
 
-def test_readme(capsys) -> None:
+def printed_by(page: str, capsys: pytest.CaptureFixture[str]) -> str:
     names: dict[str, object] = {}
-    for block in blocks("README.md", "python"):
+    for block in blocks(page, "python"):
         exec(block, names)
-    printed = capsys.readouterr().out
+    return capsys.readouterr().out
+
+
+def test_readme(capsys: pytest.CaptureFixture[str]) -> None:
+    printed = printed_by("README.md", capsys)
+    for number in ("61.96301", "159.8183326"):
+        assert number in printed
+
+
+def test_tour(capsys: pytest.CaptureFixture[str]) -> None:
+    printed = printed_by("docs/tour.md", capsys)
     for number in ("61.96301", "159.8183326", "0.0019424", "53.0858418", "69.802403", "0.000261"):
         assert number in printed
     for number in ("eebrake       5.9811", "v-brake       9.7663", "176.7287", "13.4249", "117207"):
         assert number in printed
+
+
+def test_readme_and_first_page_say_the_same_first() -> None:
+    """The sentence that says what it is, and the five lines."""
+    readme, index = ((ROOT / page).read_text(encoding="utf-8") for page in ("README.md", "docs/index.md"))
+    assert readme.split("\n\n")[1] == index.split("\n\n")[1]
+    assert "This is not OpenFAST's module BeamDyn" in readme.split("\n\n")[1]
+    assert blocks("README.md", "python") == blocks("docs/index.md", "python")
+    assert len(readme.splitlines()) < 125  # short
 
 
 def test_the_readme_quotes_no_figure_that_no_command_measured() -> None:
@@ -37,6 +57,18 @@ def test_the_readme_quotes_no_figure_that_no_command_measured() -> None:
     rows = [row for table in tables for row in table.splitlines()[2:]]
     assert len(rows) > 12
     assert [row for row in rows if row.rstrip(" |") not in written] == []
+    peers = (ROOT / "docs" / "peers.md").read_text(encoding="utf-8")
+    between = text.partition("<!-- peers -->")[2].partition("<!-- end of peers -->")[0]
+    assert "| CalculiX |" in between and between.strip() in peers
+
+
+def test_tables_of_the_readme_are_replaced(tmp_path: Path) -> None:
+    page = tmp_path / "README.md"
+    page.write_text("a\n<!-- one -->\n\nold\n\n<!-- end of one -->\nb\n")
+    write_between("one", ["| new |"], page)
+    assert page.read_text() == "a\n<!-- one -->\n\n| new |\n\n<!-- end of one -->\nb\n"
+    with pytest.raises(ValueError, match="there is no <!-- two -->"):
+        write_between("two", [], page)
 
 
 def test_first_block_of_sweeps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

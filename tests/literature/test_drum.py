@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.cases import textbooks
 from brakes import drum
 from brakes.published import load
 from brakes.reproduce import drum_as_printed as as_printed
 
 PAPER = load("vardanyan_2019")
 BOOKS = load("drum_textbooks")
-INCH = 0.0254
-LBF = 4.4482216152605
+ANSWERS = textbooks.answers()
 
 
 def printed(text: str, value: float) -> bool:
@@ -21,9 +21,9 @@ def printed(text: str, value: float) -> bool:
     return f"{value:.{decimals}f}" == text
 
 
-def book(name: str, quantity: str, value: float) -> None:
-    """A value, in the book's unit, rounds to what the book prints."""
-    entry = BOOKS[name][quantity]
+def book(name: str, quantity: str) -> None:
+    """Our value, in the book's unit, rounds to what the book prints."""
+    entry, (value,) = BOOKS[name][quantity], ANSWERS[name][quantity]
     assert printed(entry["printed"], value), (quantity, entry["printed"], value)
 
 
@@ -98,16 +98,6 @@ def test_consequences_that_follow_from_the_tables() -> None:
 # Textbooks --------------------------------------------------------------------------------------------
 
 
-def from_pin_line(case: dict, scale: float, tilt: float = 0.0) -> drum.Shoe:
-    """A shoe whose book counts theta from the line centre-pin, which lies at `tilt` from -y."""
-    far = case["pin_distance"]["value"] * scale
-    pivot = far * np.sin(tilt), -far * np.cos(tilt)
-    arm = case["moment_arm"]["value"] * scale if "moment_arm" in case else 2 * far * np.cos(tilt)
-    lining = tuple(np.radians(case["theta"]["value"]) + tilt)
-    sizes = case["drum_radius"]["value"] * scale, case["face_width"]["value"] * scale
-    return drum.Shoe(*sizes, lining, pivot, arm + pivot[1])
-
-
 def shigley(b: float, friction: float, arc: tuple[float, float], leading: bool) -> float:
     """Torque [N m] at 1 kN on a shoe of the paper, by Shigley's integrals from the line centre-pin."""
     r, far, arm = 0.138, float(np.hypot(b, 0.110)), 0.115 + 0.110
@@ -136,85 +126,59 @@ def test_the_axis_is_the_papers_own_assumption() -> None:
 
 
 def test_shigley_example_16_2() -> None:
+    for quantity in ("force", "leading_torque", "trailing_torque", "trailing_pressure", "friction_moment"):
+        book("shigley_16_2", quantity)
+    found = {name: value for name, (value,) in ANSWERS["shigley_16_2"].items()}
+    assert abs(found["normal_moment"] - 787.333527) < 5e-7  # the book has 788
+    assert abs(1e3 * found["force"] - 2279.06305) < 5e-6
+    assert abs(found["leading_torque"] - 365.825722) < 5e-7
+    assert abs(found["trailing_torque"] - 161.934892) < 5e-7
+    assert abs(1e3 * found["trailing_pressure"] - 442655.840) < 5e-4
+
+
+def test_locking_friction_of_shigley_example_16_2() -> None:
     case = BOOKS["shigley_16_2"] | {"pin_distance": {"value": float(np.hypot(112, 50))}}
-    shoe = from_pin_line(case, 1e-3)
+    shoe = textbooks.from_pin_line(case, 1e-3)
     brake = drum.brake_torque(drum.simplex(shoe), peak_pressure=1e6, friction=0.32)
-    leading, trailing = brake.shoes
-    moment = -leading.normal[0] * shoe.pivot[1]  # of the normal force, which passes through the centre
-    book("shigley_16_2", "force", brake.force / 1e3)
-    book("shigley_16_2", "leading_torque", leading.torque)
-    book("shigley_16_2", "trailing_torque", trailing.torque)
-    book("shigley_16_2", "trailing_pressure", trailing.peak_pressure / 1e3)
-    book("shigley_16_2", "friction_moment", abs(moment) - brake.force * 0.212)
-    assert abs(abs(moment) - 787.333527) < 5e-7  # the book has 788
-    assert abs(brake.force - 2279.06305) < 5e-6
-    assert abs(leading.torque - 365.825722) < 5e-7
-    assert abs(trailing.torque - 161.934892) < 5e-7
-    assert abs(trailing.peak_pressure - 442655.840) < 5e-4
     assert abs(brake.locking_friction - 0.828303) < 5e-7
 
 
 def test_shigley_problem_16_1() -> None:
-    case = BOOKS["shigley_16_1"]
-    shoe = from_pin_line(case, 1e-3, np.radians(30))
-    brake = drum.brake_torque(drum.simplex(shoe), force=2200.0, friction=0.28)
-    leading, trailing = brake.shoes
-    book("shigley_16_1", "leading_pressure", leading.peak_pressure / 1e3)
-    assert abs(trailing.peak_pressure / 1e3 - 381.9) < 0.1  # the manual cuts 381.96
-    book("shigley_16_1", "leading_torque", leading.torque)
-    book("shigley_16_1", "trailing_torque", trailing.torque)
-    book("shigley_16_1", "total_torque", brake.torque)
-    assert abs(leading.peak_pressure - 734454.065) < 5e-4
-    assert abs(trailing.peak_pressure - 381959.347) < 5e-4
+    for quantity in ("leading_pressure", "leading_torque", "trailing_torque", "total_torque"):
+        book("shigley_16_1", quantity)
+    found = ANSWERS["shigley_16_1"]
+    assert abs(found["trailing_pressure"][0] - 381.9) < 0.1  # the manual cuts 381.96
+    assert abs(1e3 * found["leading_pressure"][0] - 734454.065) < 5e-4
+    assert abs(1e3 * found["trailing_pressure"][0] - 381959.347) < 5e-4
 
 
 def test_shigley_problem_16_1_pin_reactions() -> None:
-    shoe = from_pin_line(BOOKS["shigley_16_1"], 1e-3, np.radians(30))
-    leading, trailing = drum.brake_torque(drum.simplex(shoe), force=2200.0, friction=0.28).shoes
-    along, across = np.array([0.5, -np.cos(np.pi / 6)]), np.array([np.cos(np.pi / 6), 0.5])
+    found = ANSWERS["shigley_16_1"]
     # The manual works with four digits of pressures near 4000 N: 2 N.
-    assert abs(np.linalg.norm(leading.pin_reaction) - 4249) < 2
-    found = sorted(abs(trailing.pin_reaction @ axis) for axis in (along, across))
-    np.testing.assert_allclose(found, [570, 751], atol=1)
-    assert abs(np.linalg.norm(trailing.pin_reaction) - 943) < 1  # printed 959, from 597 in place of 570
+    assert abs(found["leading_pin"][0] - 4249) < 2
+    np.testing.assert_allclose(found["trailing_pin_components"], [570, 751], atol=1)
+    assert abs(found["trailing_pin"][0] - 943) < 1  # printed 959, from 597 in place of 570
 
 
 def test_shigley_problem_16_1_in_inches() -> None:
     case = BOOKS["shigley_16_1_inch"]
-    shoe = from_pin_line(case, INCH, np.radians(30))
-    brake = drum.brake_torque(drum.simplex(shoe), force=500 * LBF, friction=0.28)
-    leading, trailing = brake.shoes
-    psi, torque = LBF / INCH**2, LBF * INCH
-    found = {
-        "leading_pressure": leading.peak_pressure / psi,
-        "trailing_pressure": trailing.peak_pressure / psi,
-        "leading_torque": leading.torque / torque,
-        "trailing_torque": trailing.torque / torque,
-        "total_torque": brake.torque / torque,
-        "leading_pin": np.linalg.norm(leading.pin_reaction) / LBF,
-        "trailing_pin": np.linalg.norm(trailing.pin_reaction) / LBF,
-    }
     # The manual rounds 4.493 to 4.49 on the way, 0.07 %, and its results to three digits, 0.25 % at worst;
     # the trailing pin's 215 is the size of differences of forces near 400, rounded to 1: 0.5 %.
-    error = {name: abs(value / float(case[name]["printed"]) - 1) for name, value in found.items()}
+    error = {
+        name: abs(value / float(case[name]["printed"]) - 1)
+        for name, (value,) in ANSWERS["shigley_16_1_inch"].items()
+    }
+    assert len(error) == 7
     wrong = {name: e for name, e in error.items() if e > (0.005 if name == "trailing_pin" else 0.003)}
     assert wrong == {}
 
 
 def test_shigley_problem_16_2() -> None:
-    case = BOOKS["shigley_16_1_inch"] | BOOKS["shigley_16_2_problem"]
-    shoe = from_pin_line(case, INCH, np.radians(30))
-    area = INCH**2
-    drawn = drum.shoe_torque(shoe, peak_pressure=1.0, friction=0.28)
-    pushed = drum.shoe_torque(shoe, peak_pressure=1.0, friction=0.28, leading=False)
-    mean = (drawn.force + pushed.force) / 2 * shoe.moment_arm / INCH**3
-    book("shigley_16_2_problem", "force", drawn.force / area)
-    book("shigley_16_2_problem", "normal_moment", mean)
-    book("shigley_16_2_problem", "friction_moment", mean - drawn.force * shoe.moment_arm / INCH**3)
+    for quantity in ("force", "normal_moment", "friction_moment"):
+        book("shigley_16_2_problem", quantity)
 
 
 def test_bhandari_12_9() -> None:
     case = BOOKS["bhandari_12_9"]
-    brake = drum.brake_torque(drum.simplex(from_pin_line(case, 1e-3)), peak_pressure=1e6, friction=0.3)
-    assert abs(brake.force - case["reference_force"]["value"]) < 5e-7
-    assert abs(1e3 * case["pairs"] * brake.torque - case["reference_torque"]["value"]) < 5e-7
+    for quantity, (value,) in ANSWERS["bhandari_12_9"].items():
+        assert abs(value - case[quantity]["value"]) < 5e-7

@@ -117,6 +117,15 @@ def test_a_picture_of_a_locked_brake(run, edited, tmp_path: Path) -> None:
     assert "<svg" in (tmp_path / "d.svg").read_text()
 
 
+def test_a_row_of_a_locked_brake_says_why(run) -> None:
+    _, out, err = run("drum", DRUM, "--vary", "friction=0.3:1.5:5", "--what", "torque")
+    assert "no answer, because" in out and out.count("the shoe grips by itself") == 2
+    assert "friction 1.2 is at or past" in out and "friction 1.5 is at or past" in out
+    assert "locked in 2 of 5 cases: friction 1.2 to 1.5 is at or past self-locking, 0.9988" in err
+    _, out, _ = run("drum", DRUM, "--vary", "friction=0.3:1.5:5", "--what", "margin")
+    assert "no answer, because" not in out  # the margin is there
+
+
 def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
     path, plot = tmp_path / "s.csv", tmp_path / "s.png"
     options = ("--vary", "friction=0.35:1.2:2", "--what", "torque,pin_1", "--csv", path, "--plot", plot)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from beamdyn.common.curves import curves, sweep_figure
 from brakes import drum, forklift
+from brakes.drawings import mechanism_parts
 from brakes.drawings.drum import brake_figure, factors, free_body, pressures
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
 from brakes.drawings.forklift import answer_figure, distances, forces_over, truck
@@ -188,3 +189,32 @@ def test_pyplot_is_not_used() -> None:
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=True
     )
     assert done.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize("count", [3, 4, 9, 40])
+@pytest.mark.parametrize("seed", range(5))
+def test_outline_of_a_body_is_the_convex_hull(count, seed):
+    """Against that of Qhull, whose corners start elsewhere."""
+    from scipy.spatial import ConvexHull
+
+    points = np.random.default_rng(seed).normal(size=(count, 2)) * 0.01
+    points = np.vstack([points, points[:2]])  # two of them twice
+    ours, theirs = mechanism_parts._hull(points), points[ConvexHull(points).vertices]
+    first = np.flatnonzero((theirs == ours[0]).all(axis=1))[0]
+    np.testing.assert_array_equal(ours, np.roll(theirs, -first, axis=0))
+
+
+def test_outline_of_a_body_whose_points_lie_on_a_line_has_them_all():
+    points = np.outer([0.3, 0.0, 1.0, 0.7], [0.1, 0.2])
+    np.testing.assert_array_equal(mechanism_parts._hull(points), points[[1, 0, 3, 2]])
+
+
+def test_drawing_of_a_mechanism_loads_no_library_of_geometry():
+    """It takes a second or more, for which the server of the page would answer nobody."""
+    code = (
+        "import sys; from brakes.config.mechanism import load_mechanism as load; "
+        "from brakes.answers.caliper import MECHANISM; "
+        f"MECHANISM.solve(load({str(ROOT / 'examples' / 'block_brake.toml')!r})).drawings(1.0); "
+        "assert 'scipy.spatial' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)

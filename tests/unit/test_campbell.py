@@ -17,6 +17,7 @@ from matplotlib.text import Text
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE
+from beamdyn.equations.directions import words_of_directions
 from beamdyn.modal.line_roots import find_roots
 from beamdyn.output.campbell import Curves, plot_campbell
 from benchmarks.cases.scenes import HARVESTER
@@ -118,6 +119,24 @@ def test_modes_that_pass_one_another_keep_their_names(of_two_planes: bd.Campbell
     for c in of_two_planes.crossings:
         assert c.plane_share == ((1.0, 0.0) if c.name.startswith("flap") else (0.0, 1.0))
         assert c.confidence > 0.9
+
+
+@pytest.mark.parametrize("degrees", [85, 95, 50, 130, -85, 275])
+def test_a_pitched_blade_has_flap_and_edge(degrees: float) -> None:
+    """By its sections' own directions, of which flap is nearer to the axis of rotation."""
+    mount = replace(TWO_PLANES.mount, bending_angle=math.radians(degrees))
+    found = bd.campbell(replace(TWO_PLANES, mount=mount), SPEEDS[:2], modes=4)
+    assert found.names == (("flap 1", "edge 1", "flap 2", "edge 2"),)
+    assert words_of_directions(found.loci[0].scene) == ("flap", "edge")  # of tables, loads among them
+
+
+def test_in_plane_of_a_pitched_blade_is_edge() -> None:
+    """At a pitch of 85 deg the stiffer direction is nearer to the axis."""
+    mount = replace(TWO_PLANES.mount, bending_angle=math.radians(5))
+    (names,) = bd.campbell(replace(TWO_PLANES, mount=mount), SPEEDS[:2], modes=4).names
+    assert names == ("edge 1", "flap 1", "edge 2", "flap 2")
+    bent = bd.frequency_locus(replace(TWO_PLANES, mount=mount), SPEEDS[:2], 1)
+    assert "flap" in bent.plot(Figure().subplots()).get_legend().get_texts()[1].get_text()
 
 
 def test_margins_are_those_of_the_frequencies(of_two_planes: bd.Campbell) -> None:
@@ -392,6 +411,18 @@ MISTAKES = {
     "negative order": ((BLADE, "--top-speed", "5 rpm", "--per-rev", "-3"), ("--per-rev", "1P to 6P")),
     "range of one": ((BLADE, "--top-speed", "5 rpm", "--operating", "3 rpm"), ("--operating", "lowest:")),
     "range falls": ((BLADE, "--top-speed", "5 rpm", "--operating", "4:3 rpm"), ("--operating", "end above")),
+    "range above the top": (
+        (BLADE, "--top-speed", "60 rpm", "--operating", "10:80 rpm"),
+        ("--operating = 80 rpm", "above", '--top-speed = "60 rpm"', "higher"),
+    ),
+    "rated outside the range": (
+        (BLADE, "--top-speed", "100 rpm", "--operating", "10:80 rpm", "--rated", "90 rpm"),
+        ('--rated = "90 rpm"', 'outside --operating = "10:80 rpm"'),
+    ),
+    "many orders": (
+        (BLADE, "--top-speed", "5 rpm", "--per-rev", "2000"),
+        ('--per-rev = "2000"', "from 1 to 100"),
+    ),
     "one label twice": ((BLADE, BLADE, "--top-speed", "5 rpm"), ("blade", "--labels")),
     "labels alike": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a, a"), ('"a"', "its own")),
     "length of a scene": ((BLADE, "--top-speed", "5 rpm", "--length", "5 m"), ("--length", "leave it out")),

@@ -44,6 +44,11 @@ def test_the_largest_number_of_modes_is_named(refused):
         bd.natural_modes(bd.load_scene(BLADE), modes=1500, discretization="fem")
 
 
+def test_a_trade_off_of_more_modes_than_its_reference_resolves_is_refused(refused):
+    said = refused("tradeoff", TYRE, "--budget", "1 s", "--modes", "99")
+    assert "--modes = 99: give a whole number from 1 to 20; " in said
+
+
 @pytest.mark.parametrize(
     "command", [("simulate", "--t-end", "1 s"), ("sweep", "--speeds", "5 rad/s", "--window", "0:1 s")]
 )

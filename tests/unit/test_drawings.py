@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import beamdyn as bd
+from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.label_places import Ground, Wish, place_labels
 from beamdyn.common.drawing.layout import Fit, arrange, follow
@@ -96,7 +97,31 @@ def named():
     yield pytest.param(rows, id="examples/caliper.py")
 
 
-ALL = [*rotors(), *screens(), *mechanisms(), *commands(), *named()]
+def sketches():
+    """Those of all forms, with each kind that may be chosen there."""
+    for program in (BRAKES, BEAMDYN):
+        for document in program.documents:
+            for name, entries in kinds(document).items():
+                for screen in document.screens[: None if program is BRAKES else 1]:
+                    yield pytest.param(
+                        lambda s=screen, e=entries: s.sketch(e), id=f"sketch of {screen.name} {name}"
+                    )
+
+
+def kinds(document):
+    """Entries of a document by the choice that makes them differ from the base."""
+    base = document.base_entries
+    made = {"": base}
+    made |= {name: {**base, "caliper": name} for name in calipers.NAMED if "caliper" in base}
+    if document.name == "mechanism":
+        made["that stops a vehicle"] = {**base, "stop.mass": "100 kg"}
+    if document.name == "scene":
+        plain = {path: text for path, text in base.items() if not path.startswith(("motion", "beam"))}
+        made["of a stiffness"] = {**plain, "beam.length": "1 m", "beam.bending_stiffness": "1 N m2"}
+    return made
+
+
+ALL = [*rotors(), *screens(), *mechanisms(), *commands(), *named(), *sketches()]
 
 
 def extents(figure):
@@ -450,3 +475,21 @@ def test_a_label_stands_beside_a_ground_sign_not_on_it():
         (sign,) = signs_of(layout)
         gap = np.minimum(text.box[2:], sign[2:]) - np.maximum(text.box[:2], sign[:2])
         assert (gap <= 0).any(), towards
+
+
+def test_a_detail_has_a_scale_of_its_own_and_less_of_the_width():
+    def line(length, own_scale=False):
+        return Drawing([Outline([(0, 0), (length, length)], "axis")], own_scale=own_scale)
+
+    def scales(*row):
+        return [layout.fit.scale for layout in lay_out([row], Paper.of([row]))]
+
+    one, other = scales(line(1.0), line(0.01))
+    assert one == other
+    one, detail = scales(line(1.0), line(0.01, own_scale=True))
+    assert detail > 50 * one
+    (left, _, end, _), (start, _, right, _) = (
+        layout.frame for layout in lay_out([[line(1.0), line(1.0, own_scale=True)]], Paper(680.0, (400.0,)))
+    )
+    assert left == 0 and end == start and right == 680.0
+    assert right - start < end - left

@@ -235,6 +235,17 @@ def reseal(text, old, new):
     return json.dumps(seal(content | {"record": record}))
 
 
+def test_a_file_that_is_not_there_is_refused_in_a_sentence(tmp_path):
+    with pytest.raises(
+        FileNotFoundError, match=r"none\.json: no result can be loaded: there is no such file; "
+    ):
+        bd.load(tmp_path / "none.json")
+    with pytest.raises(
+        OSError, match=r"no result can be loaded: .*; give one that save or --json has written"
+    ):
+        bd.load(tmp_path)
+
+
 @pytest.mark.parametrize("edit", EDITS)
 def test_a_file_that_is_not_as_written_is_refused_in_a_sentence(saved, edit):
     change, reason = EDITS[edit]

@@ -13,7 +13,6 @@ import pytest
 import beamdyn as bd
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.cautions import critical_label, labels_of, notes_of, warnings_of
-from beamdyn.common.announced import OutsideLinearTheory
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.scene.validity import warn_of_static_deflection
@@ -40,9 +39,9 @@ WHEEL = bd.RollingWheel(
 
 @pytest.mark.parametrize("name", ANALYSES)
 def test_python_warns_once_where_the_number_is_asked_for(name):
-    with pytest.warns(OutsideLinearTheory, match="outside linear theory.*auto") as said:
+    with pytest.warns(bd.OutsideLinearTheory, match="outside linear theory.*auto") as said:
         ANALYSES[name](SCENE)
-    (one,) = [w for w in said if w.category is OutsideLinearTheory]
+    (one,) = [w for w in said if w.category is bd.OutsideLinearTheory]
     assert one.filename == __file__
 
 
@@ -50,7 +49,7 @@ def test_analyses_of_the_plain_beam_warn_without_the_remedy_that_is_none_there()
     auto = replace(SCENE, physics="auto")
     analyse: Any
     for analyse in (bd.frequency_bounds, bd.setting_angle_limits):
-        with pytest.warns(OutsideLinearTheory) as said:
+        with pytest.warns(bd.OutsideLinearTheory) as said:
             analyse(auto, 100.0)
         assert len(said) == 1
         assert "auto" not in str(said[0].message)
@@ -60,7 +59,7 @@ def test_analyses_of_the_plain_beam_warn_without_the_remedy_that_is_none_there()
 def test_trade_off_says_how_far_the_model_is_off(monkeypatch):
     monkeypatch.setattr("beamdyn.tradeoffs.study.physics_diagram", _nothing)
     monkeypatch.setattr("beamdyn.tradeoffs.study.frequency_diagram", _nothing)
-    with pytest.warns(OutsideLinearTheory):
+    with pytest.warns(bd.OutsideLinearTheory):
         result = tradeoff(SCENE, 100.0, 1, budget=1.0)
     assert any("the model error, 9.1 %, exceeds 1 %" in said for said in result.warnings)
     assert len(notes_of(result)) == 2
@@ -87,7 +86,7 @@ def test_model_error_is_among_the_warnings_of_files():
 @pytest.mark.parametrize("name", ["modes", "locus", "critical speed"])
 def test_python_is_silent_within_the_theory(name, scene):
     with warnings.catch_warnings():
-        warnings.simplefilter("error", OutsideLinearTheory)
+        warnings.simplefilter("error", bd.OutsideLinearTheory)
         ANALYSES[name](scene)
 
 

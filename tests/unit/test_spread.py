@@ -210,7 +210,10 @@ def test_command(tmp_path, capsys):
     assert "beam.thickness matters most" in shown and "+-1 mm" in shown
     assert max(map(len, shown.splitlines())) <= 120
     rows = [*csv.reader(files["csv"].read_text().splitlines())]
-    assert rows[0] == ["beam_thickness_m", "mount_radius_m", "mode_1_Hz", "mode_2_Hz"] and len(rows) == 257
+    assert (
+        rows[0] == ["beam_thickness_m", "mount_radius_m", "frequency_Hz_1", "frequency_Hz_2"]
+        and len(rows) == 257
+    )
     loaded = bd.load(files["json"])
     np.testing.assert_allclose(loaded.inputs[1].distribution.ends, (0.214, 0.216), rtol=ROUNDING)
     assert all(path.stat().st_size > 1000 for path in files.values())

@@ -1,6 +1,7 @@
 """Studies: inputs and their names, shapes, answers of single calls, refusals and model errors."""
 
 import pickle
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -255,6 +256,52 @@ def rolling(duration=0.5, **options):
     return bd.Scene(SCENE.beam, SCENE.mount, wheel, **options)
 
 
+def test_numbers_of_the_motion_are_inputs():
+    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.RollingWheel(0.3, 40.0, ROAD))
+    vary = {"motion.road.wavelength": [0.2, 0.3], "speed": [20.0, 30.0], "motion.rolling_radius": [0.3, 0.35]}
+    study = bd.study(scene, vary, "amplitude")
+    assert [each.unit for each in study.inputs] == ["m", "rad/s", "m"]
+    own = bd.RollingWheel(0.35, 40.0, bd.RoadWave(0.2, velocity_amplitude=0.01))
+    assert study.scene_at(0, 1, 1).motion == own
+    single = bd.steady_response(study.scene_at(0, 1, 1), [20.0, 30.0]).amplitude
+    assert np.array_equal(study.value[0, :, 1], single)
+
+
+def test_numbers_of_a_rotation_of_a_wheel_are_inputs():
+    made = scene_of(rolling(), {"motion.rotation.duration": 2.0, "motion.road.velocity_amplitude": 0.02})
+    road = bd.RoadWave(0.3, velocity_amplitude=0.02)
+    assert made.motion == bd.RollingWheel(0.3, bd.SpinUp(40.0, 2.0), road)
+    turning = replace(SCENE, motion=bd.SpinUp(40.0, 1.0))
+    assert scene_of(turning, {"motion.duration": 3.0}).motion == bd.SpinUp(40.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("what", "name", "values", "said"),
+    [
+        (
+            "amplitude",
+            "motion.road.height",
+            [0.1],
+            "no such number; give one of motion.rolling_radius, motion.r",
+        ),
+        ("amplitude", "motion.road.wavelength", [-0.1], "motion.road.wavelength = -0.1 m: "),
+        ("frequencies", "motion.road.wavelength", [0.1], "only amplitudes and peaks are studied over"),
+        ("crossings", "motion.rolling_radius", [0.1], "ask for one of these"),
+        ("amplitude", "motion.rotation.speed", [0.1], "unknown input"),
+        ("amplitude", "motion.road.wavelenght", [0.1], "give motion.road.wavelength"),
+    ],
+)
+def test_numbers_of_the_motion_are_refused_in_a_sentence(what, name, values, said):
+    with pytest.raises(InvalidValue, match=said.replace(".", "[.]")):
+        bd.study(rolling(), {name: values}, what, speed=30.0)
+
+
+def test_a_spread_takes_numbers_of_the_motion():
+    scene = bd.Scene(SCENE.beam, SCENE.mount, bd.RollingWheel(0.3, 40.0, ROAD))
+    found = bd.spread(scene, {"motion.road.velocity_amplitude": "+-2%"}, "amplitude", samples=128)
+    assert found.worst.largest[0] / found.nominal[0] == pytest.approx(1.02, rel=1e-6)  # proportional
+
+
 def test_peaks_are_those_of_sweeps():
     scene = rolling(damping_ratio=0.02)
     vary = {"speed": [30.0, 20.0], "beam.thickness": [2e-4, 3e-4]}
@@ -272,6 +319,16 @@ def test_a_speed_past_the_critical_one_refuses_its_peak_alone():
     study = bd.study(rolling(), {"speed": [20.0, 1.5 * critical]}, "peak", window=(0.5, 0.6))
     assert study.status.tolist() == ["done", "refused"] and np.isnan(study.value[1])
     assert any(said.startswith("at 1 of 2 designs there is no answer") for said in study.warnings)
+
+
+@pytest.mark.parametrize("what", ["amplitude", "peak"])
+def test_warnings_are_counted_by_the_designs_that_they_are_of(what):
+    critical = bd.critical_speed(SCENE)
+    speeds = [20.0, 30.0, (1.5 if what == "amplitude" else 0.95) * critical]
+    vary = {"beam.thickness": [2e-4, 2.001e-4], "speed": speeds}
+    study = bd.study(rolling(), vary, what, window=(0.5, 0.6), tolerance=1e-3)
+    limited = [said for said in study.warnings if "there are warnings" in said]
+    assert len(limited) == 1 and limited[0].startswith("at 2 of 6 designs there are warnings; at beam.th")
 
 
 def test_an_unresolved_response_has_an_infinite_error(monkeypatch):
@@ -305,6 +362,38 @@ def test_model_error_says_where_it_is_large():
     bent = bd.study(SCENE, {"mount.setting_angle": [0.0, 0.8], "speed": [0.0, 60.0]})
     (said,) = bent.model_warnings()
     assert "at mount.setting_angle = 0.8 rad, speed = 60 rad/s the model error" in said
+
+
+def test_a_model_error_that_is_not_known_names_the_design_that_diverges():
+    """Not the stable one whose known changes are largest."""
+    for thickness in ([1e-4, 2e-4, 4e-4], [4e-4, 2e-4, 1e-4]):
+        study = bd.study(SCENE, {"beam.thickness": thickness}, speed=120.0, modes=1)
+        assert study.status[:, 0].tolist().count("divergence") == 1
+        (said,) = study.model_warnings()
+        assert said.startswith("at beam.thickness = 0.0001 m the model error may exceed")
+
+
+def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
+    vary = {"beam.thickness": [1e-4, 4e-4], "speed": [0.0, 120.0, 130.0]}
+    study = bd.study(SCENE, vary, modes=1)
+    (said,) = study.model_warnings()
+    assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of the 6 designs")
+
+
+@pytest.mark.parametrize("store", ["", "  "])
+def test_a_store_without_a_name_is_refused(store, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InvalidValue, match=r"^store = '.*': the name is empty; give a folder"):
+        bd.study(SCENE, {"speed": [0.0, 1.0]}, store=store)
+    assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("key", [1, None, ("a",)])
+def test_a_name_that_is_no_string_is_refused(key):
+    with pytest.raises(InvalidValue, match=r"^vary = .*is a string; give one such as \"beam.thickness\""):
+        bd.study(SCENE, {key: [1.0, 2.0]})
+    with pytest.raises(InvalidValue, match=r"^inputs = .*is a string; give one such as"):
+        bd.spread(SCENE, {key: "+-2%"})
 
 
 def test_plots_of_one_input_and_of_more():

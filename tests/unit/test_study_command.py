@@ -6,6 +6,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import main
+from beamdyn.common.designs import MOST_DESIGNS
 
 TOML = """
 [beam]
@@ -60,6 +61,74 @@ def test_the_command_refuses_in_a_sentence(options, said, tmp_path, capsys):
     assert main(["study", str(tmp_path / "scene.toml"), *options]) == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1
+
+
+def run(arguments, tmp_path, capsys, scene=TOML):
+    (tmp_path / "scene.toml").write_text(scene)
+    code = main(["study", str(tmp_path / "scene.toml"), *arguments])
+    found = capsys.readouterr()
+    return code, " ".join(found.out.split()), found.err
+
+
+def test_warnings_show_inputs_as_they_were_given(tmp_path, capsys):
+    vary = ["--vary", "setting_angle=0:180:4 deg", "--vary", "thickness=0.1,0.4 mm", "--modes", "1"]
+    code, _, err = run([*vary, "--speed", "955 rpm"], tmp_path, capsys)
+    assert code == 0 and " rad" not in err and " m " not in err
+    assert "at mount.setting_angle = 60 deg, beam.thickness = 0.1 mm" in err
+    vary = ["--vary", "speed=200,3000 rpm", "--vary", "thickness=0.2,0.3 mm", "--what", "amplitude"]
+    code, _, err = run(vary, tmp_path, capsys, TOML + MOTION)
+    assert "at beam.thickness = 0.2 mm: past the critical speed at 1 speed(s), 3000 rpm" in err
+
+
+def test_a_refusal_shows_an_input_in_the_unit_given(tmp_path, capsys):
+    code, _, err = run(["--vary", "thickness=5:20:3 mm"], tmp_path, capsys)
+    assert code == 2 and "beam.thickness = 20 mm" in err and "10 mm" in err
+
+
+MOTION = """
+[motion]
+kind = "rolling"
+rolling_radius = "300 mm"
+rotation = { kind = "spin_up", speed = "30 rad/s", duration = "1 s" }
+road = { wavelength = "300 mm", velocity_amplitude = "10 mm/s" }
+"""
+
+
+def test_numbers_of_the_motion_are_varied(tmp_path, capsys):
+    vary = ["--vary", "wavelength=200,300 mm", "--what", "amplitude"]
+    code, out, _ = run(vary, tmp_path, capsys, TOML + MOTION)
+    assert code == 0 and "motion.road.wavelength [mm]" in out
+    code, _, err = run(vary, tmp_path, capsys)
+    assert code == 2 and "unknown name 'wavelength'" in err
+
+
+@pytest.mark.parametrize("what", ["critical_speed", "crossings"])
+def test_a_speed_that_is_sought_is_not_varied(what, tmp_path, capsys):
+    code, _, err = run(
+        ["--vary", "speed=20,50 rad/s", "--what", what, "--speed", "9 rad/s"], tmp_path, capsys, TOML + MOTION
+    )
+    assert code == 2 and "is itself a speed that is sought" in err and "vary other inputs" in err
+
+
+def test_no_model_error_is_stated_of_no_answer(tmp_path, capsys):
+    vary = ["--vary", "speed=300,400 rad/s", "--what", "amplitude"]
+    _, out, err = run(vary, tmp_path, capsys, TOML + MOTION)
+    assert "not computed: no design has an answer" in out and "of 0 designs" not in out
+    assert "at none of 2 designs is there an answer: past the critical speed" in err
+
+
+def test_a_store_without_a_name_is_refused(tmp_path, capsys, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    code, _, err = run(["--vary", "speed=0:9:2 rad/s", "--store", ""], tmp_path, capsys)
+    assert code == 2 and "--store" in err and "the name is empty" in err and err.count("\n") == 1
+    assert not [*(tmp_path / "here").iterdir()]
+
+
+def test_help_and_python_have_one_limit(capsys):
+    assert main(["study", "--help"]) == 0
+    assert "a million designs" in " ".join(capsys.readouterr().out.split())
+    assert MOST_DESIGNS == 10**6
 
 
 def test_the_command_refuses_an_unknown_input(tmp_path, capsys):

@@ -24,6 +24,7 @@ from beamdyn.tradeoffs import (
     transients,
 )
 from beamdyn.tradeoffs.physics import ALL, AS_GIVEN, pick
+from beamdyn.tradeoffs.study import MOST_MODES
 from beamdyn.tradeoffs.transients import AT_ENDS, AT_REST
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.tradeoff_physics import make_scenes
@@ -70,6 +71,13 @@ def test_more_functions_are_never_worse(diagram, basis):
     assert (np.diff(list(found.values())) <= 2 * diagram.resolved).all()
     assert min(found.values()) < 1e-10 < 1e-4 < max(found.values()) or basis == "eigenfunctions"
     assert min(found.values()) < 1e-8
+
+
+@pytest.mark.parametrize("modes", [MOST_MODES, 2 * MOST_MODES + 2])  # of one plane, and of two
+def test_a_reference_has_more_modes_than_are_compared(modes):
+    exact = frequencies.solve_reference(HARVESTER, np.array([100.0]), modes)
+    assert exact.error.shape == (1, modes)
+    assert exact.error.max() < 1e-7
 
 
 def test_elements_converge_with_the_fourth_power_and_extrapolated_faster(diagram):

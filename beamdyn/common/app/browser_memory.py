@@ -17,8 +17,11 @@ from beamdyn.common.edge.inputs import Input
 _LONGEST = 80  # characters of a name
 _MOST = 100  # named designs
 
+# Width of a page below which drawings have narrow paper, as the rules of `look` have it.
+_NARROW = "(max-width: 600px)"
 # A key stroke in a field is kept until the program has stored it; a link that is put into the address of an
-# open page is followed; the keys of undo and redo wait until what has been typed is on its way.
+# open page is followed; the keys of undo and redo wait until what has been typed is on its way; a page that
+# becomes narrow or wide says so.
 SCRIPT = """<script type="module">
 const typedKey = %(typed)s;
 document.addEventListener("input", (event) => {
@@ -28,6 +31,7 @@ document.addEventListener("input", (event) => {
   (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
   sessionStorage.setItem(typedKey, JSON.stringify(typed));
 });
+matchMedia(%(narrow)s).addEventListener("change", (event) => emitEvent("narrow", event.matches));
 window.addEventListener("hashchange", () => { if (location.hash.length > 1) location.reload(); });
 document.addEventListener("keydown", (event) => {
   if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest?.(".q-dialog")) return;
@@ -57,7 +61,7 @@ class BrowserMemory:
     @property
     def script(self) -> str:
         """What the page runs on its own."""
-        return SCRIPT % {"typed": self._typed}
+        return SCRIPT % {"typed": self._typed, "narrow": json.dumps(_NARROW)}
 
     @property
     def recall(self) -> str:
@@ -66,7 +70,7 @@ class BrowserMemory:
             f"const kept = JSON.parse(sessionStorage.getItem({self._page}) || '{{}}');"
             f"kept.typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
             f"kept.look = localStorage.getItem({self._look}); kept.link = location.hash;"
-            "kept.narrow = innerWidth < 600;"
+            f"kept.narrow = matchMedia({json.dumps(_NARROW)}).matches;"
             "if (location.hash) history.replaceState(null, '', location.pathname);"
             "return JSON.stringify(kept);"
         )

@@ -18,6 +18,10 @@ _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  
 # Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#8a6100", "chart-6": "#1b7fb0"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f0b429", "chart-6": "#8ad0f5"}
+# What the chart component rounds steps of an axis to, for leading digits below a number.
+_STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
+_POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
+_FEW = 8  # decades of an axis up to which its small ticks are drawn, too
 _NAMED, _PALE = 12, 11  # sizes of letters [px]
 
 
@@ -182,7 +186,7 @@ def chart_colours(selector: str, dark: bool = False) -> str:
 def options_of(chart: Chart) -> dict[str, Any]:
     """The options of the chart component.
 
-    Its colours are those of the page; no text is taken for HTML, and no option is a script.
+    Its colours are those of the page; no text is taken for HTML, and none for a script.
     """
     return {
         "animation": False,
@@ -194,8 +198,8 @@ def options_of(chart: Chart) -> dict[str, Any]:
         "dataZoom": [{"type": "inside", "zoomOnMouseWheel": "ctrl", "moveOnMouseMove": "ctrl",
                       "moveOnMouseWheel": False, "preventDefaultMouseMove": False,
                       "filterMode": "none"}],
-        "xAxis": _axis(chart.x, 28, "middle"),
-        "yAxis": _axis(chart.y, 12, "end"),
+        "xAxis": _axis(chart.x, [curve.x for curve in chart.curves], 28, "middle"),
+        "yAxis": _axis(chart.y, [curve.y for curve in chart.curves], 12, "end"),
         "series": [*_series(chart)],
     }  # fmt: skip
 
@@ -211,7 +215,7 @@ def _paint(role: str, area: bool = False) -> str:
 # Frame ------------------------------------------------------------------------------------------------
 
 
-def _axis(axis: ChartAxis, gap: float, place: str) -> dict[str, Any]:
+def _axis(axis: ChartAxis, values: Sequence[Any], gap: float, place: str) -> dict[str, Any]:
     upright = place == "end"
     letters = {"color": _paint("text"), "fontSize": _NAMED}
     made: dict[str, Any] = {
@@ -220,15 +224,54 @@ def _axis(axis: ChartAxis, gap: float, place: str) -> dict[str, Any]:
         "nameLocation": place,
         "nameGap": gap,
         "nameTextStyle": letters | ({"align": "left", "padding": [0, 0, 0, -56]} if upright else {}),
-        "axisLabel": {"color": _paint("text"), "fontSize": _PALE, "hideOverlap": True},
+        "axisLabel": {"color": _paint("text"), "fontSize": _PALE, "hideOverlap": True} | _numbers(axis),
         "axisLine": {"show": True, "onZero": False, "lineStyle": {"color": _paint("axis")}},
         "axisTick": {"show": True, "lineStyle": {"color": _paint("axis")}},
         "splitLine": {"show": True, "lineStyle": {"color": _paint("ghost"), "width": 0.6}},
-        "minorTick": {"show": axis.logarithmic},
+        "minorTick": {"show": False},
         "axisPointer": {"label": {"show": False}, "lineStyle": {"color": _paint("axis")}},
         "scale": upright,
     }
-    return made | {"min": axis.low, "max": axis.high}
+    return (
+        _over_decades(made, axis, values) if axis.logarithmic else made | {"min": axis.low, "max": axis.high}
+    )
+
+
+def _numbers(axis: ChartAxis) -> dict[str, Any]:
+    """How the numbers at an axis are written: small and large ones by powers of ten; ends, where free."""
+    if axis.logarithmic:
+        return {":formatter": _POWERS}
+    return {"showMaxLabel": axis.low is None or axis.high is None or _is_tick(axis.low, axis.high)}
+
+
+def _is_tick(low: float, high: float) -> bool:
+    """Whether the end of an axis is a multiple of the steps that the chart component makes."""
+    step = (high - low) / 5
+    if not step > 0:
+        return True
+    power = 10.0 ** math.floor(math.log10(step))
+    part = high / power / next(nice for nice, below in _STEPS if step / power < below)
+    return abs(part - round(part)) < 1e-6
+
+
+def _over_decades(made: dict[str, Any], axis: ChartAxis, values: Sequence[Any]) -> dict[str, Any]:
+    """An axis with a number at each power of ten, of which those that overlap are left out."""
+    low, high = _ends(axis, values)
+    powers = [10.0**power for power in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+    for part in (made["axisLabel"], made["axisTick"]):
+        part["customValues"] = powers
+    made["minorTick"]["show"] = len(powers) < _FEW
+    return made | {"min": low, "max": high}
+
+
+def _ends(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
+    """Ends of an axis with decades: whole ones around the values, where they are not given."""
+    known = np.concatenate([np.asarray(each, dtype=float).ravel() for each in values] or [np.empty(0)])
+    known = np.log10(known[np.isfinite(known) & (known > 0)])
+    known = known if len(known) else np.zeros(1)
+    low = axis.low or 10.0 ** math.floor(known.min())
+    high = axis.high or 10.0 ** math.ceil(known.max())
+    return low, max(high, 10 * low)
 
 
 def _legend(chart: Chart) -> dict[str, Any]:

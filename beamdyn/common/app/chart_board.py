@@ -22,6 +22,22 @@ STYLE = (
 )
 
 
+_HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
+# What the signs of a chart do, by keys; each a change of the part [%] that is shown.
+_KEYS = """(event) => {
+  const chart = getElement(%d)?.chart, zoom = chart?.getOption().dataZoom?.[0];
+  if (!zoom || event.ctrlKey || event.altKey || event.metaKey) return;
+  const {start, end} = zoom, step = 0.1 * (end - start);
+  const to = {"+": [start + step, end - step], "=": [start + step, end - step],
+    "-": [start - 1.25 * step, end + 1.25 * step], "0": [0, 100],
+    ArrowLeft: [Math.max(start - step, 0), end - Math.min(step, start)],
+    ArrowRight: [start + Math.min(step, 100 - end), Math.min(end + step, 100)]}[event.key];
+  if (!to) return;
+  event.preventDefault();
+  chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
+}"""
+
+
 class ChartBoard:
     """Charts below one another; each is kept and given new data, so that zooming lasts.
 
@@ -36,15 +52,14 @@ class ChartBoard:
         self._shown: list[dict[str, Any]] = []  # options, but for what moves with the player
         self._column: Any = ui.column().classes("w-full gap-0 charts")
         self._column.props["data-words"] = words
+        self._how: Any = ui.label(_HOW).classes("status")
+        self._how.set_visibility(False)
 
     def show(self, charts: Sequence[Chart]) -> None:
         """Show these charts in place of the last ones."""
         while len(self._made) < len(charts):
             with self._column:
-                heading = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
-                self._made.append(
-                    (heading, ui.echart({}, renderer="svg").classes("chart").props('role="img"'))
-                )
+                self._made.append(self._make())
         for i, parts in enumerate(self._made):
             for part in parts:
                 part.set_visibility(i < len(charts))
@@ -52,6 +67,7 @@ class ChartBoard:
         if last != self._shown:
             self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
             self._column.update()
+            self._how.set_visibility(bool(charts))
         for i, ((heading, made), chart) in enumerate(zip(self._made, charts, strict=False)):
             if last[i : i + 1] == [self._shown[i]]:  # the cursor alone has moved
                 made.run_chart_method("setOption", {"series": [marks_of(chart)]})
@@ -60,3 +76,10 @@ class ChartBoard:
             made.props["aria-label"] = chart.words
             made.props["options"] = options_of(chart)
             made.update()
+
+    def _make(self) -> tuple[Any, Any]:
+        """A heading, and a chart below it that keys zoom and move."""
+        heading = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
+        chart = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
+        chart.on("keydown", js_handler=_KEYS % chart.id)
+        return heading, chart

@@ -121,7 +121,7 @@ def differences_html(differences: Sequence[Difference], what: str, other: str) -
     more = len(differences) - _MOST
     said = f"<p>{more} more differ.</p>" if more > 0 else ""
     return (
-        f'<div class="scrolls"><table><thead><tr><th class="words">{escape(what)}</th>'
+        f'<div class="scrolls" tabindex="0"><table><thead><tr><th class="words">{escape(what)}</th>'
         f'<th class="number">here</th><th class="number">{escape(other)}</th></tr></thead>'
         f"<tbody>{rows}</tbody></table></div>{said}"
     )

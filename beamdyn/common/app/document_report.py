@@ -60,7 +60,8 @@ def inputs_html(work: OpenDocument) -> str:
     """A table of every input in HTML: name and symbol, value, whether it was given, and meaning."""
     rows = "".join(_input_row(entry, work.entries.get(entry.path, "").strip()) for entry in work.inputs)
     heads = "".join(f'<th class="words">{head}</th>' for head in ("input", "value", "", "meaning"))
-    return f'<div class="scrolls"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>'
+    head = f"<thead><tr>{heads}</tr></thead>"
+    return f'<div class="scrolls" tabindex="0"><table>{head}<tbody>{rows}</tbody></table></div>'
 
 
 def _input_row(entry: Input, text: str) -> str:

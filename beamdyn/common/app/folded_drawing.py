@@ -2,15 +2,48 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.edge.rendering import drawing, picture
+from beamdyn.common.app.under_way import UnderWay
+from beamdyn.common.edge.rendering import picture
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+
+class PictureOf:
+    """A picture that is drawn beside the page's process: the last one stays until the next one has come.
+
+    Parameters
+    ----------
+    kind : str
+        Class of its frame.
+    """
+
+    def __init__(self, kind: str = "") -> None:
+        self._way = UnderWay(self._settle, lambda: None)
+        self._frame: Any = ui.html("", sanitize=False).classes(f"w-full drawing-frame {kind}")
+
+    def want(self, start: Callable[[], asyncio.Future[str]]) -> None:
+        """Show the picture that this starts to draw; of several the newest."""
+        self._way.want(start)
+
+    def grey(self, stale: bool) -> None:
+        """Grey it, or no longer."""
+        self._frame.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
+
+    def close(self) -> None:
+        """End what is being drawn."""
+        self._way.cancel()
+
+    def _settle(self, future: asyncio.Future[str], last: bool) -> None:
+        if self._frame.is_deleted or future.cancelled():
+            return
+        error = future.exception()
+        made = future.result() if error is None else picture(f"There is no drawing: {error}", "")
+        self._frame.set_content(made)
+        self._frame.set_visibility(bool(made))
 
 
 class FoldedDrawing:
@@ -21,10 +54,10 @@ class FoldedDrawing:
     title : str
         What it shows.
     draw : callable
-        Answer in, figure out.
+        Answer in; out comes what draws it, which gives HTML.
     """
 
-    def __init__(self, title: str, draw: Callable[[Any], Figure]) -> None:
+    def __init__(self, title: str, draw: Callable[[Any], asyncio.Future[str]]) -> None:
         self.title, self._draw = title, draw
         self._answer: Any = None
         with (
@@ -32,14 +65,17 @@ class FoldedDrawing:
             .classes("w-full section")
             .props("dense") as self._fold
         ):
-            self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+            self._picture = PictureOf()
 
     def show(self, answer: object) -> None:
         """Show another answer."""
         self._answer = answer
         self._fill()
 
+    def close(self) -> None:
+        """End what is being drawn."""
+        self._picture.close()
+
     def _fill(self) -> None:
         if self._fold.value and self._answer is not None:
-            made = drawing(lambda: self._draw(self._answer))
-            self._picture.set_content(picture(made, self.title))
+            self._picture.want(lambda: self._draw(self._answer))

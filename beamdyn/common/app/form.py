@@ -15,6 +15,7 @@ from beamdyn.common.app.input_words import (
     default_words,
     help_of,
     label,
+    label_html,
     name_words,
     options_of,
     table_of,
@@ -96,6 +97,8 @@ class Form:
             f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
         )
         made.props["hint"] = help_of(entry)
+        if entry.quantity.symbol:
+            made.add_slot("label", label_html(entry))
         self.fields[entry.path] = made
         if (drag := self._drags.get(entry.path)) is not None:
             self._slider(drag, entry, made)

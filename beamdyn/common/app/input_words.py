@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from html import escape
 
 from beamdyn.common.app.form_entries import toml_value
+from beamdyn.common.drawing.symbols import symbol_html
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show
 
@@ -15,6 +17,12 @@ def label(entry: Input) -> str:
     """Name and symbol of an input."""
     symbol = entry.quantity.symbol
     return f"{name_words(entry)}, {symbol}" if symbol and symbol != entry.name else name_words(entry)
+
+
+def label_html(entry: Input) -> str:
+    """The same as HTML, its symbol set as in a sketch."""
+    words, _, symbol = label(entry).rpartition(", ")
+    return f"{escape(words)}, {symbol_html(symbol)}" if words else escape(symbol)
 
 
 def help_of(entry: Input) -> str:

@@ -42,9 +42,9 @@ class ListEditor:
         self._folded: set[str] = set()
         self._quiet = False
         with ui.column().classes("lists w-full gap-1"):
+            ui.button("Start from nothing", icon="note_add", on_click=self._empty).props("flat dense no-caps")
             self._said: Any = ui.column().classes("advice gap-1").props('role="status" aria-live="polite"')
             self._groups: Any = ui.column().classes("w-full gap-1")
-            ui.button("Start from nothing", icon="note_add", on_click=self._empty).props("flat dense no-caps")
         self._make()
         self._advise()
 

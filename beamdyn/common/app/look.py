@@ -6,6 +6,7 @@ from beamdyn.common.app.chart_board import STYLE as CHARTS
 from beamdyn.common.app.draggable_drawing import STYLE as BOARD
 from beamdyn.common.app.list_editor import STYLE as LISTS
 from beamdyn.common.app.player import STYLE as PLAYER
+from beamdyn.common.app.sketch_panel import STYLE as SKETCH
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.edge.rendering import STYLE as TABLES
 
@@ -16,7 +17,9 @@ _COLOURS = """
 :root { --soft: #4a4a4a; --edge: #c8c8c8; --wrong: #8c1c00; --careful: #5a4200; --stripe: #f4f4f4;
   --beyond: #6b6b6b; --focus: #0072B2; }
 body.body--dark { --soft: #b9bdc3; --edge: #4a5059; --wrong: #ff9c85; --careful: #f0c060; --stripe: #22272d;
-  --beyond: #9aa0a8; --focus: #62b8ee; --q-primary: #62b8ee; --q-negative: #ff9c85; background: #16191d; }
+  --beyond: #9aa0a8; --focus: #62b8ee; background: #16191d;
+  /* before those that the page sets as its own style */
+  --q-primary: #62b8ee !important; --q-negative: #ff9c85 !important; }
 """
 # A picture whose colours are fixed is turned over on dark ground: its hues stay.
 _DARK = """
@@ -30,7 +33,8 @@ body.body--dark .q-btn.bg-primary { color: #10202c !important; }
 _LAYOUT = f"""
 body {{ font-size: 15px; }}
 .nicegui-header {{ padding: 0 0.75rem; background: {_BAR} !important; color: white; }}
-.nicegui-header h1 {{ font-size: 1.05rem; font-weight: 600; line-height: 1.2; white-space: nowrap; }}
+.nicegui-header h1 {{ font-size: 1.05rem; font-weight: 600; line-height: 1.2; white-space: nowrap;
+  margin-right: 0.5rem; }}
 .nicegui-header .q-tabs {{ min-width: 0; }}
 .nicegui-content {{ padding: 0.25rem 0.75rem 1rem; }}
 .q-tab-panels {{ background: transparent; }}
@@ -110,6 +114,6 @@ _NARROW = """
 }
 """
 STYLE = (
-    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW
+    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH
 )  # the later rules count
 STYLE += page_colours("body.body--dark", dark=True)

@@ -14,7 +14,7 @@ from beamdyn.common.app.browser_memory import BrowserMemory, named_designs, read
 from beamdyn.common.app.comparison import OtherDesign
 from beamdyn.common.app.design_link import LinkedDesign
 from beamdyn.common.app.designs_dialog import DesignActions, DesignsDialog
-from beamdyn.common.app.document_report import report_of
+from beamdyn.common.app.downloads import download
 from beamdyn.common.app.examples import examples_of
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.header import Header
@@ -68,6 +68,7 @@ class Page:
         self._body()
         ui.on("undo", self.undo)
         ui.on("redo", self.redo)
+        ui.on("narrow", lambda event: self._be_narrow(event.args is True))
         self._bar.client.on_delete(self._close)
 
     def _close(self) -> None:
@@ -86,9 +87,7 @@ class Page:
 
     def _body(self) -> None:
         with (
-            ui.tab_panels(self._bar, value=next(iter(self.places)))
-            .classes("w-full")
-            .props("animated=false role=main")
+            ui.tab_panels(self._bar, value=next(iter(self.places))).classes("w-full").props("animated=false")
         ):
             for name, (document, screen) in self.places.items():
                 with ui.tab_panel(name) as panel:
@@ -152,8 +151,8 @@ class Page:
         self.header.mark(stale, self.work.history, self.work.other)
 
     def _rebuild(self, document: Document) -> None:
-        for screen in document.screens:
-            self.panels[screen.name].rebuild()
+        if self.current[0] is document:  # other screens are made up to date when they come to the front
+            self.panels[self.front].rebuild()
         if self._recalled:
             self._bar.client.run_javascript(self._memory.forget_typed)
         self.panels[self.front].enter()
@@ -234,8 +233,14 @@ class Page:
         self._marks()
         work = self.works[document.name]
         title = work.entries.get("title", "").strip() or f"{self.program.title}: {document.name}"
-        sweeps = [made for screen in document.screens if (made := self.panels[screen.name].sweep_report())]
-        ui.download.content(report_of(work, title, sweeps).encode(), f"{document.name}.html")
+        sweeps = [
+            (screen.name, *made)
+            for screen in document.screens
+            if (made := self.panels[screen.name].sweep_report())
+        ]
+        given = dict(work.entries), dict(work.answered), title, sweeps
+        made = self.solver.submit(tasks.report, document, document.screens[0], *given)
+        await download(made, f"{document.name}.html")
 
     def reset(self) -> None:
         """Return to the base design."""
@@ -338,9 +343,7 @@ class Page:
     def _restore(self, stored: Mapping[str, Any]) -> None:
         """Put stored designs into the forms; a form that shows its design already is left alone."""
         self.header.show_look(stored.get("look") or "")
-        if stored.get("narrow") is True:
-            for panel in self.panels.values():
-                panel.be_narrow()
+        self._be_narrow(stored.get("narrow") is True)
         typed = stored.get("typed", {})
         for name, entries in stored.get("designs", {}).items():
             if (work := self.works.get(name)) is not None:
@@ -351,6 +354,10 @@ class Page:
             self._bar.set_value(stored["front"])
         if stored.get("link"):
             self._follow(str(stored["link"]))
+
+    def _be_narrow(self, narrow: bool) -> None:
+        for panel in self.panels.values():
+            panel.be_narrow(narrow)
 
     def _follow(self, fragment: str) -> None:
         """Open the design in a link, which is checked as a file is."""

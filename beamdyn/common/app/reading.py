@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from beamdyn.common.app.form_entries import toml_value
 from beamdyn.common.edge.inputs import Input, parts_of
 
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _BARE = re.compile(_NUMBER, re.ASCII)
 _QUANTITY = re.compile(rf"({_NUMBER})(\s*[^\d\s.,+-].*|\s+1/.*)?", re.ASCII | re.DOTALL)
+_PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # between the coordinates of a point
 _USUAL = {"m": "mm", "rad": "deg"}  # where nothing is shown yet
 
 
@@ -41,6 +43,8 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
     unit : str
         The unit shown, in which a bare number is taken.
     """
+    if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
+        return _read_pair(typed, parts, unit)
     match = _QUANTITY.fullmatch(typed.strip())
     if match is None or entry.choices or not _is_number(entry):
         return Reading(typed)
@@ -49,6 +53,14 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
     text = f"{number} {needed}".strip()
     as_typed = number == match[1] and needed == given
     return Reading(typed) if as_typed else Reading(text, f"read as {text}")
+
+
+def _read_pair(typed: str, parts: list[str], unit: str) -> Reading:
+    """Read the two coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm"."""
+    each = [_QUANTITY.fullmatch(part.strip()) for part in parts]
+    made = [f"{m[1].replace(',', '.')} {(m[2] or '').strip() or unit}".strip() for m in each if m]
+    text = toml_value(made)
+    return Reading(text, f"read as {text}") if len(made) == 2 else Reading(typed)
 
 
 def is_bare(typed: str) -> bool:

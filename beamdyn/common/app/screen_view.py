@@ -12,25 +12,28 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app import tasks
+from beamdyn.common.app.branch_choice import BranchChoice
 from beamdyn.common.app.chart_board import ChartBoard
 from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
-from beamdyn.common.app.document_report import drawn
+from beamdyn.common.app.downloads import download
 from beamdyn.common.app.draggable_drawing import DraggableDrawing
-from beamdyn.common.app.folded_drawing import FoldedDrawing
+from beamdyn.common.app.folded_drawing import FoldedDrawing, PictureOf
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
 from beamdyn.common.app.list_editor import ListEditor
 from beamdyn.common.app.open_document import Answered, OpenDocument
-from beamdyn.common.app.player import BackAndForth, Player
-from beamdyn.common.app.processes import TaskTaker
+from beamdyn.common.app.player import Player
+from beamdyn.common.app.processes import Task, TaskTaker
 from beamdyn.common.app.refusals import changed, outcome_of
 from beamdyn.common.app.screens import Handle, Screen
+from beamdyn.common.app.sketch_panel import SketchPanel
 from beamdyn.common.app.sweep_panel import SweepPanel
 from beamdyn.common.app.under_way import UnderWay
+from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
+from beamdyn.common.edge.rendering import csv_text, html
 
 
 class ScreenView:
@@ -58,11 +61,13 @@ class ScreenView:
         self._way = UnderWay(self._settle, self.state)
         self._holds = False  # a slider of the form
         self._partial = False  # whether the tables shown are those of an answer before
+        self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
             self._left: Any = ui.column().classes("left gap-1")
             with ui.column().classes("right gap-2"):
                 self._results()
-        self.rebuild()
+        self._shape: list[str] | None = None  # its form is made when it comes to the front: pages open sooner
+        self.state()
 
     def _results(self) -> None:
         with ui.column().classes("head"):
@@ -80,13 +85,17 @@ class ScreenView:
         with self._good:
             with ui.column().classes("pictures gap-2"):
                 self._slider()
+                self._branch = BranchChoice(self._redraw)
                 self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
-                self._curves: Any = ui.html("", sanitize=False).classes("w-full drawing-frame curves")
+                self._curves = PictureOf("curves")
                 self._charts = ChartBoard(f"{self.screen.name}: charts of the result")
             with ui.column().classes("numbers gap-2"):
                 self.comparison = ComparisonPanel(self.work, self.screen)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full")
-                self._more = [FoldedDrawing(title, draw) for title, draw in self.screen.more]
+                self._more = [
+                    FoldedDrawing(title, partial(self._further, number))
+                    for number, (title, _) in enumerate(self.screen.more)
+                ]
         with ui.column().classes("after w-full gap-2"):
             self._exports()
             sweeps = self.screen.sweeps
@@ -105,19 +114,25 @@ class ScreenView:
             self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
                 "slider"
             )
-            self._player = Player(self._at, slider.label, BackAndForth(last, slider.seconds), self._plot)
+            self._player = Player(self._at, slider.label, slider.course(last, slider.seconds), self._plot)
 
     def _exports(self) -> None:
         with ui.row().classes("gap-2"):
-            for kind, make in (("SVG", self._svg), ("PNG", self._png), ("CSV", self._csv)):
+            for kind, make in (
+                ("SVG", partial(self._take, "svg")),
+                ("PNG", partial(self._take, "png")),
+                ("CSV", self._csv),
+            ):
                 ui.button(f"{kind}", on_click=make, icon="download").props(
                     f'flat dense no-caps aria-label="download {self.screen.name} as {kind}"'
                 )
 
     def rebuild(self) -> None:
         """Make the form again, for instance after another file has been opened."""
+        shown = not self.narrow if self._sketch is None else self._sketch.shown
         self._left.clear()
         with self._left:
+            self._sketch = SketchPanel(self.screen.sketch, self.work.entries, shown)
             self._lists = self._make_lists()
             self.form = Form(
                 self._fielded, self.screen.sections, self.work.entries, self._changed, self.screen.drags,
@@ -207,6 +222,8 @@ class ScreenView:
 
     def close(self) -> None:
         """End what is under way: the page is gone."""
+        for way in (self._curves, *self._more):
+            way.close()
         self._way.cancel()
         if self._sweep is not None:
             self._sweep.close()
@@ -268,7 +285,8 @@ class ScreenView:
     def _say(self, mistakes: dict[str, list[str]]) -> None:
         """Show the mistakes outside this form, and the warnings of the answer."""
         answered = self.work.answered.get(self.screen.name)
-        elsewhere = [s for path, said in mistakes.items() if path not in self.form.fields for s in said]
+        out_of_form = (said for path, said in mistakes.items() if path not in self.form.fields)
+        elsewhere = [*dict.fromkeys(sentence for said in out_of_form for sentence in said)]
         warnings = answered.notes if answered and not mistakes else ()
         if (elsewhere, [*warnings]) == self._sentences:
             return
@@ -294,15 +312,24 @@ class ScreenView:
             for more in self._more:
                 more.show(answered.answer)
 
-    def be_narrow(self) -> None:
-        """Draw on narrow paper from now on."""
-        self.narrow = True
+    def be_narrow(self, narrow: bool) -> None:
+        """Draw on narrow paper from now on, or on wide."""
+        if narrow == self.narrow:
+            return
+        self.narrow = narrow
+        if narrow and self._sketch is not None:
+            self._sketch.fold()
         self._draw()
 
     def compare(self) -> None:
         """Show the design that this one is compared with, or none."""
         if self.work.answered.get(self.screen.name):
             self._show()
+
+    def _redraw(self) -> None:
+        """Draw another of the answer's branches."""
+        self._draw()
+        self._plot()
 
     def _turn(self) -> None:
         """Draw at the slider's new place, to the same scale; curves follow when it rests."""
@@ -314,15 +341,19 @@ class ScreenView:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        there = self._other_answer()
+        answer, there = self._drawn_answer(answered), self._other_answer()
         other = () if there is None else self.screen.drawings(there, self.progress)
         name = self.work.other.name if self.work.other else ""
         made = draw_sheet(
-            self.screen, answered.answer, self.progress, self.board.held or view, other, name, self.narrow
+            self.screen, answer, self.progress, self.board.held or view, other, name, self.narrow
         )
         self._drawn = made.name or self.screen.name
-        self._chart(answered.answer)
+        self._chart(answer)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
+
+    def _drawn_answer(self, answered: Answered) -> Any:
+        """The answer, with the branch drawn that is chosen."""
+        return self._branch.choose(answered.answer, self.screen.branches(answered.answer))
 
     def _other_answer(self) -> Any:
         """The answer to the design that this one is compared with, if there is one."""
@@ -341,13 +372,18 @@ class ScreenView:
     def _plot(self) -> None:
         """Show the curves that belong to the drawings, if there are any."""
         answered = self.work.answered.get(self.screen.name)
-        if answered is None:
+        if answered is None or self.screen.curves is None:
             return
-        answer, progress = answered.answer, self.progress
-        figure = self.screen.curves(answer, progress) if self.screen.drawings(answer, progress) else None
-        made = "" if figure is None else picture(drawing(lambda: figure), f"{self.screen.name}: curves")
-        self._curves.set_content(made)
-        self._curves.set_visibility(bool(made))
+        answer, progress = self._drawn_answer(answered), self.progress
+        self._curves.want(lambda: self._make(tasks.curves, answer, progress))
+
+    def _make(self, task: Task, *given: Any) -> asyncio.Future[Any]:
+        """Have something made for this screen."""
+        return self._solver.submit(task, self.work.document, self.screen, *given)
+
+    def _further(self, number: int, answer: Any) -> asyncio.Future[str]:
+        """Have one of the further drawings made."""
+        return self._make(tasks.further, answer, number)
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
         """Write the new place of a handle into the fields, and solve."""
@@ -366,8 +402,8 @@ class ScreenView:
             if done:  # what is written on the way is neither stored nor told to other screens
                 self._edited()
 
-    def sweep_report(self) -> tuple[str, str] | None:
-        """Title and picture of the sweep that is shown; None if there is none."""
+    def sweep_report(self) -> tuple[str, InputSweep] | None:
+        """Title and result of the sweep that is shown; None if there is none."""
         return None if self._sweep is None else self._sweep.report()
 
     @property
@@ -375,17 +411,13 @@ class ScreenView:
         """Place of the slider."""
         return float(self._at.value) if self._at is not None else self.screen.last
 
-    async def _svg(self) -> None:
+    async def _take(self, kind: str) -> None:
+        """Download the drawing, as "svg" or "png"."""
         await self.settled()
         if answered := self.work.answered.get(self.screen.name):
-            ui.download.content(
-                drawn(self.screen, answered.answer, self.progress).encode(), f"{self._name}.svg"
-            )
-
-    async def _png(self) -> None:
-        await self.settled()
-        if answered := self.work.answered.get(self.screen.name):
-            ui.download.content(png(self.screen.draw(answered.answer, self.progress)), f"{self._name}.png")
+            answer = self._drawn_answer(answered)
+            made = self._make(tasks.drawing_file, answer, self.progress, kind)
+            await download(made, f"{self._name}.{kind}")
 
     async def _csv(self) -> None:
         await self.settled()

@@ -8,10 +8,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.app.chart import Chart
+from beamdyn.common.app.courses import BackAndForth, Course
 from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.app.lists import Lists
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketcher
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
 
@@ -61,12 +63,15 @@ class Slider:
         Between places that are drawn when it is moved by hand.
     seconds : float
         How long it takes to play from one end to the other [s].
+    course : callable
+        Its last place and these seconds in, how it is played out: back and forth, or from the start again.
     """
 
     label: str
     marks: tuple[str, ...]
     step: float = 0.05
     seconds: float = 2.5
+    course: Callable[[float, float], Course] = BackAndForth
 
 
 @dataclass(frozen=True)
@@ -174,7 +179,7 @@ class Screen:
     coarser : callable
         Tables in, those of a question out whose drawing is the same and that is answered sooner: solved while
         a point is moved.
-    curves : callable
+    curves : callable, optional
         Answer and place of the slider in; the figure below the drawings out, or None.
     lists : Lists, optional
         Lists of named things that stand above its form.
@@ -185,6 +190,12 @@ class Screen:
     charts : callable, optional
         Answer and place of the slider in; charts out, which are shown below the drawings, and in place of the
         figure where there are none.
+    branches : callable
+        Answer in; out, by their names, the same answer with each of several solutions drawn, the usual one
+        first, among which the page lets one choose. None where there is one.
+    sketch : callable
+        Entries of its form in; rows of drawings out that show what its symbols mean, for the kinds that are
+        chosen there.
     """
 
     name: str
@@ -203,11 +214,13 @@ class Screen:
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
     drawings: Callable[[Any, float], Rows] = lambda *_: ()
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
-    curves: Callable[[Any, float], Figure | None] = lambda *_: None
+    curves: Callable[[Any, float], Figure | None] | None = None
     lists: Lists | None = None
     headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
     effort: str = ""
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
+    branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}
+    sketch: Sketcher = lambda _: ()
 
     @property
     def last(self) -> float:

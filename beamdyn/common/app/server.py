@@ -102,6 +102,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     _free(host, port)
     made, processes = program(), Processes(program)
     app.add_middleware(OwnNames, host=host)
+    app.config.quasar_config["loadingBar"]["skipHijack"] = True  # the bar has no name; "Computing" is said
     app.on_startup(processes.start)
     app.on_shutdown(processes.close)
     with quiet():

@@ -13,6 +13,8 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app import tasks
+from beamdyn.common.app.downloads import download
+from beamdyn.common.app.folded_drawing import PictureOf
 from beamdyn.common.app.form_entries import Entries, in_unit, tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.processes import TakesTooLong, TaskTaker
@@ -20,7 +22,7 @@ from beamdyn.common.app.screens import Screen, Sweeps
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.rendering import csv_text, drawing, picture, png
+from beamdyn.common.edge.rendering import csv_text
 
 _USUAL = {"m": "mm", "rad": "deg"}  # where no unit is given
 _COUNT, _AROUND = 21, 0.2  # values of a sweep to begin with, and how far they go, as a part of the value
@@ -61,7 +63,7 @@ class SweepPanel:
                     ).props("flat no-caps")
             self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
             self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
-            self._picture: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+            self._picture = PictureOf()
 
     def state(self) -> None:
         """While it is open: update the inputs and results offered, and grey a stale sweep."""
@@ -69,7 +71,7 @@ class SweepPanel:
             self._offer()
             stale = self._shown not in (None, self.work.needed(self.screen))
             self._late.set_visibility(stale)
-            self._picture.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
+            self._picture.grey(stale)
 
     def _offer(self) -> None:
         paths = [*self._inputs()]
@@ -139,17 +141,21 @@ class SweepPanel:
         """Show the sweep."""
         if swept := await self._run():
             words = f"{', '.join(swept.results)} over {swept.inputs[0]}"
-            self._picture.set_content(picture(drawing(lambda: self.sweeps.draw(swept)), words))
+            self._picture.want(lambda: self._drawn(swept, words))
             self._shown = self._found[0][0] if self._found else None
             self.state()
 
-    def report(self) -> tuple[str, str] | None:
-        """Title and picture in HTML of the sweep that is shown; None while there is none, or it is stale."""
+    def _drawn(self, swept: InputSweep, words: str) -> asyncio.Future[str]:
+        """Have the picture of a sweep drawn, as HTML."""
+        return self._solver.submit(tasks.sweep_picture, self.work.document, self.screen, swept, words)
+
+    def report(self) -> tuple[str, InputSweep] | None:
+        """Title and result of the sweep that is shown; None while there is none, or it is stale."""
         if self._found is None or self._shown != self.work.needed(self.screen):
             return None
         (_, text, names), swept = self._found
         title = f"Sweep of {self.screen.name}: {names.replace(',', ', ')} over {text}"
-        return title, picture(drawing(lambda: self.sweeps.draw(swept)), title)
+        return title, swept
 
     async def csv(self) -> None:
         """Download its rows."""
@@ -158,13 +164,16 @@ class SweepPanel:
 
     async def svg(self) -> None:
         """Download its picture as SVG."""
-        if swept := await self._run():
-            ui.download.content(drawing(lambda: self.sweeps.draw(swept)).encode(), "sweep.svg")
+        await self._take("svg")
 
     async def png(self) -> None:
         """Download its picture as PNG."""
+        await self._take("png")
+
+    async def _take(self, kind: str) -> None:
         if swept := await self._run():
-            ui.download.content(png(self.sweeps.draw(swept)), "sweep.png")
+            made = self._solver.submit(tasks.sweep_file, self.work.document, self.screen, swept, kind)
+            await download(made, f"sweep.{kind}")
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:

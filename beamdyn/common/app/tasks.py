@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+from beamdyn.common.app.document_report import drawn, report_of
 from beamdyn.common.app.form_entries import Entries, tables_of
 from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.screens import Document, Screen
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.rendering import drawing, picture, png
 
 Outcome = Answered | Mapping[str, list[str]]  # an answer, or what is wrong, by field
 Swept = InputSweep | str  # a sweep, or why there is none
@@ -33,6 +36,61 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
         return screen.sweeps.run(tables_of(work.needed(screen), work.inputs), text, results)
     except (ValueError, ArithmeticError, NoAnswer) as error:
         return str(error)
+
+
+# Pictures by matplotlib, which take long -----------------------------------------------------------------
+
+
+def curves(document: Document, screen: Screen, answer: Any, place: float) -> str:
+    """The curves below the drawings of an answer in HTML; empty where there are none."""
+    if screen.curves is None or not screen.drawings(answer, place):  # else its figure stands in their place
+        return ""
+    figure = screen.curves(answer, place)
+    return "" if figure is None else picture(drawing(lambda: figure), f"{screen.name}: curves")
+
+
+def further(document: Document, screen: Screen, answer: Any, number: int) -> str:
+    """One of the further drawings of an answer in HTML."""
+    title, draw = screen.more[number]
+    return picture(drawing(lambda: draw(answer)), title)
+
+
+def drawing_file(document: Document, screen: Screen, answer: Any, place: float, kind: str) -> bytes:
+    """The drawing of an answer as a file, "svg" or "png"."""
+    if kind == "png":
+        return png(screen.draw(answer, place))
+    return drawn(screen, answer, place).encode()
+
+
+def sweep_file(document: Document, screen: Screen, swept: InputSweep, kind: str) -> bytes:
+    """The picture of a sweep as a file, "svg" or "png"."""
+    assert screen.sweeps is not None
+    draw = screen.sweeps.draw
+    return png(draw(swept)) if kind == "png" else drawing(lambda: draw(swept)).encode()
+
+
+def sweep_picture(document: Document, screen: Screen, swept: InputSweep, words: str) -> str:
+    """The same in HTML."""
+    return picture(sweep_file(document, screen, swept, "svg").decode(), words)
+
+
+Shown = Sequence[tuple[str, str, InputSweep]]  # sweeps that are shown: the screen's name, a title, the sweep
+
+
+def report(
+    document: Document,
+    screen: Screen,
+    entries: Entries,
+    answered: Mapping[str, Answered],
+    title: str,
+    sweeps: Shown,
+) -> str:
+    """The HTML report on a document with these answers, by the names of their screens."""
+    work = _opened(document, entries)
+    work.answered = dict(answered)
+    by_name = {screen.name: screen for screen in document.screens}
+    pictures = [(said, sweep_picture(document, by_name[name], swept, said)) for name, said, swept in sweeps]
+    return report_of(work, title, pictures)
 
 
 def _opened(document: Document, entries: Entries) -> OpenDocument:

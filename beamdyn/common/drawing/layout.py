@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.drawing.label_places import FAR, Ground, Place, Wish, keep_places, place_labels
-from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, points_of_shape
+from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, arc, points_of_shape
 from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size, wrapped
 
 Frame = tuple[float, float, float, float]  # left, top, right, bottom
@@ -21,6 +21,8 @@ _CROWDED = 30.0  # a label farther than this from its point asks for a larger ma
 _SWATCH, _SPACE = 16.0, 14.0  # length of a line in the key, and what follows its text
 _BAR = 0.22  # longest scale bar over the width of the frame
 _SMALL_DISC = 30.0  # radius up to which labels should not stand on it
+# Points that cover the round handle of a point that can be moved, from its place: 16 px of the page.
+_HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
 _PADDING = (4.0, 1.0)  # around the measured text: letters are drawn with hints, and slanted
 
 
@@ -212,6 +214,7 @@ def _ground(drawing: Drawing, inner: Frame, fit: Fit) -> Ground:
         whole = along[np.isfinite(along).all(axis=1)]
         if len(whole) and not closed and not np.array_equal(whole[0], whole[-1]):
             points.append(whole[[0, -1]])
+    points += [fit.to_paper(at) + _HANDLE for at in drawing.points.values()]
     left, top, right, bottom = inner
     within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
     return Ground(within, _clipped(np.vstack(segments), inner), np.vstack(points))
@@ -356,7 +359,7 @@ class _KeyItem(NamedTuple):
 def _entries(drawing: Drawing, frame: Frame, scale: float) -> list[_KeyItem]:
     known = [_KeyItem(_SWATCH, words, role, False) for role, words in drawing.legend.items()]
     longest = _BAR * (frame[2] - frame[0])
-    if scale > 0:
+    if scale > 0 and drawing.unit:
         metres = {"m": 1.0, "mm": 1e-3}[drawing.unit]
         size = round_below(longest / scale * metres)
         known.append(_KeyItem(size / metres * scale, length_text(size), "dimension", True))
@@ -397,8 +400,9 @@ def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tup
 
 
 def _key_height(drawing: Drawing, frame: Frame) -> float:
-    """Room for the key: its colours, and a line more for scales."""
-    return 3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * (1 + len(_lines_of_key(drawing, frame, 0.0)))
+    """Room for the key: its colours, and a line more for scales where there are some."""
+    scales = bool(drawing.unit or drawing.newton)
+    return 3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * (scales + len(_lines_of_key(drawing, frame, 0.0)))
 
 
 def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:

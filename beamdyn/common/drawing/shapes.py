@@ -161,8 +161,8 @@ class Drawing:
         Above it.
     words : str
         What it shows, for those who do not see it.
-    unit : {"m", "mm"}
-        Of its coordinates.
+    unit : {"m", "mm", ""}
+        Of its coordinates; none of a sketch that has no scale.
     newton : float
         Length of an arrow for 1 N, in the drawing's unit; 0 where there are no forces.
     key : mapping
@@ -171,6 +171,8 @@ class Drawing:
         Points (x, y) that can be moved, by their names.
     room : ndarray, shape (k, 2)
         Points for which there is room beside what is drawn, such as those of other positions.
+    own_scale : bool
+        Whether it has a scale of its own beside others, as a detail has.
     """
 
     shapes: Sequence[DrawnShape]
@@ -182,6 +184,7 @@ class Drawing:
     key: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     points: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     room: Any = ()
+    own_scale: bool = False
 
     @property
     def legend(self) -> dict[str, str]:

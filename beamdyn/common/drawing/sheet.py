@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, follow
 from beamdyn.common.drawing.shapes import Drawing
@@ -11,6 +12,7 @@ from beamdyn.common.drawing.shapes import Drawing
 Rows = Sequence[Sequence[Drawing]]
 WIDTH = 680.0  # of a sheet
 _LOWEST, _HIGHEST = 300.0, 600.0  # heights of a row
+_DETAIL = 0.65  # width of a detail over that of a drawing beside it
 _AROUND = 100.0  # room for title, key and labels around what is drawn
 
 
@@ -29,27 +31,33 @@ class Paper:
     @classmethod
     def of(cls, rows: Rows, width: float = WIDTH) -> Paper:
         """Paper for drawings: rows as high as what is drawn in them asks for, within bounds."""
-        return cls(width, tuple(_height(row, width / max(len(row), 1)) for row in rows))
+        return cls(width, tuple(_height(row, width) for row in rows))
+
+
+def _widths(row: Sequence[Drawing], width: float) -> list[float]:
+    """Widths of the drawings of a row: even, but for details beside others."""
+    parts = [_DETAIL if drawing.own_scale else 1.0 for drawing in row]
+    return [width * part / sum(parts) for part in parts]
 
 
 def _height(row: Sequence[Drawing], width: float) -> float:
-    """Height of a row of drawings of this width each."""
+    """Height of a row of drawings on paper of this width."""
     highest = 0.0
-    for drawing in row:
+    for drawing, own in zip(row, _widths(row, width), strict=True):
         low, high = drawing.extent()
         across, up = high - low
-        highest = max(highest, width * up / across if across else _HIGHEST)
+        highest = max(highest, own * up / across if across else _HIGHEST)
     return min(max(highest + _AROUND, _LOWEST), _HIGHEST)
 
 
 def frames_of(row: Sequence[Drawing], paper: Paper, number: int) -> list[Frame]:
-    """Frames of the drawings of a row, which share its width evenly."""
-    top, part = sum(paper.heights[:number]), paper.width / max(len(row), 1)
-    return [(i * part, top, (i + 1) * part, top + paper.heights[number]) for i in range(len(row))]
+    """Frames of the drawings of a row, beside one another."""
+    top, ends = sum(paper.heights[:number]), [0.0, *accumulate(_widths(row, paper.width))]
+    return [(left, top, right, top + paper.heights[number]) for left, right in pairwise(ends)]
 
 
 def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layout]:
-    """Layouts of drawings on paper; those of a row have one scale.
+    """Layouts of drawings on paper; those of a row have one scale, but for details.
 
     Parameters
     ----------
@@ -75,9 +83,12 @@ def _arranged(drawing: Drawing, frame: Frame, before: Layout | None) -> Layout:
 
 
 def _to_one_scale(layouts: Sequence[Layout]) -> list[Layout]:
-    """The same layouts, all at the least of their scales."""
-    scale = min((layout.fit.scale for layout in layouts), default=0.0)
-    return [layout if layout.fit.scale == scale else _at_scale(layout, scale) for layout in layouts]
+    """The same layouts, all but details at the least of their scales."""
+    scale = min((layout.fit.scale for layout in layouts if not layout.drawing.own_scale), default=0.0)
+    return [
+        layout if layout.drawing.own_scale or layout.fit.scale == scale else _at_scale(layout, scale)
+        for layout in layouts
+    ]
 
 
 def _at_scale(layout: Layout, scale: float) -> Layout:

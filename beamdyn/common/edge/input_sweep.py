@@ -107,8 +107,9 @@ class InputSweep(Result):
         Where there is no answer, and why.
     combine : {"product", "zip"}
         Whether the inputs are combined each with each, or taken together.
-    refused : tuple of (int, str)
-        Designs that are refused, by their row (the last input changes fastest), each with the reason.
+    refused, unanswered : tuple of (int, str)
+        Designs that are refused, and those that lack a result, such as a brake that locks: by their row (the
+        last input changes fastest), each with the reason.
     """
 
     inputs: tuple[str, ...]
@@ -120,6 +121,7 @@ class InputSweep(Result):
     warnings: tuple[str, ...] = ()
     combine: str = "product"
     refused: tuple[tuple[int, str], ...] = ()
+    unanswered: tuple[tuple[int, str], ...] = ()
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""

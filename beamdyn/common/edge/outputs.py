@@ -23,7 +23,11 @@ if TYPE_CHECKING:
 
 Flag = Annotated[bool, Parameter(negative="")]
 
+_TABLES = (".csv", ".tsv", ".txt", "")  # without a suffix the name promises nothing
 _SUFFIXES = {
+    "json": (".json", ""),
+    "csv": _TABLES,
+    "crossings": _TABLES,
     "plot": (".png", ".svg", ".pdf"),
     "report": (".html", ".htm"),
     "shapes": (".vtu", ".vtk"),
@@ -43,9 +47,9 @@ class Outputs:
     plot : Path, optional
         Draw the result into this file: .png, .svg or .pdf.
     json : Path, optional
-        Write the result with its error estimate and provenance into this file.
+        Write the result with its error estimate and provenance into this file: .json.
     csv : Path, optional
-        Write a table for other programs into this file.
+        Write a table for other programs into this file: .csv, .tsv or .txt.
     report : Path, optional
         Write inputs, results, drawings and warnings into this file, which needs no other: .html.
     force : bool
@@ -79,10 +83,11 @@ class Outputs:
         read = [place for i in inputs if i is not None and given for place in (i, *_named_by(Path(i)))]
         for option, path in given.items():
             _check_is_no_input(option, path, read)
-            _check_output(option, path, self.force)
         for (one, path), (other, same) in combinations(given.items(), 2):
             if same_file(path, same):
                 raise ValueError(f"--{one} and --{other} = {same}: give each its own file")
+        for option, path in given.items():
+            _check_output(option, path, self.force)
 
 
 NO_FILES = Outputs()

@@ -98,7 +98,9 @@ def _table(made: Table, most: int | None) -> str:
     rows = [_row([_cell(cell) for cell in row], words, "td") for row in cells]
     head = _row([escape(head) for head in heads], words, "th")
     body = "".join(_ends(rows, most, len(heads)))
-    return f'<div class="scrolls"><table><thead>{head}</thead><tbody>{body}</tbody></table></div>'
+    return (
+        f'<div class="scrolls" tabindex="0"><table><thead>{head}</thead><tbody>{body}</tbody></table></div>'
+    )
 
 
 def _ends(rows: list[str], most: int | None, columns: int) -> list[str]:

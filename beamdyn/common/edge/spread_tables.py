@@ -201,8 +201,14 @@ def _source_of_slopes(result: Spread) -> str:
 def spread_csv(result: Spread) -> Iterator[Sequence[object]]:
     """Inputs in SI and answers of the random designs, a row each."""
     inputs = [_head(each.name.replace(".", "_"), each.unit) for each in result.inputs]
-    yield *inputs, *map(_head, result.answers, result.units)
+    yield *inputs, *map(_answer_head, result.answers, result.units)
     yield from np.hstack([result.sampled_inputs, result.sampled_answers]).tolist()
+
+
+def _answer_head(name: str, unit: str) -> str:
+    """That of an answer; of the frequency of a mode "frequency_Hz_1", as in all tables."""
+    mode = re.fullmatch(r"mode (\d+)", name)
+    return f"{_head('frequency', unit)}_{mode[1]}" if mode else _head(name, unit)
 
 
 def _head(name: str, unit: str) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
 from beamdyn.common.edge.outputs import Flag
 
@@ -16,6 +16,16 @@ if TYPE_CHECKING:
 
 OPTION = "--vary"
 _MOST_WORKERS = 128
+
+
+def _folder(_: object, tokens: Sequence[Token]) -> Path:
+    """The name of a folder; an empty one would be the current folder."""
+    if not tokens[0].value.strip():
+        raise ValueError("the name is empty; give a folder, or leave the option out.")
+    return Path(tokens[0].value)
+
+
+Folder = Annotated[Path | None, Parameter(converter=_folder)]
 
 
 def _check_workers(_: object, value: object) -> None:
@@ -45,7 +55,7 @@ class VaryOptions:
     vary: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False, show_default=False)] = ()
     together: Flag = False
     workers: Annotated[int, Parameter(validator=_check_workers)] = 1
-    store: Path | None = None
+    store: Folder = None
 
     @property
     def combine(self) -> Literal["product", "zip"]:

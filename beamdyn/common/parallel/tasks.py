@@ -131,6 +131,8 @@ class TaskRunner:
             raise InvalidValue("workers", self.workers, "an executor is given too", "give one of them")
         if self.store is not None and not isinstance(self.store, str | PathLike):
             raise InvalidValue("store", self.store, "give the name of a folder")
+        if isinstance(self.store, str) and not self.store.strip():
+            raise InvalidValue("store", self.store, "the name is empty", 'give a folder, such as "store"')
         if self.progress is not None:
             parts = self.interrupted.parts
             function("progress", self.progress, f"it takes the numbers of finished {parts} and of all")

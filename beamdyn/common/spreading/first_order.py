@@ -30,6 +30,10 @@ class FirstOrderRange:
     exact : ndarray of bool, shape (d, k)
         Which slopes are derivatives of the equations; others are those of polynomials through designs.
 
+    References
+    ----------
+    Standard: propagation of tolerances by slopes.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -130,6 +130,10 @@ class SobolIndices:
     first_error, total_error : ndarray, shape (d, k)
         Standard errors of the indices.
 
+    References
+    ----------
+    Saltelli et al. (2010), Computer Physics Communications 181, 259.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -74,6 +74,10 @@ class WorstCases:
     designs : int
         Number of designs at corners and of the search.
 
+    References
+    ----------
+    Kolda, Lewis and Torczon (2003), SIAM Review 45, 385.
+
     Examples
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -37,6 +37,10 @@ class RoadWave:
     ValueError
         If the wavelength is not positive, or none or both of the amplitudes are given.
 
+    References
+    ----------
+    Lee and Yoo (2019), eq. (3).
+
     Examples
     --------
     >>> road = bd.RoadWave(wavelength=0.3, height=0.002)  # m
@@ -113,6 +117,10 @@ class RollingWheel(Motion):
     ------
     ValueError
         If the radius is not positive, or the speed is neither a number nor a rotation.
+
+    References
+    ----------
+    Lee and Yoo (2019), section 2: a wheel that rolls without slip on a wave whose height it follows.
 
     Examples
     --------

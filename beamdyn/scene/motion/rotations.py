@@ -115,6 +115,10 @@ class SpinUp(Rotation):
     ValueError
         If the duration is not positive, the speed is not finite, or the law is unknown.
 
+    References
+    ----------
+    Kane, Ryan and Banerjee (1987), the smooth law; the others: standard.
+
     Examples
     --------
     >>> motion = bd.SpinUp(55.0, duration=10.0)

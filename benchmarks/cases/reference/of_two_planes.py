@@ -77,9 +77,9 @@ def derivatives_by_collocation(
             beside = scene_of(scene, {name: value})
             return np.stack([squares_on_mesh(beside, speed, count, n) for n in (pieces, 2 * pieces)])
 
-        rows, weights = evaluate_nearby(number, squares)
-        slopes.append(np.tensordot(weights, np.array(rows), 1) / (8 * np.pi**2 * frequency))
-        sizes.append(np.abs(weights).sum())
+        widest = next(evaluate_nearby(number, squares))
+        slopes.append(np.tensordot(widest.weights, np.array(widest.values), 1) / (8 * np.pi**2 * frequency))
+        sizes.append(np.abs(widest.weights).sum())
     noise = np.max([np.abs(a - b) / size for (a, b), size in zip(slopes, sizes, strict=True)], axis=0)
     return [(a, _MARGIN * noise * size) for (a, _), size in zip(slopes, sizes, strict=True)]
 

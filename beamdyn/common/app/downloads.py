@@ -1,0 +1,33 @@
+"""Files to take away, which are drawn beside the page's process."""
+
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import BrokenExecutor
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.app.processes import TakesTooLong
+from beamdyn.common.app.under_way import SOON
+
+
+async def download(making: asyncio.Future[Any], name: str) -> None:
+    """Download what is being made, bytes or a text, as a file; say so where it takes its time, or fails.
+
+    Parameters
+    ----------
+    making : asyncio.Future
+        From `TaskTaker.submit`.
+    name : str
+        Of the file.
+    """
+    await asyncio.wait([making], timeout=SOON)
+    if not making.done():
+        ui.notify(f"{name} is being made")
+    try:
+        made = await making
+    except (TakesTooLong, BrokenExecutor) as error:
+        ui.notify(f"{name} was given up: {error}", type="negative")
+        return
+    ui.download.content(made.encode() if isinstance(made, str) else made, name)

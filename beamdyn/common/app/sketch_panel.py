@@ -1,0 +1,52 @@
+"""A sketch beside the form that shows what its symbols mean; it can be folded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.drawing.sheet import lay_out
+from beamdyn.common.drawing.sketch import Sketcher, sketch_paper
+from beamdyn.common.drawing.svg import element
+
+STYLE = """
+.sketch svg { width: 100%; max-width: 340px; height: auto; display: block; margin: 0 auto; }
+.sketch .nicegui-expansion-content { display: block !important; padding: 0 !important; }
+"""
+
+
+class SketchPanel:
+    """The sketch of a form; nothing where there is none.
+
+    Parameters
+    ----------
+    sketch : callable
+        Entries of the form in, drawings out.
+    entries : mapping
+        What stands in the form.
+    shown : bool
+        Whether it is unfolded.
+    """
+
+    def __init__(self, sketch: Sketcher, entries: Mapping[str, str], shown: bool) -> None:
+        self._shown = shown
+        self._fold: Any = None
+        if rows := sketch(entries):
+            paper = sketch_paper(rows)
+            made = element(lay_out(rows, paper), paper)
+            self._fold = ui.expansion("What the symbols mean", value=shown)
+            with self._fold.classes("w-full section sketch").props("dense"):
+                ui.html(made, sanitize=False)
+
+    @property
+    def shown(self) -> bool:
+        """Whether it is unfolded."""
+        return bool(self._fold.value) if self._fold is not None else self._shown
+
+    def fold(self) -> None:
+        """Fold it."""
+        self._shown = False
+        if self._fold is not None:
+            self._fold.close()

@@ -1,0 +1,113 @@
+"""Sketches that show what symbols mean: lengths, angles and forces marked on a schematic drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, arc
+from beamdyn.common.drawing.sheet import Paper, Rows
+from beamdyn.common.drawing.symbols import typeset
+
+Sketcher = Callable[[Mapping[str, str]], Rows]  # entries of a form in, drawings out
+
+WIDTH = 272.0  # of the paper [pt]: a form's, with letters about as large as its own
+_LETTERS = 11.0
+_LOWEST, _HIGHEST, _AROUND = 84.0, 200.0, 32.0  # heights of a row, and room around what is drawn [pt]
+_THIN, _DASHED = 0.8, (4.0, 2.5)
+_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # where beside a length its symbol may stand
+
+Point = tuple[float, float] | np.ndarray
+
+
+class Sketch:
+    """A schematic drawing that grows; its proportions are its own, and its size means nothing.
+
+    Attributes
+    ----------
+    shapes, labels : list
+        What has been drawn.
+    room : list of points
+        For which there is room beside that.
+    """
+
+    def __init__(self) -> None:
+        self.shapes: list[DrawnShape] = []
+        self.labels: list[Label] = []
+        self.room: list[Point] = []
+
+    def add(self, *shapes: DrawnShape) -> None:
+        """Draw shapes."""
+        self.shapes += shapes
+
+    def say(
+        self, symbol: str, at: Any, towards: Point = (0.0, 0.0), role: str = "text", words: str = ""
+    ) -> None:
+        """Write a symbol, such as "alpha1", and words after it, at one of some points."""
+        way = float(towards[0]), float(towards[1])
+        self.labels.append(
+            Label(words, at, role, way, typeset(symbol), priority=1 if symbol else 0, size=_LETTERS)
+        )
+
+    def dashed(self, *points: Point) -> None:
+        """Draw a thin dashed line."""
+        self.add(Outline(np.array(points, dtype=float), "axis", _THIN, _DASHED))
+
+    def length(self, symbol: str, start: Point, end: Point, towards: Point) -> None:
+        """Mark the length between two points; its symbol stands beside it."""
+        ends = np.array([start, end], dtype=float)
+        self.add(Arrow(ends[0], ends[1], "dimension", symbol, 1.0, both=True))
+        self.say(symbol, ends[0] + _ALONG[:, None] * (ends[1] - ends[0]), towards)
+
+    def angle(self, symbol: str, centre: Point, radius: float, start: float, end: float) -> None:
+        """Mark an angle from `start` to `end` [rad]; its symbol stands outside the arc."""
+        way = arc(centre, radius, start, end)
+        self.add(Outline(way[:-5], "dimension", 1.0), Arrow(way[-8], way[-1], "dimension", symbol, 1.0))
+        middle = arc(centre, radius, start + 0.5 * (end - start), start + 0.3 * (end - start), 2)
+        self.say(symbol, middle, middle[0] - np.asarray(centre, dtype=float))
+
+    def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load", words: str = "") -> None:
+        """Draw a force, or a way that something goes; its symbol stands at its free end."""
+        ends = np.array([foot, tip], dtype=float)
+        self.add(Arrow(ends[0], ends[1], role, symbol or words, 1.8))
+        self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role, words)
+
+    def moment(self, symbol: str, centre: Point, radius: float, start: float, end: float, role: str) -> None:
+        """Draw a turn about a point, from an angle to another [rad]."""
+        way = arc(centre, radius, start, end)
+        self.add(Outline(way[:-5], role, 1.6), Arrow(way[-8], way[-1], role, symbol, 1.6))
+        self.say(symbol, way[[20, 12, 28]], way[20] - np.asarray(centre, dtype=float), role)
+
+    def axis(self, at: Point) -> None:
+        """Mark an axis that is seen from its end."""
+        self.add(Symbol("cross", at, "axis", 9.0))
+
+    def drawing(self, title: str, words: str) -> Drawing:
+        """The drawing, with a title and what it shows in words."""
+        return Drawing(tuple(self.shapes), tuple(self.labels), title, words, unit="", room=self.room)
+
+
+def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
+    """A wall through a point, of a half length, hatched on its back."""
+    at, way, behind = (np.asarray(each, dtype=float) for each in (middle, half, back))
+    ends = np.array([at - way, at + way])
+    ticks = ends[0] + np.linspace(0, 1, 6)[:, None] * (ends[1] - ends[0])
+    return [Outline(ends, "ground", 2.4), *(Outline([tick, tick + behind], "ground", 0.9) for tick in ticks)]
+
+
+def symbols_in(rows: Rows) -> set[str]:
+    """The symbols that are written in drawings, as `typeset` makes them."""
+    return {label.symbol for row in rows for drawing in row for label in drawing.labels if label.symbol}
+
+
+def sketch_paper(rows: Rows, width: float = WIDTH) -> Paper:
+    """Paper for sketches: as wide as a form, and no higher than is needed."""
+    return Paper(width, tuple(_height(row, width / len(row)) for row in rows))
+
+
+def _height(row: Sequence[Drawing], width: float) -> float:
+    spans = [np.subtract(*drawing.extent()[::-1]) for drawing in row]
+    highest = max(float((width - _AROUND) * up / across) if across else _HIGHEST for across, up in spans)
+    return min(max(highest + _AROUND + 16.0, _LOWEST), _HIGHEST)

@@ -1,0 +1,212 @@
+"""What the symbols of the brakes' forms mean: sketches of truck, duo-servo brake, drum brake, bicycle."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.common.drawing.shapes import Disc, Drawing, Outline, Symbol, arc
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketch
+from brakes.drawings.duo_servo import duo_servo
+from brakes.drawings.forklift import draw_chassis
+from brakes.forklift import BENDIX_12_5, Truck
+
+_SLOPE = np.radians(14.0)
+_DOWN, _UP = (0.0, -1.0), (0.0, 1.0)
+
+
+# Forklift -------------------------------------------------------------------------------------------------
+
+
+def truck_sketch() -> Rows:
+    """Dimensions of a truck with its load, and the slope."""
+    r1, L = 0.5, 1.9
+    t = Truck(5000.0, (1.1, 0.62), 2000.0, (-1.1, 0.85), front_wheel_radius=r1, wheelbase=L)
+    return [[_dimensions_of(t, r1, L)], [_slope()]]
+
+
+def _dimensions_of(t: Truck, r1: float, L: float) -> Drawing:
+    s = Sketch()
+    draw_chassis(s.shapes, t, np.eye(2))
+    cg, load = np.array([1.1, 0.62 + r1]), np.array([-1.1, 0.85 + r1])
+    s.add(Symbol("dot", cg, "weight", 7.0), Symbol("dot", load, "weight", 7.0))
+    s.say("m", cg, (1.0, 1.0), "weight")
+    s.say("m_L", load, (-1.0, 1.0), "weight")
+    low, lower = -0.35, -1.4
+    s.dashed((0.0, r1), (0.0, lower - 0.1))
+    s.dashed((L, 0.75 * r1), (L, lower - 0.1))
+    s.length("L", (0.0, lower), (L, lower), _DOWN)
+    s.dashed(cg, (cg[0], low - 0.1))
+    s.length("x", (0.0, low), (cg[0], low), _DOWN)
+    s.dashed(load, (load[0], low - 0.1))
+    s.length("x_L", (0.0, low), (load[0], low), _DOWN)
+    s.dashed((-2.3, r1), (2.9, r1))
+    s.length("y_L", (-1.95, r1), (-1.95, load[1]), (-1.0, 0.0))
+    s.dashed(load, (-2.1, load[1]))
+    s.length("y", (2.7, r1), (2.7, cg[1]), (1.0, 0.0))
+    s.dashed(cg, (2.8, cg[1]))
+    s.length("r1", (2.7, 0.0), (2.7, r1), (1.0, 0.0))
+    return s.drawing("Truck and load", "A truck with its load: L, x, y, r1, x_L, y_L")
+
+
+def _slope() -> Drawing:
+    s = Sketch()
+    way = np.array([np.cos(_SLOPE), -np.sin(_SLOPE)])
+    top = np.array([0.0, 1.0])
+    foot = top + 4.2 * way
+    normal = np.array([-way[1], way[0]])
+    s.add(Outline([top, foot], "ground", 2.0))
+    s.dashed(foot, foot - (2.4, 0.0))
+    s.angle("beta", foot, 1.9, np.pi, np.pi - float(_SLOPE))
+    start = top + 0.8 * way + 0.3 * normal
+    s.arrow("V", start, start + 1.1 * way)
+    return s.drawing("Slope, downhill as it travels", "The slope, and the speed down it: beta, V")
+
+
+def duo_servo_sketch() -> Rows:
+    """Dimensions of a duo-servo brake at rest."""
+    motion = BENDIX_12_5.move_shoes(0.0106)
+    s, drawn = Sketch(), duo_servo(BENDIX_12_5, motion, 0.0)
+    s.shapes += drawn.shapes
+    r, (x, y), (ax, ay) = 0.15875, (0.06155, 0.10229), (0.05304, -0.12211)
+    s.length("r", (0.0, 0.0), r * np.array([-np.cos(0.5), -np.sin(0.5)]), (0.4, -1.0))
+    far = 0.19
+    s.dashed((0.0, 0.0), (far + 0.05, 0.0))
+    s.dashed((x, y), (far + 0.02, y))
+    s.dashed((ax, ay), (far + 0.02, ay))
+    s.length("y_t", (far, 0.0), (far, y), (1.0, 0.0))
+    s.length("y_a", (far, 0.0), (far, ay), (1.0, 0.0))
+    s.dashed((0.0, 0.0), (0.0, 0.2))
+    s.dashed((x, y), (x, 0.2))
+    s.length("x_t", (0.0, 0.19), (x, 0.19), _UP)
+    s.dashed((0.0, 0.0), (0.0, -0.2))
+    s.dashed((ax, ay), (ax, -0.2))
+    s.length("x_a", (0.0, -0.19), (ax, -0.19), _DOWN)
+    tilt = float(BENDIX_12_5.face_tilt)  # type: ignore[arg-type]
+    s.dashed((-x, y), (-x, y + 0.07))
+    s.say("alpha", (-x, y) + 0.06 * np.array([-np.sin(tilt / 2), np.cos(tilt / 2)]), (-0.4, 1.0), "dimension")
+    gap = np.array([np.cos(2.75), np.sin(2.75)])
+    s.arrow("c_L", 1.3 * r * gap, 0.97 * r * gap, "dimension")
+    return [[s.drawing("At rest", "A duo-servo brake at rest: r, x_t, y_t, x_a, y_a, alpha, c_L")]]
+
+
+def levers_sketch() -> Rows:
+    """Arms and angles of the forces on both shoes."""
+    return [[_shoe_with_arms(1)], [_shoe_with_arms(-1)]]
+
+
+def _shoe_with_arms(side: int) -> Drawing:
+    """The leading shoe on the right (1), or the trailing one on the left (-1)."""
+    s, words = Sketch(), "Leading shoe" if side > 0 else "Trailing shoe"
+    alpha, gamma = np.radians((20.0, 16.0)).tolist()
+    s.add(Disc((0.0, 0.0), 1.0, "axis", 1.2, (4.0, 2.0)))
+    s.axis((0, 0))
+    s.add(Outline(arc((0.0, 0.0), 0.94, -0.8, 0.75) * (side, 1.0), "body", 5.0))
+    push, name = np.array([side * np.cos(alpha), -np.sin(alpha)]), "1" if side > 0 else "2"
+    arm = 0.66 * np.array([side * np.sin(alpha), np.cos(alpha)])
+    _force_with_arm(s, ("P_L", "a1") if side > 0 else ("P_T", "a2"), push, arm, "load")
+    start = arm - 0.45 * push
+    s.dashed(start, start + np.array([1.3 * side, 0.0]))
+    s.angle(f"alpha{name}", start, 1.15, *((0.0, -alpha) if side > 0 else (np.pi, np.pi + alpha)))
+    hold = side * np.array([np.cos(gamma), np.sin(gamma)])
+    below = 0.72 * np.array([np.sin(gamma), -np.cos(gamma)])
+    _force_with_arm(s, ("Q", f"b{name}"), hold, below, "reaction")
+    if side > 0:
+        s.dashed(below, below + np.array([1.2, 0.0]))
+        s.angle("gamma", below, 1.0, 0.0, gamma)
+        s.length("r", (0.0, 0.0), (-np.cos(0.2), np.sin(0.2)), _UP)
+        s.moment("T", (0.0, 0.0), 1.15, 2.5, 3.3, "load")
+    return s.drawing(words, f"Arms and angles of the forces on the {words.lower()}")
+
+
+def _force_with_arm(s: Sketch, names: tuple[str, str], along: np.ndarray, arm: np.ndarray, role: str) -> None:
+    """A force on its line, and the arm of that line about the centre."""
+    s.dashed(arm - 0.5 * along, arm + 0.9 * along)
+    s.arrow(names[0], arm - 0.45 * along, arm + 0.25 * along, role)
+    s.length(names[1], (0.0, 0.0), arm, (-along[0], -along[1]))
+
+
+# Drum brake -----------------------------------------------------------------------------------------------
+
+
+def drum_sketch() -> Rows:
+    """Dimensions of one shoe in its drum, and what may be given as its load."""
+    return [[_shoe()], [_width(), _cylinder()]]
+
+
+def _shoe() -> Drawing:
+    s = Sketch()
+    start, end = np.radians((32.0, 112.0))
+    pin, force = np.array([0.2, -0.78]), 0.72
+    rim = arc((0.0, 0.0), 1.0, start - np.pi / 2, end - np.pi / 2)
+    lever = np.array([0.5, force])
+    s.add(Disc((0.0, 0.0), 1.0, "neutral", 1.4), Outline(np.vstack([pin, 0.86 * rim, lever]), "body", 5.0))
+    s.add(Outline(rim, "support", 7.0), Symbol("pin", pin, "pin", 8.0))
+    s.axis((0, 0))
+    s.length("r", (0.0, 0.0), (-np.cos(0.5), -np.sin(0.5)), (-0.3, 1.0))
+    s.arrow("P", lever - (0.6, 0.0), lever)
+    s.length("a", (-0.3, 0.0), (-0.3, force), (1.0, 0.0))
+    s.dashed((-0.4, force), lever)
+    s.dashed((-0.65, 0.0), (0.0, 0.0))
+    s.dashed((0.0, 0.0), (0.0, -1.3))
+    s.length("c", (-0.3, 0.0), (-0.3, pin[1]), (1.0, 0.0))
+    s.dashed((-0.4, pin[1]), pin)
+    s.length("b", (0.0, -1.14), (pin[0], -1.14), _DOWN)
+    s.dashed(pin, (pin[0], -1.25))
+    s.dashed((0.0, 0.0), 1.0 * rim[0])
+    s.dashed((0.0, 0.0), 1.0 * rim[-1])
+    s.angle("alpha1", (0.0, 0.0), 0.42, -np.pi / 2, float(start) - np.pi / 2)
+    s.angle("alpha2", (0.0, 0.0), 0.62, -np.pi / 2, float(end) - np.pi / 2)
+    s.moment("M", (0.0, 0.0), 1.13, 2.0, 1.1, "load")
+    return s.drawing("A shoe in the drum", "A shoe in its drum: r, a, b, c, alpha1, alpha2, P, M")
+
+
+def _width() -> Drawing:
+    s = Sketch()
+    s.add(Outline([(0, 1.0), (0, 0), (1.0, 0), (1.0, 1.0)], "neutral", 1.4))
+    s.add(Outline([(0.2, 0.0), (0.8, 0.0)], "support", 9.0))
+    s.length("w", (0.2, 0.3), (0.8, 0.3), _UP)
+    return s.drawing("Along the axis", "The width of the lining along the drum's axis: w")
+
+
+def _cylinder() -> Drawing:
+    s = Sketch()
+    s.add(Outline([(0, 0.25), (1.0, 0.25), (1.0, -0.25), (0, -0.25)], "body", 1.4, closed=True, filled=True))
+    s.add(
+        Outline([(0.7, 0.24), (0.7, -0.24)], "contact", 4.0),
+        Outline([(0.7, 0.0), (1.3, 0.0)], "support", 4.0),
+    )
+    s.say("p_h", (0.35, 0.0), role="load")
+    s.dashed((-0.35, 0.25), (0.0, 0.25))
+    s.dashed((-0.35, -0.25), (0.0, -0.25))
+    s.length("d", (-0.22, -0.25), (-0.22, 0.25), (-1.0, 0.0))
+    return s.drawing("Wheel cylinder", "The bore of a wheel cylinder and its pressure: d, p_h")
+
+
+# Bicycle --------------------------------------------------------------------------------------------------
+
+
+def bicycle_sketch() -> Drawing:
+    """Dimensions of the vehicle that a caliper stops."""
+    s = Sketch()
+    R, L = 0.7, 2.1
+    cg = np.array([1.15, 2.0])
+    s.add(Outline([(-1.0, 0.0), (3.2, 0.0)], "ground", 2.0))
+    for x in (0.0, L):
+        s.add(Disc((x, R), R, "wheel", 1.6), Disc((x, R), 0.84 * R, "axis", 1.0))
+        s.axis((x, R))
+    frame = np.array([(0.0, R), (0.2, 1.7), (0.85, 0.75), (L, R), (1.35, 1.65), (0.2, 1.7)])
+    s.add(Outline(frame, "body", 3.0), Outline([(0.85, 0.75), (1.35, 1.65)], "body", 3.0))
+    s.add(Symbol("dot", cg, "weight", 7.0))
+    s.say("M", cg, (1.0, 1.0), "weight")
+    s.length("R", (L, R), (L, 0.0), (1.0, 0.0))
+    s.length("r", (0.0, R), 0.84 * R * np.array([-np.cos(0.5), -np.sin(0.5)]) + (0.0, R), (-0.3, 1.0))
+    s.length("h", (3.05, 0.0), (3.05, cg[1]), (1.0, 0.0))
+    s.dashed(cg, (3.15, cg[1]))
+    s.dashed((0.0, R), (0.0, -1.0))
+    s.dashed((L, 0.0), (L, -1.0))
+    s.dashed(cg, (cg[0], -0.36))
+    s.length("x", (0.0, -0.26), (cg[0], -0.26), _DOWN)
+    s.length("L", (0.0, -0.88), (L, -0.88), _DOWN)
+    s.arrow("v", (0.0, 2.15), (-0.8, 2.15))
+    return s.drawing("The vehicle that it stops", "A bicycle: R, r, L, h, x, M, v")

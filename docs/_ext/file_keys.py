@@ -1,0 +1,66 @@
+"""Tables of the keys in place of ``<!-- keys of MODULE:SECTION -->``, from their description."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from importlib import import_module
+from typing import Any
+
+from beamdyn.common.edge.inputs import Input, describe
+
+MARK = re.compile(r"^<!-- keys of (\S+):(\w+) -->$", re.MULTILINE)
+_BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section"}
+_HEAD = "| key | what | default | only with |\n|---|---|---|---|"
+
+
+def tables_of(section: Any) -> str:
+    """All tables of a file, in Markdown."""
+    groups: dict[str, list[Input]] = {}
+    for entry in describe(section):
+        groups.setdefault(entry.path.rpartition(".")[0], []).append(entry)
+    return "\n\n".join("\n".join(_table(path, entries)) for path, entries in groups.items())
+
+
+def _table(path: str, entries: Sequence[Input]) -> Iterator[str]:
+    yield f"### {f'`[{path}]`' if path else 'At the top'}\n\n{_HEAD}"
+    all_kinds = dict.fromkeys(_kind(entry) for entry in entries)
+    for name in dict.fromkeys(entry.name for entry in entries):
+        own = [entry for entry in entries if entry.name == name]
+        kinds = dict.fromkeys(_kind(entry) for entry in own)
+        only = ", ".join(kinds) if len(kinds) < len(all_kinds) and name != "kind" else ""
+        yield f"| `{name}` | {_what(own, name)} | {_default(own[0], name)} | {only} |"
+
+
+def _kind(entry: Input) -> str:
+    """What tells the table that has the key from its alternatives."""
+    field = entry.section.model_fields.get("kind")
+    if field is not None and field.default:
+        return f"`{field.default}`"
+    return _BEAMS.get(entry.section.__name__, entry.section.__name__)
+
+
+def _what(entries: Sequence[Input], name: str) -> str:
+    choices = dict.fromkeys(str(choice) for entry in entries for choice in entry.choices)
+    said = "; or ".join(dict.fromkeys(entry.help for entry in entries))
+    text = f"{said}: {', '.join(choices)}" if choices else said
+    return text.replace("|", "\\|")
+
+
+def _default(entry: Input, name: str) -> str:
+    if name == "kind":
+        return "the first"
+    if entry.required:
+        return "**required**"
+    if entry.default in (None, [], ()):
+        return ""
+    return str(entry.default).lower() if isinstance(entry.default, bool) else str(entry.default)
+
+
+def write_tables(app, docname: str, source: list[str]) -> None:
+    source[0] = MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2])), source[0])
+
+
+def setup(app) -> dict[str, bool]:
+    app.connect("source-read", write_tables)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

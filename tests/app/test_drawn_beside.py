@@ -1,0 +1,104 @@
+"""Pictures and reports are drawn beside the process that serves: no page waits for another's."""
+
+import asyncio
+
+import pytest
+
+pytest.importorskip("nicegui")
+
+from nicegui.testing.user_interaction import UserInteraction
+
+from beamdyn.common.app import tasks
+from beamdyn.common.edge import rendering
+from brakes.app.program import BRAKES
+from tests.app.conftest import AtOnce
+
+DRAWN = {tasks.curves, tasks.further, tasks.drawing_file, tasks.sweep_picture, tasks.sweep_file, tasks.report}
+
+
+class Holding:
+    """Answers at once, but holds what is drawn until it is let go."""
+
+    def __init__(self):
+        self.held, self.done, self.drawing = [], [], False
+
+    def submit(self, task, *given):
+        if task not in DRAWN:
+            return AtOnce().submit(task, *given)
+        made = asyncio.get_running_loop().create_future()
+        self.held.append((made, task, given))
+        return made
+
+    def let_go(self):
+        held, self.held = self.held, []
+        self.drawing = True
+        for made, task, given in held:
+            if not made.cancelled():
+                made.set_result(task(*given))
+                self.done.append(task)
+        self.drawing = False
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    """One that holds drawings; nothing else may use matplotlib."""
+    made, save = Holding(), rendering._saved
+
+    def saved(*given):
+        assert made.drawing, "drawn in the process that serves"
+        return save(*given)
+
+    monkeypatch.setattr(rendering, "_saved", saved)
+    return made
+
+
+def press(user, words):
+    """Press what is called so, a button or the entry of a menu, which says so in a part of its own."""
+    made = user.client.elements.values()
+    found = next(e for e in made if words in (e.props.get("aria-label"), getattr(e, "text", None)))
+    it = found.parent_slot.parent if found.tag == "q-item-section" else found
+    UserInteraction(user, {it}, None).click()
+
+
+async def wait_for(condition):
+    async with asyncio.timeout(20):
+        while not condition():
+            await asyncio.sleep(0.01)
+
+
+def test_another_tab_is_answered_while_a_report_is_made(simulate, fields, solver):
+    async def body(another):
+        first, second = await another(), await another()
+        press(first, "Report as HTML")
+        await wait_for(lambda: any(task is tasks.report for _, task, _ in solver.held))
+        page = fields(second)
+        page.enter("stop.speed", "25 km/h")
+        await wait_for(lambda: "Up to date." in page.text())
+        assert "16." in page.text()  # the stopping distance grows from 13.4 m to some 19
+        assert tasks.report not in solver.done
+        solver.let_go()
+        found = (await first.download.next()).text
+        assert "<h2>Vehicle</h2>" in found and "<h2>Internal forces</h2>" in found
+
+    simulate(BRAKES, body, solver)
+
+
+def test_curves_and_files_are_drawn_beside(simulate, fields, solver):
+    def curves(user):
+        written = [str(e.props.get("innerHTML", "")) for e in user.client.elements.values()]
+        return [text for text in written if 'alt="Drum brake: curves"' in text]
+
+    async def body(another):
+        user = await another()
+        page = fields(user)
+        page.go("Drum brake")
+        await wait_for(lambda: "Up to date." in page.text())
+        assert tasks.curves in [task for _, task, _ in solver.held] and not curves(user)
+        solver.let_go()
+        await wait_for(lambda: curves(user))
+        press(user, "download Drum brake as PNG")
+        await wait_for(lambda: tasks.drawing_file in [task for _, task, _ in solver.held])
+        solver.let_go()
+        assert (await user.download.next()).content.startswith(b"\x89PNG")
+
+    simulate(BRAKES, body, solver)

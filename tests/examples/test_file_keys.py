@@ -1,0 +1,64 @@
+"""The site's tables of keys: all of them, from the descriptions that files are read by."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from beamdyn.config.scene_inputs import SceneInput
+from brakes.config.drum import DrumInput
+from brakes.config.forklift import ForkliftInput
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "input_files.md"
+
+
+def extension() -> ModuleType:
+    spec = spec_from_file_location("file_keys", ROOT / "docs" / "_ext" / "file_keys.py")
+    assert spec is not None and spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_page_has_the_tables_of_all_files() -> None:
+    source = [PAGE.read_text(encoding="utf-8")]
+    extension().write_tables(None, "input_files", source)
+    assert "<!-- keys" not in source[0]
+    for heading in ("### `[beam.tip]`", "### `[second_shoe]`", "### `[levers]`"):
+        assert heading in source[0]
+
+
+@pytest.mark.parametrize(
+    ("section", "file"),
+    [
+        (SceneInput, "rolling_harvester"),
+        (SceneInput, "patched"),
+        (SceneInput, "twisted_blade"),
+        (DrumInput, "drum"),
+        (ForkliftInput, "forklift"),
+    ],
+)
+def test_keys_of_an_example_are_in_its_tables(section: type, file: str) -> None:
+    text = extension().tables_of(section)
+    given = tomllib.loads((ROOT / "examples" / f"{file}.toml").read_text(encoding="utf-8"))
+    for table, keys in given.items():
+        for key, value in keys.items():
+            place = (
+                f"### `[{table}.{key}]`"
+                if isinstance(value, dict) and "values" not in value
+                else f"| `{key}` |"
+            )
+            assert place in text, (table, key)
+
+
+def test_rows_say_unit_bound_default_and_where_a_key_belongs() -> None:
+    text = extension().tables_of(SceneInput)
+    assert "| `width` | width of the section [m], greater than 0 | **required** | rectangular |" in text
+    assert "| `law` | law of the spin-up: smooth, linear | smooth | `spin_up` |" in text
+    assert not re.search(r"Input \|$", text, re.MULTILINE)  # no name of a class

@@ -1,0 +1,49 @@
+"""A measured straight beam, and published answers that are no row of a table."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.published import load
+from benchmarks.cases import measured, single_answers
+
+
+@pytest.mark.parametrize(
+    "row", load("epps_chandra_1996")["measured"], ids=lambda row: f"{row['speed_rpm']:g}"
+)
+def test_a_measured_straight_beam(row: dict) -> None:
+    """Within 10 % or 1 Hz, as the tests of the program that has the transcription allow."""
+    printed = np.array(row["frequency"], dtype=float)
+    found = bd.natural_modes(measured.straight_beam(), row["speed_rpm"] * measured.RPM, 3).frequency
+    assert (np.abs(found - printed) <= np.maximum(0.1 * printed, 1.0)).all()
+
+
+def test_the_rotating_beam_was_faster_than_a_clamped_one() -> None:
+    """By 5 to 10 %, in each mode: what the manual says of it."""
+    rotating = [c for c in measured.compare() if not c.what.startswith("0 rpm")]
+    ratios = [float(np.mean(c.published)) / c.ours for c in rotating]
+    assert len(ratios) == 6
+    assert min(ratios) > 1.05 and max(ratios) < 1.11
+
+
+def test_slopes_at_rest() -> None:
+    assert [c for c in single_answers.slopes() if not c.agrees or c.error > 1e-6] == []
+
+
+def test_critical_speed_far_from_the_axis() -> None:
+    assert single_answers.limit_of_the_critical_speed().agrees
+
+
+def test_growth_where_the_speed_varies() -> None:
+    found = [*single_answers.growth_factors()]
+    assert len(found) == 4
+    assert [c for c in found if not c.agrees] == []
+
+
+def test_branches_of_the_harvester() -> None:
+    """Also held one by one in `test_elastica`."""
+    found = [*single_answers.branches()]
+    assert len(found) == 9
+    assert [c for c in found if not c.agrees] == []
