@@ -194,7 +194,7 @@ class SpanLoads(Result):
     def check_known(self, quantity: str) -> None:
         """Refuse a quantity of which the result has no value."""
         if not np.isfinite(self.values(quantity)).any():
-            remedy = _REMEDIES.get(quantity, "")
+            remedy = REMEDIES.get(quantity, "")
             raise InvalidValue("quantity", quantity, f"the result has no {quantity}", remedy)
 
     def check_component(self, quantity: str, component: int | None) -> list[int]:
@@ -223,7 +223,7 @@ def with_unit(quantity: str) -> str:
     return f"{quantity} [{UNITS[quantity]}]" if UNITS[quantity] else quantity
 
 
-_REMEDIES = {
+REMEDIES = {
     "strain": "give the beam an outer_fibre, or points of the section",
     "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",
 }

@@ -12,6 +12,7 @@ from rich.text import Text
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 from beamdyn.equations.directions import words_of_directions
+from beamdyn.loads.span_loads import REMEDIES
 
 if TYPE_CHECKING:
     from beamdyn.common.display_units import ShownUnit
@@ -114,7 +115,13 @@ def _largest_lines(result: SpanLoads, window: tuple[float, float] | None = None)
     """A sentence on the largest of each quantity that has values."""
     given: dict[str, Any] = {} if window is None else {"start": window[0], "end": window[1]}
     known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
-    return [Text(_say_largest(result, result.largest(name, **given))) for name in reversed(known)]
+    said = [Text(_say_largest(result, result.largest(name, **given))) for name in reversed(known)]
+    return [*said, *_say_what_strains_need(known)]
+
+
+def _say_what_strains_need(known: Sequence[str]) -> list[Text]:
+    """A sentence if the section has no points at which there are strains."""
+    return [] if "strain" in known else [Text(f"No strains: {REMEDIES['strain']}.")]
 
 
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
@@ -156,6 +163,7 @@ def random_loads_table(result: RandomLoads) -> Group:
     title = result.display_units.in_sentence(title)  # the speeds of the modes, too
     known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
     lines = [Text(_say_expected(result, result.largest(name))) for name in reversed(known)]
+    lines += _say_what_strains_need(known)
     rows = [*zip(*columns.values(), strict=True)]
     return Group(table(title, [*columns], rows, ()), *lines, Text(_ESTIMATE))
 

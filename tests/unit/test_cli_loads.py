@@ -47,6 +47,18 @@ def test_equilibrium_is_printed_and_written(run, tmp_path):
     assert files[2].stat().st_size > 1000
 
 
+def test_loads_without_strains_say_what_these_need(run, tmp_path):
+    """The section of a beam by its stiffness has no points."""
+    (tmp_path / "blade.toml").write_text(
+        '[beam]\nlength = "20 m"\nmass_per_length = "100 kg/m"\nbending_stiffness = "1e8 N m2"\n'
+        '[mount]\nradius = "1 m"\nsetting_angle = "180 deg"\n'
+    )
+    code, out, _ = run(tmp_path / "blade.toml", "--speed", "30 rpm", "--at", "0 m")
+    said = "No strains: give the beam an outer_fibre, or points of the section."
+    assert code == DONE and said in " ".join(out.split())
+    assert "No strains" not in run(PATCHED, "--speed", "50 rad/s")[1]
+
+
 def test_transient_within_a_window_with_cycles(run):
     pytest.importorskip("rainflow", reason="cycle counts are the extra fatigue")
     options = ("--t-end", "0.3 s", "--modes", "2", "--window", "0.1:0.3 s", "--at", "0, 20 mm")
