@@ -38,6 +38,7 @@ def test_screen_fits_at_1280_and_at_800_pixels(pages, program, name):
 def test_everything_that_is_used_has_a_name(pages, program, name):
     page = pages[program]
     go(page, name)
+    expect(shown(page, "Up to date.")).to_be_visible()  # a drawing that is being replaced has lost its words
     found = used(page)
     assert len(found) > 10
     assert [node for node in found if not node["name"].get("value", "").strip()] == []
