@@ -1,5 +1,7 @@
 """The beam's screens as pure functions: what they show is what the package's functions find."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from beamdyn.app.rotor import ROTOR
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
+from beamdyn.common.app.chart import options_of
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.handles import draw_sheet
 from beamdyn.common.app.open_document import OpenDocument
@@ -33,6 +36,12 @@ def solved(screen, **more):
     work = opened(**more)
     assert work.solve(screen), work.mistakes
     return work.answered[screen.name].answer
+
+
+@pytest.mark.parametrize("screen", [s for s in SCENE.screens if s.charts], ids=lambda s: s.name)
+def test_charts_are_data_that_a_page_can_be_sent(screen):
+    for chart in screen.charts(solved(screen, **SHORT), screen.last):
+        assert json.dumps(options_of(chart))
 
 
 def coarse(screen, **more):

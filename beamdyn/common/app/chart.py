@@ -251,7 +251,7 @@ def _is_tick(low: float, high: float) -> bool:
         return True
     power = 10.0 ** math.floor(math.log10(step))
     part = high / power / next(nice for nice, below in _STEPS if step / power < below)
-    return abs(part - round(part)) < 1e-6
+    return bool(abs(part - round(part)) < 1e-6)
 
 
 def _over_decades(made: dict[str, Any], axis: ChartAxis, values: Sequence[Any]) -> dict[str, Any]:
