@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.app.browsing import DRAWING, drawing, go, redrawn
+from tests.app.browsing import DRAWING, drawing, go, redrawn, shown
 from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, PATIENCE
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
@@ -109,6 +109,7 @@ def test_dragged_too_far_marks_the_field_and_greys_and_back_recovers(page):
     expect(page.locator(".greyed:visible")).to_have_count(0)
     expect(page.locator(".q-field--error:visible")).to_have_count(0)
     page.mouse.up()
+    expect(shown(page, "Up to date.")).to_be_visible()  # the picture has been fitted: its points have moved
     pull(page, found, 200, -40)
     expect(page.locator(".greyed:visible")).to_have_count(1)
     page.mouse.up()
