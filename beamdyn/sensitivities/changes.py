@@ -19,6 +19,7 @@ from beamdyn.studies.inputs import scene_of
 
 _EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
 _RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
+_ROUNDED = 1e-10  # what rounding alone may be, as of damping by modes
 _CONVERGES = 0.1  # most that a narrower interval leaves of it, where it is no rounding
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 
@@ -76,7 +77,7 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
     before, best = np.inf, None
     for nearby in evaluate_nearby(number, evaluate):
         share = _missed_share(nearby)
-        if best is not None and share > _CONVERGES * before:
+        if best is not None and _CONVERGES * before < share < _ROUNDED:
             return best
         before, best = share, nearby
         if share <= _RESOLVED:

@@ -59,7 +59,7 @@ def test_worst_cases_have_the_errors_of_their_own_designs():
     assert found.worst.smallest_error[0] == pytest.approx(0.3)
     assert found.worst.largest_error[0] == pytest.approx(0.9)
     assert found.error[0] == pytest.approx(1e-9)  # of all others
-    assert "; 1 to 0 ± 4 N at worst" in headline(found, 0)  # half a unit is not below 0.3, nor below 0.9
+    assert "; 1 to 3.0 ± 0.9 N at worst" in headline(found, 0)  # half a unit is not below 0.3, nor below 0.9
     assert "3e-01" in text_of(found)
 
 

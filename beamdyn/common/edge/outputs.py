@@ -25,7 +25,7 @@ Flag = Annotated[bool, Parameter(negative="")]
 
 _TABLES = (".csv", ".tsv", ".txt", "")  # without a suffix the name promises nothing
 _SUFFIXES = {
-    "json": (".json", ""),
+    "json": (".json", ".txt", ""),
     "csv": _TABLES,
     "crossings": _TABLES,
     "plot": (".png", ".svg", ".pdf"),
