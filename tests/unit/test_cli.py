@@ -201,7 +201,7 @@ BAD = {
     "suffix": (("modes", SCENE, "--plot", "x.jpg"), ("--plot", "x.jpg", ".png")),
     "shape suffix": (("modes", SCENE, "--shapes", "x.stl"), ("--shapes", "x.stl", ".vtu")),
     "table as a workbook": (("modes", SCENE, "--csv", "x.xlsx"), ("--csv", "x.xlsx", ".csv, .tsv, .txt")),
-    "result as a table": (("modes", SCENE, "--json", "x.csv"), ("--json", "x.csv", "give one of .json, .txt")),
+    "result as a table": (("modes", SCENE, "--json", "x.csv"), ("--json", "x.csv", "one of .json, .txt")),
     "no folder": (("critical", SCENE, "--json", "no/where.json"), ("--json", "create it")),
     "folder as file": (("modes", SCENE, "--json", str(ROOT)), ("--json", "folder")),
     "one file twice": (("modes", SCENE, "--json", "x", "--csv", "x"), ("--json", "--csv", "own file")),
