@@ -5,13 +5,15 @@ from __future__ import annotations
 import csv
 import json
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from beamdyn._version import __version__
-from brakes.answers.caliper import MECHANISM
+from beamdyn.common.edge.program import NoAnswer
+from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.calipers import NAMED
 from brakes.cli import main
 from brakes.config.mechanism import load_mechanism, parse_mechanism
@@ -328,3 +330,49 @@ def test_inputs_in_json_are_in_si():
     assert given["points"]["grip"] == [0.08, 0.012]
     assert given["run"]["travel"] == 0.014
     assert math.isclose(math.hypot(*given["force"][0]["direction"]), 1.0)
+
+
+# Where it ends ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "tables, said",
+    [
+        (
+            {"run": {"travel": "30 mm"}},
+            "driver 'cable' cannot reach 30 mm: it turns back at 21.6949 mm (toggle position); "
+            "give a smaller travel, or move points",
+        ),
+        (
+            {"dimensions": {"clearance": "30 mm"}},
+            "the travel of right pad and left pad cannot reach 30 mm: it is 12.8918 mm where it or the driver "
+            "'cable' turns back, at 21.6949 mm; give a smaller clearance, or move points",
+        ),
+        (
+            {"dimensions": {"pad": ["12.5 mm", "46 mm"]}},
+            "the cable opens the pads: move pads, pivots or the ends of the cable",
+        ),
+    ],
+    ids=["travel", "clearance", "opens"],
+)
+def test_what_a_caliper_does_not_reach_is_said_as_its_file_and_form_have_it(tables, said):
+    with pytest.raises((NoAnswer, ValueError)) as refused:
+        CALIPER.answer({"caliper": "dual-pivot"} | tables, "test")
+    assert str(refused.value) == said
+
+
+def test_places_and_toggles_are_said_in_the_units_of_the_drawing():
+    tables = tomllib.loads(CLAMP)
+    tables["points"]["B"] = ["20 mm", "20 mm"]
+    answer = MECHANISM.answer(tables, "test")
+    assert "handle turns about (20, 20) mm" in answer.refusals[0]
+    assert "turns about (20, 20) mm" in str(answer.tables()[-1])
+    assert answer.warnings[0].startswith("toggle position of 'work' at driver value 2.80925 mm: ")
+
+
+def test_a_driver_that_turns_is_said_in_degrees():
+    tables = tomllib.loads(CLAMP)
+    tables["moment"] = [{"name": "turn", "body": "arm", "magnitude": "0 N m"}]
+    tables["run"] = {"driver": "turn", "travel": "200 deg"}
+    with pytest.raises(NoAnswer, match=r"'turn' cannot reach 200 deg: it turns back at [-\d.]+ deg "):
+        MECHANISM.answer(tables, "test")
