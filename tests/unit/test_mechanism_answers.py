@@ -345,8 +345,8 @@ def test_inputs_in_json_are_in_si():
         ),
         (
             {"dimensions": {"clearance": "30 mm"}},
-            "the travel of right pad and left pad cannot reach 30 mm: it is 12.8918 mm where it or the driver "
-            "'cable' turns back, at 21.6949 mm; give a smaller clearance, or move points",
+            "the travel of right pad and left pad cannot reach 30 mm: it is 12.8918 mm where it or the "
+            "driver 'cable' turns back, at 21.6949 mm; give a smaller clearance, or move points",
         ),
         (
             {"dimensions": {"pad": ["12.5 mm", "46 mm"]}},
@@ -376,3 +376,21 @@ def test_a_driver_that_turns_is_said_in_degrees():
     tables["run"] = {"driver": "turn", "travel": "200 deg"}
     with pytest.raises(NoAnswer, match=r"'turn' cannot reach 200 deg: it turns back at [-\d.]+ deg "):
         MECHANISM.answer(tables, "test")
+
+
+# What stands in its drawing -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", [0.0, 1.0])
+def test_the_force_of_a_bar_to_the_ground_is_said_once(place):
+    ((drawing,),) = MECHANISM.answer(tomllib.loads(CLAMP), "test").drawings(place)
+    texts = [label.text for label in drawing.labels]
+    assert sum(text.startswith("CD ") for text in texts) == 1
+    assert "CD" in drawing.arrows  # the reaction is drawn
+
+
+def test_no_label_of_a_caliper_stands_twice():
+    for name in NAMED:
+        ((drawing,),) = CALIPER.answer({"caliper": name}, "test").drawings(1.0)
+        texts = [label.text for label in drawing.labels]
+        assert len(set(texts)) == len(texts), texts

@@ -55,7 +55,7 @@ def in_degrees(error: InvalidValue) -> InvalidValue:
 
 
 def in_small_units(sentence: str) -> str:
-    """A sentence of the core with its lengths and angles in mm and degrees, as drawings and files have them."""
+    """A sentence of the core with its lengths and angles in mm and degrees, as drawings have them."""
 
     def convert(found: re.Match[str]) -> str:
         unit, factor = _SMALLER[found[2]]
