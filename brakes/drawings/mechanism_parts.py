@@ -72,14 +72,15 @@ def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
 
 
 def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
-    """Bodies on which two pins act and nothing else."""
+    """Bodies on which two pins act, at two places, and nothing else."""
     return tuple(body for body in mechanism.bodies if _is_two_force(mechanism, body))
 
 
 def _is_two_force(mechanism: Mechanism, body: str) -> bool:
     joints = [joint for joint in mechanism.joints if body in joint.acts_on]
     loaded = any(body in load.acts_on for load in mechanism.loads)
-    return len(joints) == 2 and all(joint.is_hinge for joint in joints) and not loaded
+    straight = len(joints) == len(mechanism.points[body]) == 2
+    return straight and all(joint.is_hinge for joint in joints) and not loaded
 
 
 def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:

@@ -394,3 +394,11 @@ def test_no_label_of_a_caliper_stands_twice():
         ((drawing,),) = CALIPER.answer({"caliper": name}, "test").drawings(1.0)
         texts = [label.text for label in drawing.labels]
         assert len(set(texts)) == len(texts), texts
+
+
+def test_a_body_with_two_pins_at_one_place_is_drawn():
+    """So it is while a mechanism is built: another pin first stands where the last one does."""
+    pins = [{"name": name, "body": "arm", "at": "A"} for name in ("first", "second")]
+    tables = {"bodies": ["arm"], "points": {"A": ["0 mm", "0 mm"]}, "pin": pins}
+    ((drawing,),) = MECHANISM.answer(tables, "test").drawings(0.0)
+    assert sum(getattr(shape, "kind", "") == "pin" for shape in drawing.shapes) == 2

@@ -155,7 +155,7 @@ class ScreenView:
     def _listed(self, entries: Entries) -> None:
         """Something in the lists has changed."""
         self.work.show(entries)
-        self.enter()
+        self.put_entries()
         self.solve()
         self._edited()
 
