@@ -109,6 +109,7 @@ _NARROW = """
 }
 @media (max-width: 600px) {
   .board, .drawing { min-width: 0; }
+  .board { width: min(100%, 1000px); }  /* drawings below one another are as high as they are */
   .slider { padding: 0 2.5rem; }
   .stroke { padding-bottom: 2rem; }
   .slider .q-slider__marker-labels { white-space: normal; width: 5.2rem; text-align: center;
