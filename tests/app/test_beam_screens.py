@@ -17,6 +17,7 @@ from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.app.chart import options_of
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.handles import draw_sheet
+from beamdyn.common.app.input_words import as_on_form
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.shapes import Outline
 from beamdyn.common.edge.rendering import html
@@ -287,3 +288,40 @@ def test_moving_drawing_keeps_its_place(screen):
     view = draw_sheet(screen, answer, screen.last).view
     held = draw_sheet(screen, answer, 0.0, view).view
     assert np.allclose(view.limits, held.limits)
+
+
+@pytest.mark.parametrize(
+    "screen, path, text, words",
+    [
+        (FREQUENCIES, "options.top_speed", "1400 rpm", ("at 1400 rpm", "1526 rpm")),
+        (STEADY_STATE, "options.top_speed", "1400 rpm", ("rpm",)),
+        (TRANSIENT, "beam.length", "5 cm", ("cm",)),
+    ],
+    ids=["frequencies", "steady", "transient"],
+)
+def test_results_are_shown_in_the_unit_that_is_typed(screen, path, text, words):
+    work = OpenDocument(SCENE)
+    work.put(path, text)
+    assert work.solve(screen), work.mistakes
+    answer = work.answered[screen.name].answer
+    said = " ".join(part for result in screen.headline(answer) for part in result)
+    assert all(word in said for word in words) and "rad/s" not in said
+    unit = text.split()[1]
+    assert any(unit in (chart.x.unit, chart.y.unit) for chart in screen.charts(answer, screen.last))
+
+
+def test_a_deflection_past_linear_theory_does_not_stand_first_without_saying_so():
+    words = []
+    for top in ("40 rad/s", "60 rad/s"):  # below and past a resonance
+        work = OpenDocument(SCENE)
+        work.put("options.top_speed", top)
+        assert work.solve(STEADY_STATE), work.mistakes
+        words.append(STEADY_STATE.headline(work.answered[STEADY_STATE.name].answer)[0].words)
+    assert words == ["largest deflection of the tip", "largest deflection of the tip, past linear theory"]
+
+
+def test_warnings_name_inputs_as_the_form_does():
+    said = "shear deformation, left out, matters; [physics] shear_stiffness = true includes it"
+    assert as_on_form(said, SCENE.headings).endswith("; Physics: shear stiffness = true includes it")
+    assert as_on_form("[model] gravity = 0", SCENE.headings) == "Gravity and damping ratio: gravity = 0"
+    assert as_on_form("5 mm [1] a=2", SCENE.headings) == "5 mm [1] a=2"

@@ -13,6 +13,7 @@ from beamdyn.common.app.form_entries import has_rows, in_unit, units_of
 from beamdyn.common.app.input_words import (
     NOT_GIVEN,
     default_words,
+    heading_of,
     help_of,
     label,
     label_html,
@@ -80,10 +81,8 @@ class Form:
     def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
         given = any(entries.get(entry.path, "") for entry in inputs)
         usual = all(default_words(entry) != NOT_GIVEN for entry in inputs)
-        words = section.replace("_", " ").capitalize() or "General"
-        table = ui.expansion(self._headings.get(section, words), value=given or usual or not section).classes(
-            "w-full section"
-        )
+        heading = heading_of(section, self._headings)
+        table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
         with table.props("dense"):
             for entry in inputs:
                 with ui.element("div"):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Mapping
 from html import escape
 
 from beamdyn.common.app.form_entries import toml_value
@@ -11,6 +13,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show
 
 NOT_GIVEN = "not given"
+_KEY = re.compile(r"\[(\w+)\] (\w+) = ")
 
 
 def label(entry: Input) -> str:
@@ -44,6 +47,20 @@ def name_words(entry: Input) -> str:
 def table_of(path: str) -> str:
     """The table that an input stands in; "" outside any."""
     return path.partition(".")[0] if "." in path else ""
+
+
+def heading_of(section: str, headings: Mapping[str, str]) -> str:
+    """What stands above a table of the form."""
+    return headings.get(section, section.replace("_", " ").capitalize() or "General")
+
+
+def as_on_form(sentence: str, headings: Mapping[str, str]) -> str:
+    """A sentence with tables and keys of a file, "[physics] shear = true", as the form calls them."""
+
+    def named(found: re.Match[str]) -> str:
+        return f"{heading_of(found[1], headings)}: {found[2].replace('_', ' ')} = "
+
+    return _KEY.sub(named, sentence)
 
 
 def options_of(entry: Input) -> tuple[str, ...]:

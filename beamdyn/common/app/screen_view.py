@@ -22,6 +22,7 @@ from beamdyn.common.app.folded_drawing import FoldedDrawing, PictureOf
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.input_words import as_on_form
 from beamdyn.common.app.list_editor import ListEditor
 from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.player import Player
@@ -296,7 +297,8 @@ class ScreenView:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
             for sentence in dict.fromkeys(warnings):
-                ui.label(f"Warning: {sentence}").classes("warning")
+                said = as_on_form(sentence, self.work.document.headings)
+                ui.label(f"Warning: {said}").classes("warning")
 
     def _show(self) -> None:
         answered = self.work.answered.get(self.screen.name)
