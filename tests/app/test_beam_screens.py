@@ -254,6 +254,7 @@ def test_digits_that_the_physics_does_not_have_are_said_to_be_missing():
     assert "the physics misses the tolerance" in said
     (numbers, _) = TRADE.charts(answer, 0.0)
     assert curve(numbers, "tolerance 1e-09").y.tolist() == [1e-9, 1e-9]
+    assert curve(numbers, "chosen by tolerance").points  # not as it is called in Python
 
 
 def test_measurements_are_made_once_for_all_digits():
