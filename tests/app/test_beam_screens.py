@@ -323,6 +323,7 @@ def test_a_deflection_past_linear_theory_does_not_stand_first_without_saying_so(
 
 def test_warnings_name_inputs_as_the_form_does():
     said = "shear deformation, left out, matters; [physics] shear_stiffness = true includes it"
-    assert as_on_form(said, SCENE.headings).endswith("; Physics: shear stiffness = true includes it")
-    assert as_on_form("[model] gravity = 0", SCENE.headings) == "Gravity and damping ratio: gravity = 0"
-    assert as_on_form("5 mm [1] a=2", SCENE.headings) == "5 mm [1] a=2"
+    given = OpenDocument(SCENE).inputs, SCENE.headings
+    assert as_on_form(said, *given).endswith("; Physics: shear stiffness = true includes it")
+    assert as_on_form("[model] gravity = 0", *given) == "Gravity and damping ratio: gravity = 0"
+    assert as_on_form("speed [Hz] of = 2", *given) == "speed [Hz] of = 2"

@@ -115,14 +115,15 @@ class Form:
 
         def write(at: float | None) -> None:
             if at is not None and at != place():  # else it has followed the field
-                field.set_value(f"{at:g} {drag.unit}")
+                field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         start = place()
         made = ui.slider(
             min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
             on_change=lambda e: write(e.value),
         )  # fmt: skip
-        made.props(f'dense aria-label="{label(entry)} [{drag.unit}]"').classes("q-px-md")
+        unit = f" [{drag.unit}]" if drag.unit else ""
+        made.props(f'dense aria-label="{label(entry)}{unit}"').classes("q-px-md")
         made.on("update:model-value", lambda e: write(e.args), [None], throttle=_OFTEN)
         made.on("pan", lambda e: self._hold(e.args == "start"))
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from html import escape
 
 from beamdyn.common.app.form_entries import toml_value
@@ -54,10 +54,13 @@ def heading_of(section: str, headings: Mapping[str, str]) -> str:
     return headings.get(section, section.replace("_", " ").capitalize() or "General")
 
 
-def as_on_form(sentence: str, headings: Mapping[str, str]) -> str:
+def as_on_form(sentence: str, inputs: Sequence[Input], headings: Mapping[str, str]) -> str:
     """A sentence with tables and keys of a file, "[physics] shear = true", as the form calls them."""
+    tables = {table_of(entry.path) for entry in inputs}
 
     def named(found: re.Match[str]) -> str:
+        if found[1] not in tables:
+            return found[0]
         return f"{heading_of(found[1], headings)}: {found[2].replace('_', ' ')} = "
 
     return _KEY.sub(named, sentence)

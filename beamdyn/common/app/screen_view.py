@@ -297,8 +297,10 @@ class ScreenView:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
             for sentence in dict.fromkeys(warnings):
-                said = as_on_form(sentence, self.work.document.headings)
-                ui.label(f"Warning: {said}").classes("warning")
+                ui.label(f"Warning: {self._as_on_form(sentence)}").classes("warning")
+
+    def _as_on_form(self, said: str) -> str:
+        return as_on_form(said, self.work.inputs, self.work.document.headings)
 
     def _show(self) -> None:
         answered = self.work.answered.get(self.screen.name)
@@ -309,7 +311,7 @@ class ScreenView:
         self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
         if not self.dragged:  # while a point is moved, its drawing alone follows
             self._plot()
-            self._tables.set_content(html(answered.tables))
+            self._tables.set_content(self._as_on_form(html(answered.tables)))
             self.comparison.show(answered)
             for more in self._more:
                 more.show(answered.answer)
