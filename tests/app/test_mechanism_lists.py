@@ -229,3 +229,16 @@ def test_a_change_of_a_list_is_solved_once(simulate, fields, monkeypatch):
         assert solved == [1]
 
     simulate(BRAKES, body)
+
+
+def test_what_stands_in_other_fields_stays_when_a_list_is_changed(simulate, fields):
+    async def body(another):
+        page = fields(await another())
+        page.go("Mechanism")
+        page.enter("run.friction", "0,2")
+        page.leave("pin.0.radius", "8")
+        assert page.field("pin.0.radius").value == "8 mm"
+        assert page.field("run.friction").value == "0,2"
+        assert "squeezing" in page.text()
+
+    simulate(BRAKES, body)

@@ -74,56 +74,55 @@ class ListEditor:
     ----------
     lists : Lists
         What they are.
-    entries : mapping
-        What stands in them at first.
+    now : callable
+        Gives all entries as they are, also those that other fields have written.
     changed : callable
         Called with all entries after a change.
     """
 
     def __init__(
-        self, lists: Lists, entries: Mapping[str, str], changed: Callable[[Entries], object]
+        self, lists: Lists, now: Callable[[], Entries], changed: Callable[[Entries], object]
     ) -> None:
-        self._lists, self._entries, self._changed = lists, dict(entries), changed
+        self._lists, self._now, self._changed = lists, now, changed
         with ui.column().classes("lists w-full gap-1"):
             ui.button("Start from nothing", icon="note_add", on_click=self._empty).props("flat dense no-caps")
             self._said: Any = ui.column().classes("advice gap-1").props('role="status" aria-live="polite"')
             with ui.column().classes("w-full gap-1"):
                 self._groups = [
-                    GroupRows(group, self._put, self._add, self._remove) for group in lists.groups(entries)
+                    GroupRows(group, self._put, self._add, self._remove) for group in lists.groups(now())
                 ]
-        self._advise()
+        self._advise(now())
 
     def show(self, entries: Mapping[str, str]) -> None:
         """Make other entries stand in the lists, and say what is missing."""
         self.follow(entries)
-        self._advise()
+        self._advise(entries)
 
     def follow(self, entries: Mapping[str, str]) -> None:
         """Make other entries stand in the lists."""
-        self._entries = dict(entries)
         for rows, group in zip(self._groups, self._lists.groups(entries), strict=True):
             rows.show(group.items)
 
-    def _advise(self) -> None:
-        sentences = self._lists.advice(self._entries)
+    def _advise(self, entries: Mapping[str, str]) -> None:
+        sentences = self._lists.advice(entries)
         self._said.clear()
         with self._said:
             for sentence in sentences:
                 ui.label(sentence)
 
     def _put(self, item: Item, key: str, text: str) -> None:
-        self._take(self._lists.put(self._entries, item, key, text))
+        self._take(self._lists.put(self._now(), item, key, text))
 
     def _add(self, kind: str) -> None:
-        self._take(self._lists.add(self._entries, kind))
+        self._take(self._lists.add(self._now(), kind))
 
     def _remove(self, item: Item) -> None:
-        self._take(self._lists.remove(self._entries, item))
+        self._take(self._lists.remove(self._now(), item))
 
     def _empty(self) -> None:
-        self._take(self._lists.empty(self._entries))
+        self._take(self._lists.empty(self._now()))
 
     def _take(self, entries: Entries) -> None:
-        if entries != self._entries:
+        if entries != self._now():
             self.show(entries)
             self._changed(entries)

@@ -145,7 +145,7 @@ class ScreenView:
 
     def _make_lists(self) -> ListEditor | None:
         lists = self.screen.lists
-        return None if lists is None else ListEditor(lists, self.work.entries, self._listed)
+        return None if lists is None else ListEditor(lists, lambda: self.work.entries, self._listed)
 
     @property
     def _fielded(self) -> list[Input]:
