@@ -224,9 +224,11 @@ def _add_forces(
 ) -> None:
     low, high = extent
     said = {label.text for label in sketch.labels}  # of a bar or cable to the ground along its line
+    middle = (low + high) / 2
     for outer in forces:
-        aside = outer.at[0] - (low[0] + high[0]) / 2  # from outside, where it would cross the middle
-        inwards = outer.reaction and abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
+        aside = outer.at[0] - middle[0]  # from outside, where it would cross the middle
+        far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
+        inwards = outer.reaction and (far or (outer.along_bar and outer.force @ (middle - outer.at) > 0))
         _add_arrow(sketch, outer, scale, inwards, said)
 
 

@@ -386,7 +386,20 @@ def test_the_force_of_a_bar_to_the_ground_is_said_once(place):
     ((drawing,),) = MECHANISM.answer(tomllib.loads(CLAMP), "test").drawings(place)
     texts = [label.text for label in drawing.labels]
     assert sum(text.startswith("CD ") for text in texts) == 1
-    assert "CD" in drawing.arrows  # the reaction is drawn
+    (arrow,) = [shape for shape in drawing.shapes if getattr(shape, "name", "") == "CD"]
+    np.testing.assert_allclose(
+        arrow.foot, (40, 54.64101615), rtol=1e-9
+    )  # D, beyond which it does not cover CD
+    assert arrow.tip[1] > arrow.foot[1]
+
+
+def test_the_reaction_of_a_bar_that_is_pressed_comes_from_beyond_its_end():
+    tables = tomllib.loads(CLAMP)
+    tables["force"][0]["direction"] = "90 deg"
+    ((drawing,),) = MECHANISM.answer(tables, "test").drawings(0.0)
+    (arrow,) = [shape for shape in drawing.shapes if getattr(shape, "name", "") == "CD"]
+    np.testing.assert_allclose(arrow.tip, (40, 54.64101615), rtol=1e-9)
+    assert arrow.foot[1] > arrow.tip[1]
 
 
 def test_no_label_of_a_caliper_stands_twice():
