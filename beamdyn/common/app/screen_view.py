@@ -22,7 +22,7 @@ from beamdyn.common.app.folded_drawing import FoldedDrawing, PictureOf
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
-from beamdyn.common.app.input_words import as_on_form
+from beamdyn.common.app.input_words import as_on_form, options_of
 from beamdyn.common.app.list_editor import ListEditor
 from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.player import Player
@@ -140,6 +140,7 @@ class ScreenView:
                 self._hold, self.work.document.headings,
             )  # fmt: skip
         self._shape = [entry.path for entry in self._fielded]
+        self._choices = {entry.path for entry in self._fielded if options_of(entry)}
         self.form.mark(self.work.mistakes.get(self.screen.name, {}))
         self.state()
 
@@ -166,6 +167,8 @@ class ScreenView:
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
+        elif self._sketch is not None and path in self._choices:
+            self._sketch.show(self.work.entries)
         self.solve(held=self._holds)
         self._edited()
 
@@ -192,10 +195,11 @@ class ScreenView:
 
     def put_entries(self) -> None:
         """Make the entries stand in the form, which is made again only if its fields are others."""
-        if self._has_shape:
-            self.form.put(self.work.entries)
-        else:
-            self.rebuild()
+        if not self._has_shape:
+            return self.rebuild()
+        self.form.put(self.work.entries)
+        if self._sketch is not None:
+            self._sketch.show(self.work.entries)
 
     @property
     def _has_shape(self) -> bool:

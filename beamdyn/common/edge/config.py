@@ -177,7 +177,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
         inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
         kind = InvalidInput if type(reason) is InvalidValue else type(reason)
         said: dict[str, Any] = vars(reason) | {"field": f"{place}.{inner}".lstrip(".")}
-        return str(_as_written(kind(**said), _found(given, inner))), key
+        return str(as_written(kind(**said), _found(given, inner))), key
     return f"{place or 'model'}: {reason}", path
 
 
@@ -206,7 +206,7 @@ def _found(given: Any, place: str) -> Any:
     return given
 
 
-def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
+def as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
     """The refusal with the value as the file writes it, and the limit in the same unit."""
     value, unit = refusal.value, refusal.unit
     if isinstance(given, list) and isinstance(value, tuple | list):
