@@ -6,12 +6,11 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.edge.config import ConfigError, as_written, path_of
+from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of
 
 Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
@@ -158,7 +157,7 @@ def by_field(
     if not isinstance(error, ConfigError):
         path = path_of(error, paths)
         named = isinstance(error, InvalidValue) and path in entries
-        return {path: [str(as_written(replace(error, field=path), entries[path])) if named else str(error)]}
+        return {path: [said_of(error, path, entries[path]) if named else str(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
         sentences.setdefault(_field(place, paths), []).append(sentence)

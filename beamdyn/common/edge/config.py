@@ -175,9 +175,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
         return str(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
         inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
-        kind = InvalidInput if type(reason) is InvalidValue else type(reason)
-        said: dict[str, Any] = vars(reason) | {"field": f"{place}.{inner}".lstrip(".")}
-        return str(as_written(kind(**said), _found(given, inner))), key
+        return said_of(reason, f"{place}.{inner}".lstrip("."), _found(given, inner)), key
     return f"{place or 'model'}: {reason}", path
 
 
@@ -206,7 +204,13 @@ def _found(given: Any, place: str) -> Any:
     return given
 
 
-def as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
+def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
+    """What a refusal by the core says of what is given at a place of a file, as that has it."""
+    kind = InvalidInput if type(refusal) is InvalidValue else type(refusal)
+    return str(_as_written(kind(**vars(refusal) | {"field": place}), given))
+
+
+def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
     """The refusal with the value as the file writes it, and the limit in the same unit."""
     value, unit = refusal.value, refusal.unit
     if isinstance(given, list) and isinstance(value, tuple | list):
