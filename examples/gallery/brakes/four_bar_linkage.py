@@ -3,7 +3,8 @@ Paths of a four-bar linkage
 ===========================
 
 `planar.trace` follows a mechanism along its path, through its turning points, wherever a driver would
-have to turn back.
+have to turn back. Grey: the linkage as drawn, pinned to the ground at A and D; B and C are its other pins,
+P is a point of the coupler.
 """
 
 import matplotlib.pyplot as plt
@@ -21,6 +22,11 @@ linkage = planar.Mechanism((crank, coupler, rocker), joints, (planar.Moment("dri
 path = planar.trace(linkage, "drive", length=0.5, points=401)
 
 fig, ax = plt.subplots()
+drawn = {"A": (0.0, 0.0), "B": (0.0, 0.04), "P": (0.04, 0.10), "C": (0.12, 0.09), "D": (0.1, 0.0)}
+for names in ("ABCD", "BPC"):
+    ax.plot(*zip(*[(1e3 * drawn[name][0], 1e3 * drawn[name][1]) for name in names]), "o-", color="0.7")
+for name in "AD":
+    ax.annotate(name, (1e3 * drawn[name][0], 1e3 * drawn[name][1]), (4, -12), textcoords="offset points")
 for name, body, point in (
     ("B", crank, (0.0, 0.04)),
     ("C", rocker, (0.12, 0.09)),
