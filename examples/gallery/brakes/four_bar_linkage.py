@@ -22,11 +22,10 @@ linkage = planar.Mechanism((crank, coupler, rocker), joints, (planar.Moment("dri
 path = planar.trace(linkage, "drive", length=0.5, points=401)
 
 fig, ax = plt.subplots()
-drawn = {"A": (0.0, 0.0), "B": (0.0, 0.04), "P": (0.04, 0.10), "C": (0.12, 0.09), "D": (0.1, 0.0)}
-for names in ("ABCD", "BPC"):
-    ax.plot(*zip(*[(1e3 * drawn[name][0], 1e3 * drawn[name][1]) for name in names]), "o-", color="0.7")
-for name in "AD":
-    ax.annotate(name, (1e3 * drawn[name][0], 1e3 * drawn[name][1]), (4, -12), textcoords="offset points")
+for x, y in (((0, 0, 120, 100), (0, 40, 90, 0)), ((0, 40, 120), (40, 100, 90))):
+    ax.plot(x, y, "o-", color="0.7")
+for name, x in (("A", 0), ("D", 100)):
+    ax.annotate(name, (x, 0), (4, -12), textcoords="offset points")
 for name, body, point in (
     ("B", crank, (0.0, 0.04)),
     ("C", rocker, (0.12, 0.09)),
