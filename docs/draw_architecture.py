@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "architecture.svg"
 SHARED = "beamdyn.common"  # the one room of beamdyn that brakes uses
 COLOURS = {"beamdyn": "#dce9f5", "brakes": "#f7e6d0"}
-HEIGHT, WIDTH = 0.42, 0.86  # of a box, where layers and columns stand 1 apart
+HEIGHT, WIDTH = 0.42, 1.5  # of a box, where layers and columns stand 1 apart
 
 Arrow = tuple[str, str]  # the room that imports, and the one that it imports
 Layers = Sequence[Sequence[str]]  # names of rooms, highest layer first
@@ -116,7 +116,7 @@ def mean_of_neighbours(name: str, links: Sequence[Arrow], x: Mapping[str, float]
 
 
 def spread(wanted: Mapping[str, float]) -> dict[str, float]:
-    """Positions in the order of the wanted ones with a gap of 1, or of a third between mere places."""
+    """Positions in the order of the wanted ones with room for each, mere places taking little."""
     names = sorted(wanted, key=lambda name: (round(wanted[name], 6), name))
     found = [wanted[names[0]]]
     for before, name in pairwise(names):
@@ -126,7 +126,7 @@ def spread(wanted: Mapping[str, float]) -> dict[str, float]:
 
 
 def room_width(name: str) -> float:
-    return 0.34 if ">" in name else 1.0
+    return 0.34 if ">" in name else 1.64
 
 
 # The picture --------------------------------------------------------------------------------------
@@ -194,7 +194,7 @@ def draw_box(ax: Axes, x: float, y: float, name: str, colour: str) -> None:
     corner = x - WIDTH / 2 + 0.05, y - HEIGHT / 2 + 0.05
     outline = {"boxstyle": "round,pad=0.05", "fc": colour, "ec": "#556270", "lw": 0.9}
     ax.add_patch(FancyBboxPatch(corner, WIDTH - 0.1, HEIGHT - 0.1, **outline))
-    ax.text(x, y, name.replace(".", ".\n"), ha="center", va="center", fontsize=8.5)
+    ax.text(x, y, name, ha="center", va="center", fontsize=8)
 
 
 NOTE = """An arrow points to the room that is imported;
@@ -211,7 +211,7 @@ def main() -> None:
 
     sys.path.insert(0, str(ROOT))  # the code beside this script, not what is installed
     mpl.rcParams["svg.hashsalt"] = "architecture"  # the same file each time
-    ax, left, counts = Figure(figsize=(10.4, 9.4)).add_axes((0, 0, 1, 1)), 0.0, []
+    ax, left, counts = Figure(figsize=(13.2, 9.4)).add_axes((0, 0, 1, 1)), 0.0, []
     for package in COLOURS:
         imports = count_imports(package)
         counts.append(len(imports))
@@ -221,7 +221,7 @@ def main() -> None:
     lowest = -max(len(read_layers(package)) for package in COLOURS) + 1
     note = NOTE.format(counts=" and ".join(map(str, counts)))
     ax.text(left - 0.85, lowest - 0.2, note, ha="right", ma="left", fontsize=8.5, linespacing=1.4)
-    ax.set(xlim=(-0.6, left - 0.7), ylim=(lowest - 0.4, 0.8))
+    ax.set(xlim=(-0.8, left - 0.5), ylim=(lowest - 0.4, 0.8))
     ax.axis("off")
     ax.get_figure().savefig(PICTURE, metadata={"Date": None})
 
