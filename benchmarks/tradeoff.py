@@ -285,7 +285,8 @@ RULES = """The rules follow from the fronts:
 - **Errors that are kept**: in {kept} of {cases} cases the true error is below the tolerance, in {covered}
   below the estimate.
 - **The first basis is predicted** from the number of modes and the tolerance, so that mostly no second one is
-  tried; small bases, whose errors the coarser one beside them may hide, state three times the distance from it.
+  tried; small bases, whose errors the coarser one beside them may hide, state three times the distance
+  from it.
 - **Transients.** {transient} points of the fronts among integrators are ours; the step follows the
   tolerance, as the tables above and below show. Modes at rest, which the papers keep, converge slowly under
   rotation; modes at the slowest and at the fastest speed together need far fewer. `tolerance=` takes these,
