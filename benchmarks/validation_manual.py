@@ -477,7 +477,7 @@ def _overview(found: dict[str, Sections]) -> str:
     ]
     heads = ("source", "values", "the print errs", "differ, with the reason there")
     values = sum(int(row[1]) for row in counts)
-    return f"# All sources\n\n{_table(heads, counts)}\n\n{values} values."
+    return f"# Overview\n\n{_table(heads, counts)}\n\n{values} values."
 
 
 def _count(rows: Sequence[Row], verdict: str) -> str:
