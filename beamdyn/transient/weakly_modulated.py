@@ -33,6 +33,7 @@ _LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
 _SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
 _SAMPLES = 257  # of e, for its largest value
 _NEGLIGIBLE = 1e-3  # share of an accuracy
+_IN_STEP = 0.1  # share of an accuracy for what does not add up over the steps
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # steps solved as one batch
@@ -171,6 +172,8 @@ class _Expansion:
         Ratio of successive terms of the series for e_m = 1.
     point : _StepMapSeries
         The series at the Chebyshev points.
+    twice : bool
+        Whether the accelerations need the second order too, which within one step is mostly negligible.
     """
 
     maps: tuple[np.ndarray, ...]
@@ -180,6 +183,7 @@ class _Expansion:
     allowed: tuple[float, ...]
     ratio: np.ndarray
     point: _StepMapSeries
+    twice: bool
 
     @classmethod
     def of(
@@ -219,7 +223,9 @@ class _Expansion:
             min(_NEGLIGIBLE * share, 1.0) * size.max()
             for share, size in zip((accuracy, rough), sizes[3:], strict=True)
         ]
-        return cls(tuple(maps), X0, Y, tuple(sizes), (*[accuracy / steps] * 3, *kept), ratio, point)
+        allowed = *[accuracy / steps] * 3, *kept
+        twice = float(ratio @ largest) ** 2 > _IN_STEP * accuracy
+        return cls(tuple(maps), X0, Y, tuple(sizes), allowed, ratio, point, twice)
 
     def over(self, start: float, end: float) -> _Block:
         """The maps of the steps that begin from `start` to `end`, both in [-1, 1], by fewer polynomials."""
@@ -228,7 +234,7 @@ class _Expansion:
         *maps, X0, Y = fewer
         if self.sizes[2].sum() * _SINGLE_ROUNDING <= self.allowed[2]:
             maps[2] = maps[2].astype(np.float32)
-        return _Block(tuple(maps), X0, Y, self.point)
+        return _Block(tuple(maps), X0, Y, self.point, self.twice)
 
 
 @dataclass(frozen=True)
@@ -239,6 +245,7 @@ class _Block:
     X0: np.ndarray
     Y: np.ndarray
     point: _StepMapSeries
+    twice: bool
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
         """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""
@@ -264,9 +271,10 @@ class _Block:
         )  # (m, N, s n)
         total = _evaluate(self.X0, T, z)
         more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
-        first = _evaluate(self.Y, T, more)
-        second = (factor * (first @ Z.swapaxes(1, 2))).sum(axis=0)
-        return total + first - _evaluate(self.Y, T, second)
+        if self.twice:
+            again = _evaluate(self.Y, T, more) @ Z.swapaxes(1, 2)
+            more -= (factor * again).sum(axis=0)
+        return total + _evaluate(self.Y, T, more)
 
 
 def _localize(values: np.ndarray, size: np.ndarray, allowed: float, start: float, end: float) -> np.ndarray:
