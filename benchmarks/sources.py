@@ -47,9 +47,9 @@ _CITED = (  # in the data by a short name only
 )
 _HEAD = """# Sources
 
-Papers, manuals and decks whose numbers stand in this manual, and the file of the package that has them, with
-what it took over and from where. Textbooks are named beside their examples. Numbers that are "computed" are
-in no print: the file says by which methods, of which at least two agree.
+Papers, manuals and decks whose numbers stand in this manual, and the file that has them, in `beamdyn/published`
+or `brakes/published`, with what it took over and from where. Textbooks are named beside their examples. Numbers
+that are "computed" are in no print: the file says by which methods, of which at least two agree.
 
 """
 
@@ -60,13 +60,13 @@ def page_of_sources() -> str:
 
 
 def _rows() -> Iterator[tuple[str, str, str]]:
-    for package, module in (("beamdyn", published), ("brakes", published_brakes)):
+    for module in (published, published_brakes):
         for name in module.available():
             data = module.load(name)
             if "title" in data:
-                yield _who(data), _what(data), f"`{package}/published/{name}.toml`"
+                yield _who(data), _what(data), f"`{name}.toml`"
     for who, what, name in _CITED:
-        yield who, what, f"`beamdyn/published/{name}.toml`"
+        yield who, what, f"`{name}.toml`"
 
 
 def _who(data: dict[str, Any]) -> str:
@@ -81,4 +81,4 @@ def _what(data: dict[str, Any]) -> str:
     """Title, and where it stands."""
     places = [str(data[key]) for key in ("journal", "source", "url") if key in data]
     places += [f"doi:{data['doi']}"] if "doi" in data else []
-    return ". ".join([data["title"], *places])
+    return "; ".join([data["title"], *places])
