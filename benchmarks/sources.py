@@ -47,9 +47,9 @@ _CITED = (  # in the data by a short name only
 )
 _HEAD = """# Sources
 
-Papers, manuals and decks whose numbers stand in this manual, and the file that has them, in `beamdyn/published`
-or `brakes/published`, with what it took over and from where. Textbooks are named beside their examples. Numbers
-that are "computed" are in no print: the file says by which methods, of which at least two agree.
+Papers, manuals and decks whose numbers stand in this manual, and the file that has them, with what it took
+over and from where, in `beamdyn/published` or `brakes/published`. Textbooks are named beside their examples.
+Numbers that are "computed" are in no print: the file says by which methods, of which at least two agree.
 
 """
 
