@@ -228,8 +228,8 @@ def _add_forces(
     for outer in forces:
         aside = outer.at[0] - middle[0]  # from outside, where it would cross the middle
         far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
-        inwards = outer.reaction and (far or (outer.along_bar and outer.force @ (middle - outer.at) > 0))
-        _add_arrow(sketch, outer, scale, inwards, said)
+        pressed = outer.along_bar and outer.force @ (middle - outer.at) > 0
+        _add_arrow(sketch, outer, scale, bool(outer.reaction and (far or pressed)), said)
 
 
 def _add_arrow(

@@ -156,8 +156,9 @@ def by_field(
     paths = [entry.path for entry in inputs]
     if not isinstance(error, ConfigError):
         path = path_of(error, paths)
-        named = isinstance(error, InvalidValue) and path in entries
-        return {path: [said_of(error, path, entries[path]) if named else str(error)]}
+        if isinstance(error, InvalidValue) and path in entries:
+            return {path: [said_of(error, path, entries[path])]}
+        return {path: [str(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
         sentences.setdefault(_field(place, paths), []).append(sentence)

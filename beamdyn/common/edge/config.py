@@ -207,7 +207,8 @@ def _found(given: Any, place: str) -> Any:
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
     """What a refusal by the core says of what is given at a place of a file, as that has it."""
     kind = InvalidInput if type(refusal) is InvalidValue else type(refusal)
-    return str(_as_written(kind(**vars(refusal) | {"field": place}), given))
+    said: dict[str, Any] = vars(refusal) | {"field": place}
+    return str(_as_written(kind(**said), given))
 
 
 def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
