@@ -47,6 +47,16 @@ def test_no_value_differs_without_a_reason(part: str) -> None:
     assert [row for row in rows if not re.search(r"\d", row.ours)] == []
 
 
+def test_every_printed_table_says_of_which_beam_it_is() -> None:
+    """Who computes a row anew needs its tip mass, its direction of bending, and the unit of its numbers."""
+    tables = validation_manual.printed_tables
+    beams = tables.beams()
+    assert {name for name in tables.all_entries("ritz") if not name.endswith("computed")} == {*beams}
+    page = "\n".join(validation_manual._page("rotating_beams", validation_manual.of_printed_tables()))
+    for name, beam in beams.items():
+        assert f"## {name}\n\nThe beam: {beam}.\n" in page
+
+
 def test_numbers_in_verdicts_are_those_of_notes() -> None:
     """Of a quick page: "the one misfit (1)" has its note below."""
     page = "\n".join(validation_manual._page("brakes", validation_manual.of_brakes()))
