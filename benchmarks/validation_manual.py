@@ -332,8 +332,8 @@ def _count_digits(text: str) -> int:
 def of_statics() -> Sections:
     """Worked problems of statics, in the books' units; two numbers are components to the right and up.
 
-    Their points and loads stand in `benchmarks/cases/statics.py`; the force of a pin is that on the part which
-    is named first there.
+    Their points and loads stand in `benchmarks/cases/statics.py`; the force of a pin is that on the part
+    which is named first there.
     """
     data, solved = load_brakes("statics"), statics.answers()
     found = {
