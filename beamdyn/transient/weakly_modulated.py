@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, reduce
 
 import numpy as np
 
@@ -303,12 +303,13 @@ class _Block:
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
-        found = 0.0
+        sums: dict[np.dtype, np.ndarray] = {}  # of single precision where that suffices
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
-            kind = values.dtype  # of single precision where that suffices
+            kind = values.dtype
             factor = _products(T.astype(kind), monomials.astype(kind), values)
-            found = found + factor @ values.reshape(factor.shape[1], -1)
-        return np.reshape(found, (len(e), *self.maps[0].shape[2:]))
+            term = factor @ values.reshape(factor.shape[1], -1)
+            sums[kind] = sums[kind] + term if kind in sums else term
+        return reduce(np.add, sums.values()).reshape(len(e), *self.maps[0].shape[2:])
 
     def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Accelerations at the nodes, (N, s n), as `steps`, for z (N, 2 n + s l)."""

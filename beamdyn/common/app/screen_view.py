@@ -22,6 +22,7 @@ from beamdyn.common.app.folded_drawing import FoldedDrawing, PictureOf
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.input_words import as_on_form, options_of
 from beamdyn.common.app.list_editor import ListEditor
 from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.player import Player
@@ -139,12 +140,13 @@ class ScreenView:
                 self._hold, self.work.document.headings,
             )  # fmt: skip
         self._shape = [entry.path for entry in self._fielded]
+        self._choices = {entry.path for entry in self._fielded if options_of(entry)}
         self.form.mark(self.work.mistakes.get(self.screen.name, {}))
         self.state()
 
     def _make_lists(self) -> ListEditor | None:
         lists = self.screen.lists
-        return None if lists is None else ListEditor(lists, self.work.entries, self._listed)
+        return None if lists is None else ListEditor(lists, lambda: self.work.entries, self._listed)
 
     @property
     def _fielded(self) -> list[Input]:
@@ -155,7 +157,7 @@ class ScreenView:
     def _listed(self, entries: Entries) -> None:
         """Something in the lists has changed."""
         self.work.show(entries)
-        self.enter()
+        self.put_entries()
         self.solve()
         self._edited()
 
@@ -165,6 +167,8 @@ class ScreenView:
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
+        elif self._sketch is not None and path in self._choices:
+            self._sketch.show(self.work.entries)
         self.solve(held=self._holds)
         self._edited()
 
@@ -191,10 +195,11 @@ class ScreenView:
 
     def put_entries(self) -> None:
         """Make the entries stand in the form, which is made again only if its fields are others."""
-        if self._has_shape:
-            self.form.put(self.work.entries)
-        else:
-            self.rebuild()
+        if not self._has_shape:
+            return self.rebuild()
+        self.form.put(self.work.entries)
+        if self._sketch is not None:
+            self._sketch.show(self.work.entries)
 
     @property
     def _has_shape(self) -> bool:
@@ -296,7 +301,10 @@ class ScreenView:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
             for sentence in dict.fromkeys(warnings):
-                ui.label(f"Warning: {sentence}").classes("warning")
+                ui.label(f"Warning: {self._as_on_form(sentence)}").classes("warning")
+
+    def _as_on_form(self, said: str) -> str:
+        return as_on_form(said, self.work.inputs, self.work.document.headings)
 
     def _show(self) -> None:
         answered = self.work.answered.get(self.screen.name)
@@ -307,7 +315,7 @@ class ScreenView:
         self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
         if not self.dragged:  # while a point is moved, its drawing alone follows
             self._plot()
-            self._tables.set_content(html(answered.tables))
+            self._tables.set_content(self._as_on_form(html(answered.tables)))
             self.comparison.show(answered)
             for more in self._more:
                 more.show(answered.answer)

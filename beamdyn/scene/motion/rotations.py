@@ -189,10 +189,12 @@ def _subtract(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
     below = y < 1
     if below.any():
         small = y[below]
-        series = np.ones_like(small)
+        square, series = small**2, np.ones_like(small)
         for n in range(18, 2, -2):
-            series = 1 - small**2 / (n * (n + 1)) * series
-        difference[below] = small**3 / 6 * series
+            series *= square
+            series *= -1 / (n * (n + 1))
+            series += 1
+        difference[below] = square * small / 6 * series
     return difference
 
 
