@@ -140,7 +140,7 @@ def of_reference_tables() -> Sections:
     return found
 
 
-def _rows(name: str, printed: Sequence[Any], ours: np.ndarray, error: np.ndarray, test: str) -> Iterator[Row]:
+def _rows(name: str, printed: Iterable[Any], ours: np.ndarray, error: np.ndarray, test: str) -> Iterator[Row]:
     for i, (text, value, relative) in enumerate(zip(map(str, printed), ours, error, strict=True)):
         absolute = abs(float(value * relative))
         entry = PrintedValue(name, i + 1, text, float(value), absolute)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import published
-from benchmarks import validation_manual
+from benchmarks import sources, validation_manual
 from brakes import published as published_brakes
 
 ROOT = Path(__file__).parents[2]
@@ -55,6 +55,13 @@ def test_every_printed_table_says_of_which_beam_it_is() -> None:
     page = "\n".join(validation_manual._page("rotating_beams", validation_manual.of_printed_tables()))
     for name, beam in beams.items():
         assert f"## {name}\n\nThe beam: {beam}.\n" in page
+
+
+def test_sources_name_the_file_that_has_the_numbers() -> None:
+    """In the data, not in a comment alone."""
+    for who, _, file in sources._CITED:
+        surname = re.split(r"[ ,]", who)[0]
+        assert surname in str(published.load(file)), f"{who}: {file}"
 
 
 def test_numbers_in_verdicts_are_those_of_notes() -> None:
