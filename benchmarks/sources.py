@@ -37,7 +37,7 @@ _CITED = (  # in the data by a short name only
     (
         "Wright, Smith, Thresher and Wang (1982)",
         "Vibration modes of centrifugally stiffened beams. Journal of Applied Mechanics 49, 197-202",
-        "bir_2009",
+        "rotating_beams",
     ),
     (
         "Yoo and Shin (1998)",

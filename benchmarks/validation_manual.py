@@ -122,7 +122,8 @@ def of_reference_tables() -> Sections:
 
     All are [nondimensional](../../conventions.md#nondimensional-groups): lambda, by speed (gamma), hub radius
     (delta) and mode. The papers print their first four or five digits; the others are of a power series and
-    of Rayleigh-Ritz in 40 digits, which agree.
+    of Rayleigh-Ritz in 40 digits, which agree. Sections, tip bodies and twist of each row stand in
+    `rotating_beams.toml` and `twisted_beams.toml` of `beamdyn/published`.
     """
     found: Sections = {}
     data = load("rotating_beams")
@@ -139,7 +140,7 @@ def of_reference_tables() -> Sections:
     return found
 
 
-def _rows(name: str, printed: Sequence[Any], ours: np.ndarray, error: np.ndarray, test: str) -> Iterator[Row]:
+def _rows(name: str, printed: Iterable[Any], ours: np.ndarray, error: np.ndarray, test: str) -> Iterator[Row]:
     for i, (text, value, relative) in enumerate(zip(map(str, printed), ours, error, strict=True)):
         absolute = abs(float(value * relative))
         entry = PrintedValue(name, i + 1, text, float(value), absolute)
@@ -329,7 +330,11 @@ def _count_digits(text: str) -> int:
 
 
 def of_statics() -> Sections:
-    """Worked problems of statics, in the books' units; two numbers are components to the right and up."""
+    """Worked problems of statics, in the books' units; two numbers are components to the right and up.
+
+    Their points and loads stand in `benchmarks/cases/statics.py`; the force of a pin is that on the part
+    which is named first there.
+    """
     data, solved = load_brakes("statics"), statics.answers()
     found = {
         given["source"]: [
@@ -462,8 +467,10 @@ what other methods computed. Tests: in `{TESTS}`."""
 def _page(name: str, sections: Sections) -> Iterator[str]:
     title, part = PARTS[name]
     yield f"# {title}\n\n{getdoc(part)} {_ABOUT}\n"
+    beams = printed_tables.beams()
     for source, rows in sections.items():
-        yield f"## {source}\n\n{_table(HEADS, (row.cells() for row in rows))}\n"
+        about = f"The beam: {beams[source]}.\n\n" if source in beams else ""
+        yield f"## {source}\n\n{about}{_table(HEADS, (row.cells() for row in rows))}\n"
     notes = [_cell(note) for make in NOTES.get(name, ()) for note in make()]
     if notes:
         yield "## Notes\n\n" + "\n\n".join(notes)

@@ -77,7 +77,8 @@ def study(
         Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed of
         crossings. Default: the final speed of the scene's motion, or 0 without one.
     modes
-        Number of modes, from the lowest.
+        Number of modes of frequencies and crossings, from the lowest; amplitudes and peaks take as many as
+        they need.
     window
         Beginning and end of the window of time of peaks.
     discretization

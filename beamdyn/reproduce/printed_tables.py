@@ -92,6 +92,14 @@ def _section(row: Mapping[str, Any]) -> dict[str, Any]:
     return {"mass": (width * thickness).coef, "stiffness": (width * thickness**3).coef}
 
 
+def beams() -> dict[str, str]:
+    """The beam of each table of the papers, in words, by the name of the table."""
+    papers = [load(name) for name in PAPERS]
+    alone = [paper[key] for paper in papers for key in ("cable", "stretch") if key in paper]
+    tables = [table for paper in papers for table in paper.get("table", [])]
+    return {table["name"]: table["beam"] for table in (*tables, *alone)}
+
+
 def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[PrintedValue]:
     """Compare the values of a case."""
     scene, printed, factor = nondimensional_scene(dict(case)), case["frequency"], case["factor"]

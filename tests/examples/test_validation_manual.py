@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import published
-from benchmarks import validation_manual
+from benchmarks import sources, validation_manual
 from brakes import published as published_brakes
 
 ROOT = Path(__file__).parents[2]
@@ -45,6 +45,23 @@ def test_no_value_differs_without_a_reason(part: str) -> None:
     assert len(rows) >= 20
     assert [row for row in rows if "unexpected" in row.verdict] == []
     assert [row for row in rows if not re.search(r"\d", row.ours)] == []
+
+
+def test_every_printed_table_says_of_which_beam_it_is() -> None:
+    """Who computes a row anew needs its tip mass, its direction of bending, and the unit of its numbers."""
+    tables = validation_manual.printed_tables
+    beams = tables.beams()
+    assert {name for name in tables.all_entries("ritz") if not name.endswith("computed")} == {*beams}
+    page = "\n".join(validation_manual._page("rotating_beams", validation_manual.of_printed_tables()))
+    for name, beam in beams.items():
+        assert f"## {name}\n\nThe beam: {beam}.\n" in page
+
+
+def test_sources_name_the_file_that_has_the_numbers() -> None:
+    """In the data, not in a comment alone."""
+    for who, _, file in sources._CITED:
+        surname = re.split(r"[ ,]", who)[0].lower()
+        assert surname in str(published.load(file)).lower(), f"{who}: {file}"
 
 
 def test_numbers_in_verdicts_are_those_of_notes() -> None:

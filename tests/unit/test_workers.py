@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from concurrent.futures import CancelledError, as_completed
@@ -95,6 +96,25 @@ def test_an_error_ends_the_processes_at_once(tmp_path):
     for future in futures:
         with pytest.raises(CancelledError):
             future.result()
+
+
+KILLED = """
+import os, signal, time
+from beamdyn.common.parallel.workers import Workers
+
+pool = Workers(1)
+pool.submit(int).result()  # the process is there
+pool.submit(time.sleep, 1.0)
+time.sleep(0.3)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_process_whose_caller_is_killed_ends_without_a_word():
+    """Nobody waits for its answer: a traceback would come after the prompt of the shell."""
+    run = subprocess.run([sys.executable, "-c", KILLED], capture_output=True, text=True, timeout=60)
+    assert run.returncode == -signal.SIGKILL
+    assert run.stderr == ""
 
 
 def test_blas_has_one_thread_until_the_last_leaves():

@@ -128,15 +128,17 @@ class _Process:
 
 
 def serve() -> None:
-    """Do the tasks that arrive on the standard input until it is closed."""
+    """Do the tasks that arrive on the standard input until it is closed, or nobody takes the answers."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a task prints must not mix with the answers
     while True:
         try:
             task = _receive(sys.stdin.buffer)
+            _send(answers, _answer(task))
         except EOFError:
             return
-        _send(answers, _answer(task))
+        except BrokenPipeError:  # the caller was killed
+            os._exit(0)  # without a last try to send what is left
 
 
 def _answer(task: bytes) -> bytes:
