@@ -21,7 +21,7 @@ Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]
 Keep = Callable[[Any, Any], None]
 _IN_FLIGHT = 256  # tasks that an executor has at a time: enough for its workers, few for the memory
-_PER_WORKER = 2  # the same for each worker of our own: one that it solves, and the next
+_PER_WORKER = 8  # the same for each worker of our own: what waits is taken back where it is wanted
 
 
 class RunInterrupted(RuntimeError):
