@@ -190,6 +190,28 @@ def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_n
     simulate(slow.program, body, InThread())
 
 
+@pytest.mark.parametrize("solver", [None, InThread()])
+def test_an_answer_that_cannot_be_shown_is_an_error_and_not_computed_forever(simulate, fields, solver):
+    def chart(answer, _):
+        if answer.locus.scene.mount.radius == 0.13:
+            raise TypeError("of a kind that no one has foreseen")
+        return FREQUENCIES.charts(answer)
+
+    async def body(client):
+        page = fields(await client())
+        await becomes("Up to date.", page)
+        page.enter("mount.radius", "0.13 m")
+        await becomes("of a kind that no one has foreseen", page)
+        assert "Computing" not in page.text() and "Up to date." not in page.text()
+        assert page.greyed() == 1
+        page.enter("mount.radius", "0.14 m")
+        await becomes("Up to date.", page)
+        assert "foreseen" not in page.text() and page.greyed() == 0
+
+    screen = replace(FREQUENCIES, charts=chart)
+    simulate(Program("unshown", "Unshown", (replace(SCENE, screens=(screen,)),)), body, solver)
+
+
 def test_report_and_downloads_wait_for_the_answer(simulate, fields):
     slow = Slow()
 

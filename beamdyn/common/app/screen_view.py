@@ -35,6 +35,8 @@ from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text, html
 
+_NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
+
 
 class ScreenView:
     """The view of one screen of an open document.
@@ -58,7 +60,7 @@ class ScreenView:
         self._drawn = ""
         self.narrow = False  # the page, so that drawings have narrow paper
         self._sentences: tuple[list[str], list[str]] = [], []
-        self._way = UnderWay(self._settle, self.state)
+        self._way = UnderWay(self._settle, self._fail, self.state)
         self._holds = False  # a slider of the form
         self._partial = False  # whether the tables shown are those of an answer before
         self._sketch: SketchPanel | None = None
@@ -246,6 +248,13 @@ class ScreenView:
         self._say(mistakes)
         if self.board.held is None:
             self._edited()
+
+    def _fail(self, error: Exception) -> None:
+        """Say that an answer cannot be shown; what stands there may be parts of it."""
+        self.work.answered.pop(self.screen.name, None)
+        self.work.mistakes[self.screen.name] = {"": [_NOT_SHOWN.format(error)]}
+        self.state()
+        self._say(self.work.mistakes[self.screen.name])
 
     def _complete(self, outcome: Any) -> Any:
         """An answer that was made for a drawing alone keeps the tables and notes of the one before it."""

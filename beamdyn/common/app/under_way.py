@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable
 from time import monotonic
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from nicegui import background_tasks
 
 SOON = 0.3  # after which the page says that it computes [s]
+_LOG = logging.getLogger(__name__)
 _PATIENCE = 2.0  # after which what is no longer wanted is ended [s]; to start another process costs one
 
 
@@ -20,6 +22,8 @@ class UnderWay:
     ----------
     settle : callable
         Called with the future of each that is done, and whether nothing newer is wanted.
+    fail : callable
+        Called with the error that `settle` has ended in, an unforeseen one: what is done cannot be shown.
     tell : callable
         Called when `slow` or `busy` has changed.
 
@@ -30,10 +34,13 @@ class UnderWay:
     """
 
     def __init__(
-        self, settle: Callable[[asyncio.Future[Any], bool], object], tell: Callable[[], object]
+        self,
+        settle: Callable[[asyncio.Future[Any], bool], object],
+        fail: Callable[[Exception], object],
+        tell: Callable[[], object] = lambda: None,
     ) -> None:
         self.slow = False
-        self._settle, self._tell = settle, tell
+        self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
         self._task: asyncio.Task[None] | None = None
@@ -64,10 +71,17 @@ class UnderWay:
         """Start what is wanted; whether that is done already."""
         assert self._wanted is not None
         start, self._wanted = self._wanted, None
-        self._future = start()
+        self._future = _started(start)
         if at_once := self._future.done():
             self._settle(self._future, True)
         return at_once
+
+    def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
+        try:
+            self._show(future, last)
+        except Exception as error:  # whatever it is: the page must not go on saying that it computes
+            _LOG.exception("what has been computed cannot be shown")
+            self._fail(error)
 
     async def _follow(self) -> None:
         try:
@@ -95,3 +109,13 @@ class UnderWay:
                 future.cancel()
             await asyncio.wait([future], timeout=SOON)
         return future
+
+
+def _started(start: Callable[[], asyncio.Future[Any]]) -> asyncio.Future[Any]:
+    """What is started; a future with the error where it cannot be."""
+    try:
+        return start()
+    except Exception as error:
+        failed: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        failed.set_exception(error)
+        return failed
