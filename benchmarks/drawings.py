@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -177,17 +178,18 @@ def _thing(page: Any, label: str) -> Any:
 
 
 def _drag(page: Any, label: str) -> tuple[float, float, float]:
-    """Drag in a small circle; pictures and frames a second, and the time from release to the answer [ms]."""
+    """Drag; pictures and frames a second, and the time from release to the answer [ms]."""
     handle = _thing(page, label)
     handle.scroll_into_view_if_needed()
-    box = handle.bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    x, y = _middle(handle)
+    slider = page.locator(f".q-slider[aria-label='{label}']:visible")
+    way = _across(slider.bounding_box()) if slider.count() else partial(_around, x, y)
     page.mouse.move(x, y)
     page.mouse.down()
     page.evaluate(COUNT)
     begin, now = time.monotonic(), 0.0
     while now < DRAG:
-        page.mouse.move(x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now))
+        page.mouse.move(*way(now))
         time.sleep(STEP)
         now = time.monotonic() - begin
     found = page.evaluate("() => { window.counting = false; return [window.pictures.size, window.frames]; }")
@@ -196,6 +198,21 @@ def _drag(page: Any, label: str) -> tuple[float, float, float]:
     page.mouse.up()
     rest = page.evaluate(TOLD)
     return found[0] / now, found[1] / now, rest
+
+
+def _middle(thing: Any) -> tuple[float, float]:
+    box = thing.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def _around(x: float, y: float, now: float) -> tuple[float, float]:
+    """Where the mouse is with a point of a drawing: on a small figure about where it was."""
+    return x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now)
+
+
+def _across(box: Mapping[str, float]) -> Callable[[float], tuple[float, float]]:
+    """Where it is with a slider: once across, so that each of its places comes once."""
+    return lambda now: (box["x"] + box["width"] * now / DRAG, box["y"] + box["height"] / 2)
 
 
 PARTS = time_labels, time_screens

@@ -10,6 +10,7 @@ from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.document_report import report_of
+from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Program
@@ -129,7 +130,7 @@ def test_each_screen_shows_the_entries_that_it_solves(simulate, fields):
 def test_slider_follows_its_field_and_leaves_it_as_it_is(simulate, fields):
     async def body(client):
         page = fields(await client())
-        sliders = [e for e in page.user.client.elements.values() if e.tag == "q-slider"]
+        sliders = [e for e in page.user.client.elements.values() if isinstance(e, DragSlider)]
         slider = next(e for e in sliders if "radius" in e.props["aria-label"])
         for text, at in (("0.2003 m", 200.3), ("1 m", 500.0), ("wide", 500.0)):
             page.enter("mount.radius", text)

@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
+from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.lists import Cell, Entries, Item, ListGroup, Lists
 
 STYLE = """
@@ -32,12 +33,18 @@ class ListEditor:
         What stands in them at first.
     changed : callable
         Called with all entries after a change.
+    brush : Brush
+        What writes into the fields while something is held.
     """
 
     def __init__(
-        self, lists: Lists, entries: Mapping[str, str], changed: Callable[[Entries], object]
+        self,
+        lists: Lists,
+        entries: Mapping[str, str],
+        changed: Callable[[Entries], object],
+        brush: Brush,
     ) -> None:
-        self._lists, self._entries, self._changed = lists, dict(entries), changed
+        self._lists, self._entries, self._changed, self._brush = lists, dict(entries), changed, brush
         self._fields: dict[tuple[str, str], Any] = {}
         self._folded: set[str] = set()
         self._quiet = False
@@ -64,9 +71,12 @@ class ListEditor:
         }
         if {place: _kind(cell) for place, cell in cells.items()} != self._kinds:
             return self._make()
+        others = {self._fields[place]: cell.text for place, cell in cells.items()}
+        others = {field: text for field, text in others.items() if field.value != text}
         self._quiet = True
-        for place, cell in cells.items():
-            self._fields[place].set_value(cell.text)
+        with self._brush.stroke(*others):
+            for field, text in others.items():
+                field.set_value(text)
         self._quiet = False
 
     def _make(self) -> None:

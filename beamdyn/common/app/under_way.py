@@ -53,8 +53,12 @@ class UnderWay:
     def want(self, start: Callable[[], asyncio.Future[Any]]) -> None:
         """Start something, or have it started after what is under way, in place of what waited for that."""
         self._wanted = start
-        if self._task is None and not self._next():
-            self._task = background_tasks.create(self._follow())
+        if self._task is None:
+            future = self._next()
+            if future.done():
+                self._settle(future, True)
+            else:
+                self._task = background_tasks.create(self._follow(future))
 
     def cancel(self) -> None:
         """End what is under way; nothing else starts."""
@@ -67,14 +71,12 @@ class UnderWay:
         if self._task is not None:
             await asyncio.wait([self._task])
 
-    def _next(self) -> bool:
-        """Start what is wanted; whether that is done already."""
+    def _next(self) -> asyncio.Future[Any]:
+        """Start what is wanted."""
         assert self._wanted is not None
         start, self._wanted = self._wanted, None
         self._future = _started(start)
-        if at_once := self._future.done():
-            self._settle(self._future, True)
-        return at_once
+        return self._future
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         try:
@@ -83,23 +85,22 @@ class UnderWay:
             _LOG.exception("what has been computed cannot be shown")
             self._fail(error)
 
-    async def _follow(self) -> None:
+    async def _follow(self, future: asyncio.Future[Any]) -> None:
         try:
-            future = await self._wait()
+            await self._wait(future)
             while self._wanted is not None:
-                if not future.cancelled():
-                    self._settle(future, False)
-                if self._next():
-                    return
-                future = await self._wait()
+                done, future = future, self._next()
+                await asyncio.sleep(0)  # it is on its way before the last one is shown, which takes its time
+                if not done.cancelled():
+                    self._settle(done, False)
+                await self._wait(future)
         finally:
             self._task, self.slow = None, False
         self._settle(future, True)
 
-    async def _wait(self) -> asyncio.Future[Any]:
+    async def _wait(self, future: asyncio.Future[Any]) -> None:
         """Wait for what is under way, and end it where it takes long and is no longer wanted."""
-        future, start = self._future, monotonic()
-        assert future is not None
+        start = monotonic()
         await asyncio.wait([future], timeout=SOON)
         while not future.done():
             if not self.slow:
@@ -108,7 +109,6 @@ class UnderWay:
             if self._wanted is not None and monotonic() - start > _PATIENCE:
                 future.cancel()
             await asyncio.wait([future], timeout=SOON)
-        return future
 
 
 def _started(start: Callable[[], asyncio.Future[Any]]) -> asyncio.Future[Any]:
