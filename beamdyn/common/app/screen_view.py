@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from html import escape
 from typing import Any
+from zlib import crc32
 
 from nicegui import ui
 
@@ -251,7 +252,7 @@ class ScreenView:
             self._show()
         self.state()
         self._say(mistakes)
-        if self.board.held is None:
+        if not self.dragged:
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -317,8 +318,9 @@ class ScreenView:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        with self._brush.stroke(self._headline):
+        with self._brush.stroke(self._headline, self._good):
             self._headline.set_content(headline_of(self.work, self.screen, answered))
+            self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
         self._draw()
         self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
         if not self.dragged:  # while a point is moved, its drawing alone follows
