@@ -8,20 +8,37 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-# Writes changes of elements, by their numbers, where they are on the page.  A field keeps its text itself.
+# Writes changes of elements, by their numbers, where they are on the page; of their content what differs: for
+# new nodes the browser and the toolkit look for style rules.  A field keeps its text itself.
 SCRIPT = """<script>
+const put = (shown, name, value) => { if (shown.getAttribute(name) !== value) shown.setAttribute(name, value); };
+const fill = (shown, wanted) => {
+  const there = [...shown.childNodes], nodes = [...wanted.childNodes];
+  nodes.forEach((node, i) => i < there.length ? become(there[i], node) : shown.append(node));
+  there.slice(nodes.length).forEach((node) => node.remove());
+};
+const become = (shown, wanted) => {
+  if (shown.nodeName !== wanted.nodeName) return shown.replaceWith(wanted);
+  if (!wanted.attributes) return shown.data === wanted.data || (shown.data = wanted.data);
+  for (const {name} of [...shown.attributes]) if (!wanted.hasAttribute(name)) shown.removeAttribute(name);
+  for (const {name, value} of wanted.attributes) put(shown, name, value);
+  fill(shown, wanted);
+};
+const parsed = document.createElement("template");
 window.paint = (changes) => {
   for (const [id, changed] of Object.entries(changes)) {
     const shown = getHtmlElement(id);
     if (shown === null) continue;
     for (const [name, value] of Object.entries(changed)) {
-      if (name === "innerHTML") shown.innerHTML = value;
-      else if (name === "text") shown.textContent = value;
+      if (name === "innerHTML") {
+        parsed.innerHTML = value;
+        fill(shown, parsed.content);
+      } else if (name === "text") shown.textContent = value;
       else if (name === "value") {
         const field = getElement(id);
         Object.assign(field, {emitting: false, inputValue: value});
         field.$nextTick(() => { field.emitting = true; });
-      } else shown.setAttribute(name, value);
+      } else put(shown, name, value);
     }
   }
 };
