@@ -32,7 +32,7 @@ from benchmarks.served import PATIENCE, browser, free_port, go, open_page, start
 from brakes.app.program import BRAKES
 
 RUNS = 15  # how often each is timed
-DRAG, STEP = 3.0, 0.012  # length of a drag, and between two moves of the mouse [s]
+DRAG, STEP = 3.0, 0.004  # length of a drag, and between two moves of the mouse [s]
 LABELS, SHAPES, BOUND, PAINTED = 40, 180, 5, 20
 AT_REST, BUSY = 300, 300  # bounds of the full answer and of the busy sign [ms]
 REACH = 14  # how far the mouse goes to both sides [px]
@@ -49,9 +49,9 @@ LONG = ("Steady response", "Transient")
 # Counts each solved position whose picture is there when a frame is painted, once.
 COUNT = """() => {
   window.pictures = new Set(); window.frames = 0; window.counting = true;
+  const shown = [...document.querySelectorAll('[data-solved]')].filter((it) => it.checkVisibility());
   const look = () => {
-    for (const it of document.querySelectorAll('[data-solved]'))
-      if (it.checkVisibility()) window.pictures.add(it.dataset.solved);
+    for (const it of shown) window.pictures.add(it.dataset.solved);
     window.frames += 1;
     if (window.counting) requestAnimationFrame(look);
   };

@@ -86,9 +86,10 @@ class ChartBoard:
     def _fill(self, made: Any, chart: Chart) -> None:
         with made.props.suspend_updates():
             made.props["aria-label"] = chart.words
-            made.props["options"] = options = options_of(chart)
+            last, made.props["options"] = made.props["options"], (options := options_of(chart))
         if self._brush.wet:
-            made.run_chart_method("setOption", _without_scripts(options), {"replaceMerge": ["series"]})
+            others = {name: value for name, value in options.items() if last.get(name) != value}
+            made.run_chart_method("setOption", _without_scripts(others), {"replaceMerge": ["series"]})
             self._brush.tell_later(made)
         else:
             made.update()
