@@ -19,6 +19,7 @@ from beamdyn.common.app.screens import Document, Program, Screen
 LONGEST = 120.0  # that an answer may take [s]
 MEMORY = 400  # that it may take beyond what an idle process has [MB]
 _MOST = max(3, (os.cpu_count() or 1) + 1)  # processes: one is left where others are at long answers
+_NICE = 5  # how far those who serve and show pages come before them where all want the processor
 _SPARE = 0.5  # after which a task has another process started, for others [s]
 _SERVE = "from beamdyn.common.app.processes import serve_tasks; serve_tasks({caller})"
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
@@ -230,6 +231,8 @@ def serve_tasks(caller: int) -> None:
     from beamdyn.common.parallel.workers import serve
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
     _end_with(caller)
     serve()
 
