@@ -11,7 +11,7 @@ from typing import Any
 # Writes changes of elements, by their numbers, where they are on the page; of their content what differs: for
 # new nodes the browser and the toolkit look for style rules.  A field keeps its text itself.
 SCRIPT = """<script>
-const put = (shown, name, value) => { if (shown.getAttribute(name) !== value) shown.setAttribute(name, value); };
+const put = (shown, name, value) => shown.getAttribute(name) === value || shown.setAttribute(name, value);
 const fill = (shown, wanted) => {
   const there = [...shown.childNodes], nodes = [...wanted.childNodes];
   nodes.forEach((node, i) => i < there.length ? become(there[i], node) : shown.append(node));
