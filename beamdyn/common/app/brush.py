@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,37 +12,41 @@ from typing import Any
 # Writes changes of elements, by their numbers, where they are on the page; of their content what differs: for
 # new nodes the browser and the toolkit look for style rules.  A field keeps its text itself.
 SCRIPT = """<script>
-const put = (shown, name, value) => shown.getAttribute(name) === value || shown.setAttribute(name, value);
-const fill = (shown, wanted) => {
-  const there = [...shown.childNodes], nodes = [...wanted.childNodes];
-  nodes.forEach((node, i) => i < there.length ? become(there[i], node) : shown.append(node));
-  there.slice(nodes.length).forEach((node) => node.remove());
-};
-const become = (shown, wanted) => {
-  if (shown.nodeName !== wanted.nodeName) return shown.replaceWith(wanted);
-  if (!wanted.attributes) return shown.data === wanted.data || (shown.data = wanted.data);
-  for (const {name} of [...shown.attributes]) if (!wanted.hasAttribute(name)) shown.removeAttribute(name);
-  for (const {name, value} of wanted.attributes) put(shown, name, value);
-  fill(shown, wanted);
-};
-const parsed = document.createElement("template");
-window.paint = (changes) => {
-  for (const [id, changed] of Object.entries(changes)) {
-    const shown = getHtmlElement(id);
-    if (shown === null) continue;
-    for (const [name, value] of Object.entries(changed)) {
-      if (name === "innerHTML") {
-        parsed.innerHTML = value;
-        fill(shown, parsed.content);
-      } else if (name === "text") shown.textContent = value;
-      else if (name === "value") {
-        const field = getElement(id);
-        Object.assign(field, {emitting: false, inputValue: value});
-        field.$nextTick(() => { field.emitting = true; });
-      } else put(shown, name, value);
+{
+  const put = (shown, name, value) => shown.getAttribute(name) === value || shown.setAttribute(name, value);
+  const fill = (shown, wanted) => {
+    const there = [...shown.childNodes], nodes = [...wanted.childNodes];
+    nodes.forEach((node, i) => i < there.length ? become(there[i], node) : shown.append(node));
+    there.slice(nodes.length).forEach((node) => node.remove());
+  };
+  const become = (shown, wanted) => {
+    if (shown.nodeName !== wanted.nodeName) return shown.replaceWith(wanted);
+    if (!wanted.attributes) return shown.data === wanted.data || (shown.data = wanted.data);
+    for (const {name} of [...shown.attributes]) if (!wanted.hasAttribute(name)) shown.removeAttribute(name);
+    for (const {name, value} of wanted.attributes) put(shown, name, value);
+    fill(shown, wanted);
+  };
+  const parsed = document.createElement("template");
+  window.paint = (changes) => {
+    for (const [id, changed] of Object.entries(changes)) {
+      const shown = getHtmlElement(id);
+      if (shown === null) continue;
+      for (const [name, value] of Object.entries(changed)) {
+        if (name === "innerHTML") {
+          parsed.innerHTML = value;
+          fill(shown, parsed.content);
+        } else if (name === "text") shown.textContent = value;
+        else if (name === "value") {
+          const field = getElement(id);
+          Object.assign(field, {emitting: false, inputValue: value});
+          field.$nextTick(() => { field.emitting = true; });
+        } else if (name === "options") {
+          getElement(id).chart?.setOption(value, {replaceMerge: ["series"], lazyUpdate: true});
+        } else put(shown, name, value);
+      }
     }
-  }
-};
+  };
+}
 </script>"""
 _WRITTEN = ("innerHTML", "text", "value", "style", "class", "data-", "aria-")
 
@@ -61,6 +66,7 @@ class Brush:
     def __init__(self, held: Callable[[], bool] = lambda: False) -> None:
         self._held = held
         self._untold: dict[int, Any] = {}
+        self._unwritten: dict[int, dict[str, Any]] = {}
 
     @property
     def wet(self) -> bool:
@@ -82,7 +88,9 @@ class Brush:
         finally:
             for element in elements:
                 del element.update, element.run_method
-        self._write(before)
+        for element, was in before.items():
+            now = _written(element).items()
+            self.write(element, {name: value for name, value in now if was.get(name) != value})
         if not self._held():
             self.rest()
 
@@ -96,13 +104,16 @@ class Brush:
         for element in untold.values():
             element.update()
 
-    def _write(self, before: dict[Any, dict[str, Any]]) -> None:
-        changes = {
-            element.id: {name: value for name, value in _written(element).items() if was.get(name) != value}
-            for element, was in before.items()
-        }
-        if changes := {number: changed for number, changed in changes.items() if changed}:
-            next(iter(before)).client.run_javascript(f"paint({json.dumps(changes)})")
+    def write(self, element: Any, changed: dict[str, Any]) -> None:
+        """Write what has changed of an element, in one message with all else that has by then."""
+        if changed and not self._unwritten:
+            asyncio.get_running_loop().call_soon(self._send, element.client)
+        if changed:
+            self._unwritten.setdefault(element.id, {}).update(changed)
+
+    def _send(self, client: Any) -> None:
+        unwritten, self._unwritten = self._unwritten, {}
+        client.run_javascript(f"paint({json.dumps(unwritten)})")
 
 
 def _do_nothing(*_: Any, **__: Any) -> None:

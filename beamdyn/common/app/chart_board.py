@@ -89,7 +89,7 @@ class ChartBoard:
             last, made.props["options"] = made.props["options"], (options := options_of(chart))
         if self._brush.wet:
             others = {name: value for name, value in options.items() if last.get(name) != value}
-            made.run_chart_method("setOption", _without_scripts(others), {"replaceMerge": ["series"]})
+            self._brush.write(made, {"options": _without_scripts(others)})
             self._brush.tell_later(made)
         else:
             made.update()

@@ -62,9 +62,10 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
 def root_of(program: Program, solver: TaskTaker) -> Callable[[], Awaitable[None]]:
     """The function that builds the page for a client."""
     from beamdyn.common.app.page import Page
+    from beamdyn.common.app.processes import Share
 
     async def root() -> None:
-        await Page(program, solver).recall()
+        await Page(program, Share(solver)).recall()
 
     return root
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from nicegui import background_tasks
 
-SOON = 0.3  # after which the page says that it computes [s]
+SOON = 0.15  # after which the page says that it computes [s]; it has said so within 0.3 s
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 2.0  # after which what is no longer wanted is ended [s]; to start another process costs one
 
