@@ -44,19 +44,17 @@ POINTS = {
     "Mechanism": "E",  # C soon leaves the reach of the hand
 }
 SLIDER = "radius, r [mm]"
-SLIDERS: dict[str, str] = dict.fromkeys(["Frequencies", "Rotor", "Mode shapes"], SLIDER)
+SLIDERS = {"Frequencies": "", "Rotor": "tip: setting angle", "Mode shapes": ""}  # each slider, and this point
 LONG = ("Steady response", "Transient")
-# Counts each solved position whose picture is there when a frame is painted, once.
+# Counts each solved position whose picture is there when a frame is painted, once; it asks for no frame itself.
 COUNT = """() => {
-  window.pictures = new Set(); window.frames = 0; window.counting = true;
-  const shown = [...document.querySelectorAll('[data-solved]')].filter((it) => it.checkVisibility());
-  const look = () => {
-    for (const it of shown) window.pictures.add(it.dataset.solved);
-    window.frames += 1;
-    if (window.counting) requestAnimationFrame(look);
-  };
-  requestAnimationFrame(look);
+  window.pictures = new Set();
+  const look = (it) =>
+    requestAnimationFrame(() => it.checkVisibility() && window.pictures.add(it.dataset.solved));
+  window.counting = new MutationObserver((seen) => look(seen[0].target));
+  window.counting.observe(document.body, {subtree: true, attributeFilter: ["data-solved"]});
 }"""
+COUNTED = "() => { window.counting.disconnect(); return window.pictures.size; }"
 # Waits for some events, and then for words of the page; in `window.told` the time between them [ms].
 WATCH = """([events, words]) => {
   const seen = () => [...document.querySelectorAll(".status[role=status], .q-btn")].some(
@@ -122,14 +120,14 @@ def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
     try:
         with browser() as made:
             page = open_page(made.new_context(viewport={"width": 1280, "height": 900}), port)
-            for name, label in things.items():
+            for name, label in [pair for thing in things.items() for pair in _held(page, *thing)]:
                 go(page, name)
                 rest(process.pid)
                 before = processor_time([process.pid, *children_of(process.pid)])
-                painted, frames, late = _drag(page, label)
+                painted, late = _drag(page, label)
                 spent = processor_time([process.pid, *children_of(process.pid)]) - before
                 yield (
-                    f"{name}: pictures painted a second ({frames:.0f} frames)",
+                    f"{name}: {label}: pictures painted a second",
                     f"{painted:.1f}",
                     f"{PAINTED}",
                 )
@@ -179,6 +177,13 @@ def processor_time(ids: Iterable[int]) -> float:
     return ticks / os.sysconf("SC_CLK_TCK")
 
 
+def _held(page: Any, name: str, point: str) -> list[tuple[str, str]]:
+    """What is dragged on a screen: a point, and each slider of its form."""
+    go(page, name)
+    sliders = page.locator(".left .q-slider:visible").all()
+    return [(name, label) for label in [point, *(it.get_attribute("aria-label") for it in sliders)] if label]
+
+
 def _thing(page: Any, label: str) -> Any:
     """The handle of a point or of a slider in front."""
     found = page.get_by_role("slider", name=label, exact=True).locator("visible=true")
@@ -186,8 +191,8 @@ def _thing(page: Any, label: str) -> Any:
     return thumb if thumb.count() else found
 
 
-def _drag(page: Any, label: str) -> tuple[float, float, float]:
-    """Drag; pictures and frames a second, and the time from release to the answer [ms]."""
+def _drag(page: Any, label: str) -> tuple[float, float]:
+    """Drag; pictures a second, and the time from release to the answer [ms]."""
     handle = _thing(page, label)
     handle.scroll_into_view_if_needed()
     x, y = _middle(handle)
@@ -201,12 +206,12 @@ def _drag(page: Any, label: str) -> tuple[float, float, float]:
         page.mouse.move(*way(now))
         time.sleep(STEP)
         now = time.monotonic() - begin
-    found = page.evaluate("() => { window.counting = false; return [window.pictures.size, window.frames]; }")
+    found = page.evaluate(COUNTED)
     page.evaluate(WATCH, ["pointerup mouseup", "Up to date."])
     page.mouse.move(x, y)  # where there is an answer
     page.mouse.up()
     rest = page.evaluate(TOLD)
-    return found[0] / now, found[1] / now, rest
+    return found / now, rest
 
 
 def _middle(thing: Any) -> tuple[float, float]:

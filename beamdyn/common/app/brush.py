@@ -37,9 +37,8 @@ SCRIPT = """<script>
           fill(shown, parsed.content);
         } else if (name === "text") shown.textContent = value;
         else if (name === "value") {
-          const field = getElement(id);
-          Object.assign(field, {emitting: false, inputValue: value});
-          field.$nextTick(() => { field.emitting = true; });
+          Vue.toRaw(getElement(id).$data).inputValue = value;  // for when it is rendered again
+          (shown.querySelector("input, textarea") ?? shown).value = value;
         } else if (name === "options") {
           getElement(id).chart?.setOption(value, {replaceMerge: ["series"], lazyUpdate: true});
         } else put(shown, name, value);

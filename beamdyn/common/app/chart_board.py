@@ -17,7 +17,7 @@ STYLE = (
     chart_colours(":root")
     + chart_colours(".body--dark", dark=True)
     + """
-.chart { width: 100%; max-width: 1000px; height: clamp(330px, 52vh, 480px); }
+.chart { width: 100%; max-width: 1000px; height: clamp(330px, 52vh, 480px); contain: strict; }
 .chart-title { font-weight: 600; margin-top: 0.4rem; }
 """
 )
@@ -37,6 +37,8 @@ _KEYS = """(event) => {
   event.preventDefault();
   chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
 }"""
+
+_NO_SIGNS = {"toolbox": {"show": False}}  # while something is held: they are made anew for each picture
 
 
 class ChartBoard:
@@ -89,7 +91,7 @@ class ChartBoard:
             last, made.props["options"] = made.props["options"], (options := options_of(chart))
         if self._brush.wet:
             others = {name: value for name, value in options.items() if last.get(name) != value}
-            self._brush.write(made, {"options": _without_scripts(others)})
+            self._brush.write(made, {"options": _without_scripts(others) | _NO_SIGNS})
             self._brush.tell_later(made)
         else:
             made.update()
