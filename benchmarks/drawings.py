@@ -46,7 +46,7 @@ POINTS = {
 SLIDER = "radius, r [mm]"
 SLIDERS = {"Frequencies": "", "Rotor": "tip: setting angle", "Mode shapes": ""}  # each slider, and this point
 LONG = ("Steady response", "Transient")
-# Counts each solved position whose picture is there when a frame is painted, once; it asks for no frame itself.
+# Counts each solved position whose picture is there when a frame is painted, once.
 COUNT = """() => {
   window.pictures = new Set();
   const look = (it) =>
