@@ -18,7 +18,7 @@ from typing import Any
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 
-_SIZE = {"width": 1440, "height": 1000}
+SIZE = {"width": 1440, "height": 1000}
 _SETTLES = 250  # until a page has heard what was done [ms]
 _HEADLINE = """() => {
   const it = [...document.querySelectorAll('dl.headline')].find((e) => e.offsetParent);
@@ -204,7 +204,7 @@ def perform(folder: Path, names: tuple[str, ...]) -> Iterator[Row]:
         process = start(port := free_port(), program)
         try:
             with browser() as made:
-                person = Person(open_page(made.new_context(viewport=_SIZE), port))
+                person = Person(open_page(made.new_context(viewport=SIZE), port))
                 begin = time.perf_counter()
                 found = task(person)
                 taken = time.perf_counter() - begin

@@ -88,6 +88,9 @@ _HEAD = """# Measured
 
 Written by `python -m benchmarks` on {day} ({machine}), which also writes [tradeoff](tradeoff.md).
 Versions: {versions}.  Other programs: [peers](peers.md), by `python -m benchmarks.peers`.
+
+The last column has a published value, the bound that was set beforehand (some are missed), or of a sample
+the size of the full run. Times are those of two cores, and scatter by a tenth.
 """
 
 

@@ -5,10 +5,10 @@ python -m benchmarks.validation_manual FOLDER writes its pages in Markdown; the 
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from inspect import getdoc
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +25,13 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.equilibria import equilibrium
 from beamdyn.spectrum.modes import natural_modes
-from benchmarks.cases import measured, single_answers, textbooks
+from benchmarks.cases import measured, single_answers, statics, textbooks
+from benchmarks.sources import page_of_sources
+from brakes.planar import solve
 from brakes.published import load as load_brakes
 from brakes.published.errata import Erratum
 from brakes.reproduce import caliper, drum, drum_as_printed, forklift, forklift_as_printed
+from brakes.reproduce.common import Heads
 
 TESTS = "tests/literature"
 _TESTS_OF_TABLES = {  # by the beginning of the source's name
@@ -63,6 +66,9 @@ _TEXTBOOKS = {
     "shigley_16_2_problem": "test_drum.py::test_shigley_problem_16_2",
     "bhandari_12_9": "test_drum.py::test_bhandari_12_9",
 }
+_STATICS = "test_planar_problems.py::test_what_the_book_prints"
+_BRAKE_BY_HAND = "test_planar_problems.py::test_cantilever_brake_by_hand"
+_BEAMS = "Uniform and tapered beams, inward and outward, computed"
 _PINS_OF_16_1 = "test_drum.py::test_shigley_problem_16_1_pin_reactions"
 
 
@@ -81,7 +87,7 @@ class Row:
         return [self.where, self.printed, self.ours, self.error, self.verdict, f"`{self.test}`"]
 
 
-HEADS = ("input", "printed", "ours", "stated error", "verdict", "test")
+HEADS = ("input", "reference", "ours", "stated error", "verdict", "test")
 Sections = dict[str, list[Row]]
 
 
@@ -91,7 +97,11 @@ def first_of(table: dict[str, str], name: str) -> str:
 
 
 def of_printed_tables() -> Sections:
-    """Tables of papers on rotating beams, and blades of wind turbines, by Ritz."""
+    """Tables of papers on rotating beams, and blades of wind turbines, by Ritz.
+
+    Speeds gamma and frequencies lambda are [nondimensional](../../conventions.md#nondimensional-groups);
+    those of blades of wind turbines are in rpm and Hz.
+    """
     found: Sections = {}
     for source, entries in printed_tables.all_entries("ritz").items():
         test = _BLADES if source.endswith("computed") else first_of(_TESTS_OF_TABLES, source)
@@ -108,18 +118,24 @@ def _row_of_entry(entry: PrintedValue, test: str) -> Row:
 
 
 def of_reference_tables() -> Sections:
-    """Frequencies of rotating and of twisted beams that several methods give in all digits."""
+    """Frequencies of rotating and of twisted beams that several methods give in all digits.
+
+    All are [nondimensional](../../conventions.md#nondimensional-groups): lambda, by speed (gamma), hub radius
+    (delta) and mode. The papers print their first four or five digits; the others are of a power series and
+    of Rayleigh-Ritz in 40 digits, which agree.
+    """
     found: Sections = {}
     data = load("rotating_beams")
     for case in (*data["case"], *(c for c in data["critical"] if np.isfinite(c["gamma"]))):
         printed, ours, error = others.solve_case(case, "ritz")
         rows = _rows(case["name"], printed, ours, error, _ROTATING["frequency" in case])
-        found.setdefault(case.get("source", "critical speeds, computed"), []).extend(rows)
+        source = case.get("source", "computed")
+        found.setdefault(_BEAMS if source == "computed" else source, []).extend(rows)
     for case in load("twisted_beams")["case"]:
         modes = natural_modes(others.twisted_scene(case), case["gamma"], len(case["frequency"]))
         test = "test_two_planes.py::test_rows_of_the_models"
         rows = _rows(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error, test)
-        found.setdefault(case["source"], []).extend(rows)
+        found.setdefault(case["source"][:1].upper() + case["source"][1:], []).extend(rows)
     return found
 
 
@@ -169,7 +185,11 @@ def of_wider_models() -> Sections:
 
 
 def of_elastica() -> Sections:
-    """Equilibria of beams that bend far, and frequencies about them."""
+    """Equilibria of beams that bend far, and frequencies about them.
+
+    Frequencies are lambda, and speeds gamma, [nondimensional](../../conventions.md#nondimensional-groups);
+    r is the radius of the root, places of the tip are over the length L.
+    """
     rows: list[Row] = []
     for case in load("elastica")["case"]:
         angles = (float(np.radians(case[f"{name}_angle_deg"])) for name in ("setting", "bending"))
@@ -177,6 +197,7 @@ def of_elastica() -> Sections:
         scene = Scene(Beam.from_stiffness(1.0, 1.0, 1.0), Mount(case["radius"], *angles), physics=physics)
         modes = natural_modes(scene, case["gamma"], len(case["frequency"]))
         test = "test_elastica.py::test_frequencies"
+        case |= {"name": f"{case['name']} (gamma {case['gamma']:.6g}, r/L {case['radius']:g})"}
         rows += _rows(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error, test)
         if "tip" in case:
             rows += _tips(case, equilibrium(scene, case["gamma"]))
@@ -213,36 +234,48 @@ def of_lee_and_yoo() -> Sections:
 
 def _row_of_comparison(comparison: Comparison, test: str) -> Row:
     what, source, printed, ours, _, verdict = comparison.cells()
-    return Row(f"{what} ({source})", printed, ours, f"{comparison.error:.0e}", verdict, test)
+    error = f"{comparison.error:.0e}" if comparison.error else "-"
+    return Row(f"{what} ({source})", printed, ours, error, verdict, test)
 
 
 def of_brakes() -> Sections:
-    """Drum brakes, the forklift, bicycle calipers; "ours" follows the papers' own way where they err."""
+    """Drum brakes, the forklift, bicycle calipers; "ours" follows the papers' own way where they err.
+
+    What a verdict calls right is the corrected number.
+    """
     found = {
         "Vardanyan et al. 2019, Table 1 (by the paper's own way)": _cells(
-            drum.rows(), "test_drum.py::test_table_1_to_every_printed_digit"
+            drum.rows(), drum.HEADS, "test_drum.py::test_table_1_to_every_printed_digit"
         )
     }
     for name, rows in forklift.rows().items():
         early = name in ("table_2", "table_3", "table_4")
         test = "tables_2_3_4_but_for_one_cell" if early else "tables_5_6_7_within_their_rounding"
         found[f"Yoo et al. 1997, Table {name[-1]} (by the paper's own way)"] = _cells(
-            rows, f"test_forklift.py::test_{test}"
+            rows, forklift.heads()[name], f"test_forklift.py::test_{test}"
         )
     for title, comparisons in caliper.sections().items():
         test = "test_caliper.py::test_every_verdict_on_the_page_is_as_expected"
-        found[f"eeBrake: {title}"] = [_row_of_comparison(c, test) for c in comparisons]
+        found[title] = [_row_of_comparison(c, test) for c in comparisons]
     return found
 
 
-def _cells(rows: Iterable[Any], test: str) -> list[Row]:
+def _cells(rows: Iterable[Any], heads: Heads, test: str) -> list[Row]:
     found = []
     for row in rows:
-        for cell in row.cells:
+        for where, cell in zip(_places(row, *heads), row.cells, strict=True):
             printed, ours, *right = cell.texts
             verdict = f"{cell.verdict}; right: {right[0]}" if right else cell.verdict
-            found.append(Row(", ".join(row.inputs), printed, ours, "rounding", verdict, test))
+            found.append(Row(where, printed, ours, "rounding", verdict, test))
     return found
+
+
+def _places(row: Any, inputs: Sequence[str], quantities: Sequence[str]) -> list[str]:
+    """Inputs and quantity of each cell; of a single number, its name alone."""
+    if len(row.cells) != len(quantities):
+        return [*row.inputs]
+    given = ", ".join(f"{head} = {value}" for head, value in zip(inputs, row.inputs, strict=True))
+    return [f"{given}: {quantity}" for quantity in quantities]
 
 
 def of_textbooks() -> Sections:
@@ -265,9 +298,12 @@ def _row_of_example(quantity: str, given: dict[str, Any], ours: Sequence[float],
     printed = given.get("printed", given.get("value"))
     texts = printed if isinstance(printed, list) else [str(printed)]
     digits = max(6, max(map(_count_digits, texts)))
-    values = ", ".join(f"{value:.{digits}g}" for value in ours)
+    nought = 1e-12 * max(map(abs, ours))
+    values = ", ".join(f"{value if abs(value) > nought else 0.0:.{digits}g}" for value in ours)
     verdict = _verdict_of_example(given, texts, ours)
-    where = f"{quantity.replace('_', ' ')} [{given['unit']}]"
+    where = ", ".join(filter(None, (quantity.replace("_", " "), given.get("sense"))))
+    unit = "" if given["unit"] == "1" else f" [{given['unit']}]"
+    where = f"{where}{unit}{'' if 'printed' in given else ' (computed)'}"
     return Row(where, ", ".join(texts), values, "rounding", verdict, test)
 
 
@@ -292,12 +328,24 @@ def _count_digits(text: str) -> int:
     return sum(character.isdigit() for character in text)
 
 
-def problems_of_statics(tests: Path) -> Iterator[str]:
-    """Worked problems of textbooks on mechanisms, each a test."""
-    yield "# Problems of statics\n\nEach is a test with the textbook's number and its tolerance.\n"
-    file = "test_planar_problems.py"
-    names = re.findall(r"^def test_(\w+)", (tests / file).read_text(encoding="utf-8"), re.MULTILINE)
-    yield _table(("problem", "test"), ([name.replace("_", " "), f"`{file}::test_{name}`"] for name in names))
+def of_statics() -> Sections:
+    """Worked problems of statics, in the books' units; two numbers are components to the right and up."""
+    data, solved = load_brakes("statics"), statics.answers()
+    found = {
+        given["source"]: [
+            _row_of_example(quantity, given[quantity], ours, _STATICS)
+            for quantity, ours in solved[name].items()
+        ]
+        for name, given in data.items()
+    }
+    found["Cantilever brake, by hand: N/T = PC / (2 PS sin(alpha))"] = list(map(_brake_by_hand, (25, 45, 70)))
+    return found
+
+
+def _brake_by_hand(angle: float) -> Row:
+    brake, expected = statics.cantilever_brake(angle)
+    given = {"printed": f"{expected:.10f}", "unit": "1", "sense": f"alpha = {angle} deg"}
+    return _row_of_example("N/T", given, (float(solve(brake).amplitudes["pad"]),), _BRAKE_BY_HAND)
 
 
 _ERRATA = """# Errata
@@ -383,6 +431,7 @@ PARTS = {
     "inward_beam": ("The inward beam of Lee and Yoo", of_lee_and_yoo),
     "brakes": ("Brakes", of_brakes),
     "textbooks": ("Drum brakes of textbooks", of_textbooks),
+    "statics": ("Problems of statics", of_statics),
 }
 
 
@@ -398,7 +447,7 @@ def write_pages(folder: Path) -> list[str]:
     folder.mkdir(parents=True, exist_ok=True)
     found = {name: part() for name, (_, part) in PARTS.items()}
     pages = {name: "\n".join(_page(name, sections)) for name, sections in found.items()}
-    pages["statics"] = "\n".join(problems_of_statics(Path(__file__).parents[1] / TESTS))
+    pages["sources"] = page_of_sources()
     pages["errata"] = "\n".join(errata())
     pages["overview"] = _overview(found)
     for name, text in pages.items():
@@ -406,9 +455,13 @@ def write_pages(folder: Path) -> list[str]:
     return list(pages)
 
 
+_ABOUT = f"""A reference is what the [source](sources.md) prints, or, where the row or its heading says so,
+what other methods computed. Tests: in `{TESTS}`."""
+
+
 def _page(name: str, sections: Sections) -> Iterator[str]:
     title, part = PARTS[name]
-    yield f"# {title}\n\n{part.__doc__} Tests: in `{TESTS}`.\n"
+    yield f"# {title}\n\n{getdoc(part)} {_ABOUT}\n"
     for source, rows in sections.items():
         yield f"## {source}\n\n{_table(HEADS, (row.cells() for row in rows))}\n"
     notes = [_cell(note) for make in NOTES.get(name, ()) for note in make()]
@@ -424,7 +477,7 @@ def _overview(found: dict[str, Sections]) -> str:
     ]
     heads = ("source", "values", "the print errs", "differ, with the reason there")
     values = sum(int(row[1]) for row in counts)
-    return f"# All sources\n\n{_table(heads, counts)}\n\n{values} values."
+    return f"# Overview\n\n{_table(heads, counts)}\n\n{values} values."
 
 
 def _count(rows: Sequence[Row], verdict: str) -> str:

@@ -22,7 +22,9 @@ ROOT = Path(__file__).parents[1]
 PICTURE = ROOT / "docs" / "architecture.svg"
 SHARED = "beamdyn.common"  # the one room of beamdyn that brakes uses
 COLOURS = {"beamdyn": "#dce9f5", "brakes": "#f7e6d0"}
-HEIGHT, WIDTH = 0.42, 0.86  # of a box, where layers and columns stand 1 apart
+HEIGHT = 0.42  # of a box, where layers stand 1 apart
+WIDTH, LETTER, ARROW = 0.8, 0.094, 0.17  # of a box at least, of each letter in it, of each arrow at it
+PLACE = 0.34  # width of a place that an arrow passes
 
 Arrow = tuple[str, str]  # the room that imports, and the one that it imports
 Layers = Sequence[Sequence[str]]  # names of rooms, highest layer first
@@ -91,7 +93,19 @@ def lead_through_layers(arrows: Mapping[Arrow, int], layers: Layers) -> dict[Arr
     return {(a, b): [a, *(f"{a} > {b} {k}" for k in range(depth[a] + 1, depth[b])), b] for a, b in arrows}
 
 
-def place(layers: Layers, ways: Mapping[Arrow, Sequence[str]]) -> dict[str, Point]:
+def box_widths(layers: Layers, ways: Mapping[Arrow, Sequence[str]]) -> dict[str, float]:
+    """Widths of the boxes of rooms: room for the name, and for the arrows that leave and that reach it."""
+    ends = [Counter(way[end] for way in ways.values()) for end in (0, -1)]
+    names = [name for row in layers for name in row]
+    return {
+        name: max(WIDTH, LETTER * (len(name) + 1), ARROW * max(count[name] for count in ends))
+        for name in names
+    }
+
+
+def place(
+    layers: Layers, ways: Mapping[Arrow, Sequence[str]], widths: Mapping[str, float]
+) -> dict[str, Point]:
     """Positions of rooms and places: near the mean of what they are joined to, without overlap in a layer."""
     rows = [list(row) for row in layers]
     for way in ways.values():
@@ -103,7 +117,7 @@ def place(layers: Layers, ways: Mapping[Arrow, Sequence[str]]) -> dict[str, Poin
     for sweep in range(40):
         for row in rows if sweep % 2 else rows[::-1]:
             wanted = {name: mean_of_neighbours(name, links, x) for name in row}
-            x |= spread(wanted)
+            x |= spread(wanted, widths)
     return {name: (x[name], -float(k)) for k, row in enumerate(rows) for name in row}
 
 
@@ -115,18 +129,15 @@ def mean_of_neighbours(name: str, links: Sequence[Arrow], x: Mapping[str, float]
     return total / (sum(weights) + 0.6)
 
 
-def spread(wanted: Mapping[str, float]) -> dict[str, float]:
-    """Positions in the order of the wanted ones with a gap of 1, or of a third between mere places."""
+def spread(wanted: Mapping[str, float], widths: Mapping[str, float]) -> dict[str, float]:
+    """Positions in the order of the wanted ones with room for each, mere places taking little."""
     names = sorted(wanted, key=lambda name: (round(wanted[name], 6), name))
     found = [wanted[names[0]]]
     for before, name in pairwise(names):
-        found.append(max(wanted[name], found[-1] + (room_width(before) + room_width(name)) / 2))
+        apart = sum(widths[each] + 0.14 if each in widths else PLACE for each in (before, name)) / 2
+        found.append(max(wanted[name], found[-1] + apart))
     shift = sum(wanted[name] - at for name, at in zip(names, found, strict=True)) / len(names)
     return {name: at + shift for name, at in zip(names, found, strict=True)}
-
-
-def room_width(name: str) -> float:
-    return 0.34 if ">" in name else 1.0
 
 
 # The picture --------------------------------------------------------------------------------------
@@ -136,23 +147,24 @@ def draw_package(ax: Axes, package: str, imports: Mapping[Arrow, int], left: flo
     """Boxes in layers, arrows downward, the number of imports at the end of each; returns the right edge."""
     layers, shown = read_layers(package), leave_out_implied(imports)
     ways = lead_through_layers(shown, layers)
-    at = place(layers, ways)
+    widths = box_widths(layers, ways)
+    at = place(layers, ways, widths)
     shift = left - min(x for x, _ in at.values())
     at = {name: (x + shift, y) for name, (x, y) in at.items()}
     right = max(x for x, _ in at.values())
-    for arrow, points in draw_lines(at, ways):
+    for arrow, points in draw_lines(at, ways, widths):
         draw_arrow(ax, points, shown[arrow])
     for name in (name for row in layers for name in row):
-        draw_box(ax, *at[name], name, COLOURS["beamdyn" if name == SHARED else package])
+        draw_box(ax, at[name], widths[name], name, COLOURS["beamdyn" if name == SHARED else package])
     ax.text((left + right) / 2, 0.5, package, ha="center", fontsize=12, weight="bold")
     return right
 
 
 def draw_lines(
-    at: Mapping[str, Point], ways: Mapping[Arrow, Sequence[str]]
+    at: Mapping[str, Point], ways: Mapping[Arrow, Sequence[str]], widths: Mapping[str, float]
 ) -> Iterator[tuple[Arrow, list[Point]]]:
     """The points of each arrow; arrows that share a box leave and reach it side by side."""
-    leaving, reaching = share_sides(at, ways, 0), share_sides(at, ways, -1)
+    leaving, reaching = (share_sides(at, ways, widths, end) for end in (0, -1))
     for arrow, way in ways.items():
         points = [(leaving[arrow], at[way[0]][1] - HEIGHT / 2)]
         for x, y in (at[name] for name in way[1:-1]):
@@ -160,13 +172,15 @@ def draw_lines(
         yield arrow, [*points, (reaching[arrow], at[way[-1]][1] + HEIGHT / 2)]
 
 
-def share_sides(at: Mapping[str, Point], ways: Mapping[Arrow, Sequence[str]], end: int) -> dict[Arrow, float]:
+def share_sides(
+    at: Mapping[str, Point], ways: Mapping[Arrow, Sequence[str]], widths: Mapping[str, float], end: int
+) -> dict[Arrow, float]:
     """Where on its box each arrow begins (end 0) or ends (end -1), in the order of where they go."""
     sides: dict[str, list[tuple[float, Arrow]]] = {}
     for arrow, way in ways.items():
         sides.setdefault(way[end], []).append((at[way[1 if end == 0 else -2]][0], arrow))
     return {
-        arrow: at[room][0] + WIDTH * ((k + 0.5) / len(side) - 0.5)
+        arrow: at[room][0] + widths[room] * ((k + 0.5) / len(side) - 0.5)
         for room, side in sides.items()
         for k, (_, arrow) in enumerate(sorted(side))
     }
@@ -188,13 +202,14 @@ def draw_arrow(ax: Axes, points: Sequence[Point], count: int) -> None:
     ax.text(x, y + 0.17, str(count), ha="center", va="center", fontsize=7, color="#333333", bbox=box)
 
 
-def draw_box(ax: Axes, x: float, y: float, name: str, colour: str) -> None:
+def draw_box(ax: Axes, at: Point, width: float, name: str, colour: str) -> None:
     from matplotlib.patches import FancyBboxPatch
 
-    corner = x - WIDTH / 2 + 0.05, y - HEIGHT / 2 + 0.05
+    x, y = at
+    corner = x - width / 2 + 0.05, y - HEIGHT / 2 + 0.05
     outline = {"boxstyle": "round,pad=0.05", "fc": colour, "ec": "#556270", "lw": 0.9}
-    ax.add_patch(FancyBboxPatch(corner, WIDTH - 0.1, HEIGHT - 0.1, **outline))
-    ax.text(x, y, name.replace(".", ".\n"), ha="center", va="center", fontsize=8.5)
+    ax.add_patch(FancyBboxPatch(corner, width - 0.1, HEIGHT - 0.1, **outline))
+    ax.text(x, y, name, ha="center", va="center", fontsize=8.5)
 
 
 NOTE = """An arrow points to the room that is imported;
@@ -221,7 +236,7 @@ def main() -> None:
     lowest = -max(len(read_layers(package)) for package in COLOURS) + 1
     note = NOTE.format(counts=" and ".join(map(str, counts)))
     ax.text(left - 0.85, lowest - 0.2, note, ha="right", ma="left", fontsize=8.5, linespacing=1.4)
-    ax.set(xlim=(-0.6, left - 0.7), ylim=(lowest - 0.4, 0.8))
+    ax.set(xlim=(-0.8, left - 0.5), ylim=(lowest - 0.4, 0.8))
     ax.axis("off")
     ax.get_figure().savefig(PICTURE, metadata={"Date": None})
 

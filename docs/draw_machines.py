@@ -35,10 +35,10 @@ def bicycle_brake() -> Drawing:
 
 
 def main() -> None:
-    figure = Figure(figsize=(11.5, 5.8))
+    figure = Figure(figsize=(12.5, 6.5))
     for box, drawing in zip(BOXES, (harvester(), bicycle_brake()), strict=True):
         draw_in(figure, box, drawing)
-    figure.savefig(DOCS / "machines.png", dpi=120)
+    figure.savefig(DOCS / "machines.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ def draw():
     """Each caliper open (grey) and closed on the rim, with its forces."""
     named = [calipers.NAMED[name]().build() for name in calipers.NAMED]
     drawn = [caliper_drawing(caliper, caliper.equilibrium(finger=40.0)) for caliper in named]
-    return figure_of([drawn[:3], drawn[3:]], Paper(1080.0, (400.0, 400.0)))
+    return figure_of([drawn[:3], drawn[3:]], Paper(1320.0, (440.0, 440.0)))
 
 
 def line(name):

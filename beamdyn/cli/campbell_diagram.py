@@ -91,7 +91,8 @@ def campbell(
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
-        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen; 1e-11
+        if not given.
     crossings
         Write the crossings into this file: .csv.
     physics

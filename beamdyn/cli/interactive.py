@@ -22,5 +22,5 @@ add_command(
     app,
     make_program,
     port=8080,
-    about="The interactive program: frequencies and steady response of a beam in the browser.",
+    about="The interactive program in the browser: frequencies, rotor, mode shapes, responses of a beam.",
 )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
 
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
@@ -41,7 +43,7 @@ def sensitivities(
     speed: Text | None = None,
     modes: ModeCount = 3,
     order: Order = 1,
-    inputs: tuple[str, ...] = (),
+    inputs: Annotated[tuple[str, ...], Parameter(negative="", show_default=False)] = (),
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
     physics: PhysicsOption = None,
@@ -62,13 +64,16 @@ def sensitivities(
     modes
         Number of modes, from the lowest.
     order
-        Of crossings: 1: the lines of the load and of the stiffness; more: those of interactions.
+        Of crossings, as of resonances: 1: resonances with the load; more: also combination resonances by the
+        periodic coefficients.
     inputs
-        Numbers by their names in the file, such as beam.thickness, or speed; all if not given.
+        Numbers by their names in the file, such as beam.thickness, or speed, the option once for each; all if
+        not given.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
-        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen; 1e-11
+        if not given.
     physics
         auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs

@@ -83,7 +83,8 @@ def study(
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
-        Largest relative error of a frequency: the cheapest discretization that meets it is chosen.
+        Largest relative error of a frequency: the cheapest discretization that meets it is chosen; 1e-11
+        if not given.
     physics
         auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs

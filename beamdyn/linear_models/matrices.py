@@ -139,7 +139,7 @@ def matrices(
 
     References
     ----------
-    Lee and Yoo (2019), eqs. (14), corrected; section Equations of docs/conventions.md.
+    Lee and Yoo (2019), eq. (14), corrected; section Equations of docs/conventions.md.
 
     Examples
     --------

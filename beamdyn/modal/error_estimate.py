@@ -100,8 +100,8 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
     stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
-    lacking = (0, 0), (0, modes - compared)
-    return EstimatedModes(model, fine, np.pad(stated, lacking, constant_values=np.inf))
+    lacking = np.full((len(speeds), modes - compared), np.inf)
+    return EstimatedModes(model, fine, np.concatenate([stated, lacking], axis=1))
 
 
 def _check_size(model: Model, modes: int) -> None:

@@ -275,7 +275,7 @@ def plot_work_precision(
     ax.set(xscale="log", yscale="log")
     ax.set_title(title, fontsize=11)
     ax.tick_params(which="minor", labelsize=8)
-    ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(0.8, 0.3)))
+    ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.15, 0.3)))
     ax.plot(*_clip(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
     for i, (name, points) in enumerate(families.items()):
         marker = _MARKERS[i % len(_MARKERS)]

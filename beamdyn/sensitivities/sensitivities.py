@@ -73,7 +73,7 @@ def frequency_sensitivities(
 
     References
     ----------
-    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7.
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def critical_speed_sensitivities(
 
     References
     ----------
-    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7.
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems.
 
     Examples
     --------
@@ -211,7 +211,7 @@ def crossing_sensitivities(
 
     References
     ----------
-    Lancaster (1966), Lambda-Matrices and Vibrating Systems, section 7, along the line of the excitation
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems, along the line of the excitation
     (own).
 
     Examples

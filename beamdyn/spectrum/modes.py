@@ -209,7 +209,7 @@ def natural_modes(
 
     References
     ----------
-    Lee and Yoo (2019), eqs. (14), corrected as docs/conventions.md lists; errors by Richardson's
+    Lee and Yoo (2019), eq. (14), corrected as docs/conventions.md lists; errors by Richardson's
     extrapolation (standard).
 
     Examples

@@ -28,6 +28,7 @@ _FIT_TIMES = 8  # for each harmonic of e and g, at which these are fitted
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 _FIT_ERROR = 1e-3  # of e and g, over the accuracy
 _SAME = 1e-9  # difference of frequencies that are the same, over the largest
+_ABSENT = 1e-12  # factor of a line over the largest, which the rounding of the fit alone makes
 _MOST_HARMONICS = 400
 _ITERATIONS = 30
 _CONVERGED = 1e-15
@@ -35,7 +36,7 @@ _CHECKED = 64  # times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # share of the accuracy for all small terms that are left out
 _RESOLVED = 12.0  # phase per step [rad] of the fastest terms that the nodes of a step show
 _MOST_GROWTH = 20.0  # exponent of the largest growth
-_ROWS = 1024  # steps evaluated as one batch
+_ROWS = 32  # steps whose exponentials are computed; the square of it is evaluated as one batch
 
 
 @dataclass(frozen=True)
@@ -47,14 +48,17 @@ class _Harmonics:
     frequency : ndarray, shape (f,)
         Angular frequencies [rad/s], ascending, with their negatives.
     stiffness : ndarray, shape (f, n, n)
-        Factors of the varying stiffness.
+        Factors of the varying stiffness; that of frequency 0 is in `mean`.
     load : ndarray, shape (f, n)
         Factors of the loads.
+    mean : ndarray, shape (n, n)
+        Mean of the varying stiffness.
     """
 
     frequency: np.ndarray
     stiffness: np.ndarray
     load: np.ndarray
+    mean: np.ndarray
 
     @classmethod
     def fit(cls, system: ModulatedSystem, t0: float, t1: float, accuracy: float) -> _Harmonics | None:
@@ -68,9 +72,12 @@ class _Harmonics:
         missed = np.abs(np.real(basis @ found) - values).max(axis=0)
         if (missed > _FIT_ERROR * accuracy * np.abs(values).max(axis=0)).any():
             return None
-        m = len(system.G)
-        stiffness, load = np.tensordot(found[:, :m], system.G, axes=1), found[:, m:] @ system.P
-        return cls(lines, stiffness, load)
+        found[np.abs(found) <= _ABSENT * np.abs(found).max(axis=0)] = 0
+        constant, m = lines == 0, len(system.G)
+        mean = np.tensordot(np.real(found[constant, :m]).sum(axis=0), system.G, axes=1)
+        load = found[:, m:] @ system.P
+        found[constant, :m] = 0
+        return cls(lines, np.tensordot(found[:, :m], system.G, axes=1), load, mean)
 
     def sums(self, order: int) -> np.ndarray:
         """Sums of up to so many frequencies of the stiffness, ascending: shape (k,)."""
@@ -80,14 +87,32 @@ class _Harmonics:
             found = _distinct(np.concatenate([found, np.add.outer(found, varying).ravel()]))
         return found
 
-    def coupling(self, sums: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Which of some sums lead to which, by which matrix, as triples (to, from, matrix)."""
-        found = []
-        for frequency, matrix in zip(self.frequency, self.stiffness, strict=True):
-            if matrix.any():
-                to, source = _matches(sums, sums + frequency)
-                found.append((to, source, matrix.T))
-        return found
+    def coupling(self, sums: np.ndarray) -> _Coupling:
+        """Which of some sums the varying stiffness couples."""
+        varying = np.abs(self.stiffness).any(axis=(1, 2))
+        source = _places(sums, sums - self.frequency[varying, None])
+        return _Coupling(source, self.stiffness[varying].swapaxes(1, 2))
+
+
+@dataclass(frozen=True)
+class _Coupling:
+    """What the varying stiffness makes of a motion at some sums of frequencies.
+
+    Parameters
+    ----------
+    source : ndarray of int, shape (f, k)
+        Which of the k sums leads to each by the frequency of each factor; k where none does.
+    factors : ndarray, shape (f, n, n)
+        Factors of the varying stiffness, transposed.
+    """
+
+    source: np.ndarray
+    factors: np.ndarray
+
+    def force(self, q: np.ndarray) -> np.ndarray:
+        """Forces (..., k, n) on a motion that has factors q (..., k, n)."""
+        padded = np.concatenate([q, np.zeros_like(q[..., :1, :])], axis=-2)
+        return (padded[..., self.source, :] @ self.factors).sum(axis=-3)
 
 
 def _distinct(frequencies: np.ndarray) -> np.ndarray:
@@ -97,12 +122,11 @@ def _distinct(frequencies: np.ndarray) -> np.ndarray:
     return sorted_[np.concatenate([[True], apart])]
 
 
-def _matches(sums: np.ndarray, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of sums, and of those moved ones that they are."""
-    near = np.clip(np.searchsorted(sums, moved), 1, len(sums) - 1) if len(sums) > 1 else np.zeros(1, int)
-    near = near - (np.abs(sums[near - 1] - moved) < np.abs(sums[near] - moved)) * (len(sums) > 1)
-    same = np.abs(sums[near] - moved) <= 10 * _SAME * np.abs(sums).max()
-    return near[same], np.flatnonzero(same)
+def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Indices of wanted frequencies, of any shape, among k ascending sums; k where none is the same."""
+    after = np.searchsorted(sums, wanted - 10 * _SAME * np.abs(sums).max())
+    missing = np.abs(np.append(sums, np.inf)[after] - wanted) > 10 * _SAME * np.abs(sums).max()
+    return np.where(missing, len(sums), after)
 
 
 @dataclass(frozen=True)
@@ -142,15 +166,11 @@ def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> 
     if len(sums) > _MOST_HARMONICS:
         return None
     load = np.zeros((len(sums), len(K)), complex)
-    to, source = _matches(sums, harmonics.frequency)
-    load[to] = harmonics.load[source]
+    load[_places(sums, harmonics.frequency[loaded])] = harmonics.load[loaded]
     flexible = np.linalg.inv(_stiffness(1j * sums, C, K))
     coupling, c, before = harmonics.coupling(sums), np.zeros_like(load), np.inf
     for _ in range(_ITERATIONS):
-        right = load.copy()
-        for to, source, matrix in coupling:
-            right[to] -= c[source] @ matrix
-        new = (flexible @ right[:, :, None])[:, :, 0]
+        new = (flexible @ (load - coupling.force(c))[:, :, None])[:, :, 0]
         change, size = np.abs(new - c).max(), np.abs(new).max()
         c = new
         if change <= _CONVERGED * size or change >= before:
@@ -195,9 +215,7 @@ def _free(
     coupling, before = harmonics.coupling(sums), np.inf
     for _ in range(_ITERATIONS):
         s = (exponent[:, None] + 1j * sums)[:, :, None]
-        residual = s**2 * P + s * (P @ C.T) + P @ K.T
-        for to, source, matrix in coupling:
-            residual[:, to] += P[:, source] @ matrix
+        residual = s**2 * P + s * (P @ C.T) + P @ K.T + coupling.force(P)
         step = (inverse @ residual[..., None])[..., 0]
         at_own = (bordered[:, :, :n] @ residual[:, own, :, None])[..., 0]
         step[:, own] = at_own[:, :n]
@@ -268,7 +286,7 @@ def propagate_in_closed_form(
         return None
     for order in _ORDERS:
         try:
-            motion = _solve(harmonics, C, K, order, q0, v0)
+            motion = _solve(harmonics, C, K + harmonics.mean, order, q0, v0)
         except np.linalg.LinAlgError:  # at resonance, without damping
             return None
         if motion is None or np.real(motion.s).max(initial=0.0) * (t1 - t0) > _MOST_GROWTH:
@@ -339,9 +357,12 @@ def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple
     b = np.concatenate([motion.b, s[:, None] * motion.b, at_nodes], axis=1)
     columns = np.concatenate([np.real(b), -np.imag(b)])
     values = np.empty((steps + 1, columns.shape[1]))
-    within = np.exp(np.outer(np.arange(min(_ROWS, steps + 1)), h * s))
-    for first in range(0, steps + 1, _ROWS):
+    within = np.exp(np.outer(np.arange(_ROWS), h * s))
+    within = (np.exp(np.outer(_ROWS * np.arange(_ROWS), h * s))[:, None] * within).reshape(_ROWS**2, -1)
+    for first in range(0, steps + 1, _ROWS**2):
         factor = np.exp(first * h * s) * within[: steps + 1 - first]
-        values[first : first + _ROWS] = np.concatenate([np.real(factor), np.imag(factor)], axis=1) @ columns
+        values[first : first + _ROWS**2] = (
+            np.concatenate([np.real(factor), np.imag(factor)], axis=1) @ columns
+        )
     state = np.concatenate([np.ones((steps + 1, 1)), values[:, : 2 * n]], axis=1)
     return state, values[:-1, 2 * n :].reshape(steps, stages, n)

@@ -83,7 +83,7 @@ def simulate(
 
     References
     ----------
-    Lee and Yoo (2019), eqs. (14), corrected; integrated as Hairer, Lubich and Wanner (2006), Geometric
+    Lee and Yoo (2019), eq. (14), corrected; integrated as Hairer, Lubich and Wanner (2006), Geometric
     Numerical Integration, sections II.1.3 and IV.2.1.
 
     Examples

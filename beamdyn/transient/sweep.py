@@ -233,7 +233,7 @@ def sweep(
         Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
         relative to the largest deflection of a case.
     workers : int
-        Number of worker processes; 1 computes in this process.
+        Number of processes that solve; this one is the first of them.
     executor : concurrent.futures.Executor, optional
         Executor in place of the worker processes, such as that of ``dask.distributed.Client.get_executor()``.
     store : str or Path, optional

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
+from beamdyn.transient.gauss import Segment, StepMaps, interpolate, solve_steps, tableau
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import magnitude
 
@@ -166,13 +166,26 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
     of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.
     """
     check = CheckedSteps.of_segment(segment)
-    maps, finer = (step_maps(system, check.starts, check.h, tableau(STAGES + more)) for more in (0, 2))
+    maps, finer = _maps_of(system, check)
     local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies).mean(axis=0)
     delta = phase_errors(finer.step - maps.step, frequencies)
     accelerations = check.acceleration, (finer.acceleration @ check.state[:, None, :, None])[..., 0]
     q = [interpolate(check.h, check.state, a, INTERPOLATION_POINTS)[0] for a in accelerations]
     total = total_of_local_errors(local, delta, check.steps)
     return SegmentError(total, (q[0] - q[1]).reshape(-1, system.size), delta > UNRESOLVED_PHASE)
+
+
+def _maps_of(system: ModalSystem, check: CheckedSteps) -> tuple[StepMaps, StepMaps]:
+    """Maps of the checked steps, and those of two more stages; all nodes are evaluated at once."""
+    tables = tableau(STAGES), tableau(STAGES + 2)
+    nodes = np.concatenate([table.c for table in tables])
+    C, K, f = system.coefficients(check.starts[:, None] + check.h * nodes)
+    own, more = slice(None, STAGES), slice(STAGES, None)
+    found = (
+        solve_steps(None if C is None else C[:, part], K[:, part], f[:, part], check.h, table)
+        for part, table in zip((own, more), tables, strict=True)
+    )
+    return next(found), next(found)
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:

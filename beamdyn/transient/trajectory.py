@@ -15,7 +15,7 @@ from beamdyn.transient.record_steps import RecordSegment
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
 _REFINED = 4  # of these, after the first refinement
-_REFINEMENTS = 4  # of a maximum, each on a grid 17 times as fine
+_REFINEMENTS = 2  # of a maximum, each on a grid 17 times as fine; then parabolas err by less than 1e-12
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
 
@@ -146,16 +146,31 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
     times, q, _ = path.samples
     size = size_of(q)
     t = np.array([_candidates(times, size, *window) for window in windows])
-    start, end = np.array(windows).T[:, :, None, None]
+    start, end = np.array(windows).T[:, :, None]
     half_width, found = np.diff(times).max(), np.empty(0)
     for _ in range(_REFINEMENTS):
-        near = np.clip(t[:, :, None] + np.linspace(-half_width, half_width, 35), start, end)
+        near = np.linspace(np.maximum(t - half_width, start), np.minimum(t + half_width, end), 35, axis=-1)
         found = size_of(path.at(near.ravel())[0]).reshape(near.shape)
         highest = np.argsort(found.max(axis=2))[:, -_REFINED:]  # the first refinement tells which these are
         best = np.take_along_axis(found.argmax(axis=2), highest, axis=1)
         near = np.take_along_axis(near, highest[:, :, None], axis=1)
         t, half_width = np.take_along_axis(near, best[:, :, None], axis=2)[:, :, 0], half_width / 17
-    return found.max(axis=(1, 2)).tolist()
+    return _top_between(found).max(axis=1).tolist()
+
+
+def _top_between(size: np.ndarray) -> np.ndarray:
+    """Largest values (w, c) on grids, (w, c, k), by a parabola through each and its neighbours."""
+    at = np.clip(size.argmax(axis=2), 1, size.shape[2] - 2)[:, :, None]
+    left, middle, right = (np.take_along_axis(size, at + k, axis=2)[:, :, 0] for k in (-1, 0, 1))
+    return np.maximum(_top_of_parabola(left, middle, right), size.max(axis=2))
+
+
+def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Maximum of the parabola through three equidistant values; the middle one if it is not the largest."""
+    is_maximum = (middle >= left) & (middle >= right)
+    bend = np.where(is_maximum, 2 * middle - left - right, 0.0)
+    tilt = np.divide(right - left, bend, out=np.zeros_like(bend), where=bend > 0)  # at most 1
+    return middle + (right - left) * tilt / 8
 
 
 def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
@@ -171,7 +186,5 @@ def _find_highest_maxima(size: np.ndarray) -> np.ndarray:
         return np.arange(len(size))
     size = size / max(size.max(), 1e-300)  # so that squares cannot overflow
     left, middle, right = size[:-2], size[1:-1], size[2:]
-    bend = np.maximum(2 * middle - left - right, 1e-300)
-    is_maximum = (middle >= left) & (middle >= right)
-    height = np.where(is_maximum, middle + (right - left) ** 2 / (8 * bend), middle)
+    height = _top_of_parabola(left, middle, right)
     return 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]

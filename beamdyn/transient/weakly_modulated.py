@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, reduce
 
 import numpy as np
 
@@ -33,6 +33,7 @@ _LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
 _SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
 _SAMPLES = 257  # of e, for its largest value
 _NEGLIGIBLE = 1e-3  # share of an accuracy
+_IN_STEP = 0.1  # share of an accuracy for what does not add up over the steps
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # steps solved as one batch
@@ -154,32 +155,70 @@ class _StepMapSeries:
 
 
 @dataclass(frozen=True)
+class _Polynomials:
+    """A sum of Chebyshev polynomials over [-1, 1] whose terms may be left out while they are small.
+
+    Parameters
+    ----------
+    values : ndarray, shape (p, ...)
+        Coefficients.
+    size : ndarray, shape (p,)
+        Their sizes.
+    allowed : float
+        Size of all that may be left out.
+    """
+
+    values: np.ndarray
+    size: np.ndarray
+    allowed: float
+
+    @property
+    def ends_early(self) -> bool:
+        """Whether so many points suffice: the last term may be left out."""
+        return len(self.size) == 1 or bool(self.size[-1] <= self.allowed)
+
+    def shortened(self, rough: bool) -> _Polynomials:
+        """Without the last terms that are far below what is allowed; in single precision if rough."""
+        left_out = np.cumsum(self.size[::-1])[::-1]
+        count = max(1, int((left_out > _NEGLIGIBLE * self.allowed).sum()))
+        values = self.values[:count]
+        return replace(self, values=values.astype(np.float32) if rough else values, size=self.size[:count])
+
+    def over(self, local: np.ndarray) -> np.ndarray:
+        """Coefficients over a part of [-1, 1], (q, ...) with q <= p, by the matrix of `_to_part`."""
+        p = len(self.values)
+        if p == 1:
+            return self.values
+        left_out = np.cumsum((np.abs(local[:p, :p]) @ self.size)[::-1])[::-1]
+        count = int((left_out > self.allowed).sum())
+        found = local[:count, :p].astype(self.values.dtype) @ self.values.reshape(p, -1)
+        return found.reshape(count, *self.values.shape[1:])
+
+
+@dataclass(frozen=True)
 class _Expansion:
     """Maps of all steps: sums of Chebyshev polynomials of the step's beginning, times monomials in e.
 
     Parameters
     ----------
-    maps : tuple of ndarray, shapes (p_o, k_o, 2 n, 2 n + s l)
-        Coefficients of the maps to the end of a step, for the k_o monomials of orders 0, 1 and 2.
-    X0, Y : ndarray, shape (p, s n, :)
-        Chebyshev coefficients of X0 and Y of `_StepMapSeries`.
-    sizes : tuple of ndarray, shapes (p,)
-        Size of each polynomial in the maps of each order, in X0 and in Y.
-    allowed : tuple of float
-        Size of what may be left out of each.
+    maps : list of _Polynomials, of shapes (p_o, k_o, 2 n, 2 n + s l)
+        The maps to the end of a step, for the k_o monomials of orders 0, 1 and 2.
+    X0, Y : _Polynomials, of shape (p, s n, :)
+        X0 and Y of `_StepMapSeries`.
     ratio : ndarray, shape (m,)
         Ratio of successive terms of the series for e_m = 1.
     point : _StepMapSeries
         The series at the Chebyshev points.
+    twice : bool
+        Whether the accelerations need the second order too, which within one step is mostly negligible.
     """
 
-    maps: tuple[np.ndarray, ...]
-    X0: np.ndarray
-    Y: np.ndarray
-    sizes: tuple[np.ndarray, ...]
-    allowed: tuple[float, ...]
+    maps: list[_Polynomials]
+    X0: _Polynomials
+    Y: _Polynomials
     ratio: np.ndarray
     point: _StepMapSeries
+    twice: bool
 
     @classmethod
     def of(
@@ -200,35 +239,52 @@ class _Expansion:
         point = _StepMapSeries.at(system, begin, h, table)
         e, _ = system.scalars(np.linspace(first, first + steps * h, _SAMPLES)[1:-1])
         largest, ratio = _LARGEST_SAMPLED * np.abs(e).max(axis=0), point.every(3).ratio()
-        constant = point.constant()
-        rows, columns = _scales(system, constant, first, table)
-        maps, sizes, scale = [], [], rows[:, None] * columns
-        values = constant, point.first(), point.every(2).second()
-        for value, factor in zip(
-            values, _monomials_by_order(np.repeat(largest, len(table.c))[None]), strict=True
-        ):
-            maps.append(_chebyshev_coefficients(value))
-            sizes.append((np.abs(maps[-1] * scale).max(axis=(2, 3)) * factor).sum(axis=1))
-            if points > 1 and sizes[-1][-1] > accuracy / steps:
-                return None
-        X0, Y = _chebyshev_coefficients(point.X0), _chebyshev_coefficients(point.Y)
-        forces = np.tile(rows[point.size :] ** 2, len(table.c))  # of accelerations, to displacements
-        sizes += [np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2)), np.abs(Y).max(axis=(1, 2))]
-        rough = accuracy / max(float(ratio @ largest), accuracy)
-        kept = [
-            min(_NEGLIGIBLE * share, 1.0) * size.max()
-            for share, size in zip((accuracy, rough), sizes[3:], strict=True)
-        ]
-        return cls(tuple(maps), X0, Y, tuple(sizes), (*[accuracy / steps] * 3, *kept), ratio, point)
+        scales = _scales(system, point.constant(), first, table)
+        maps = _expand_maps(point, scales, largest, accuracy / steps)
+        if maps is None:
+            return None
+        change = float(ratio @ largest)  # by the first order, over the order before it
+        X0, Y = _expand_accelerations(point, scales, change, accuracy)
+        return cls(maps, X0, Y, ratio, point, change**2 > _IN_STEP * accuracy)
 
     def over(self, start: float, end: float) -> _Block:
         """The maps of the steps that begin from `start` to `end`, both in [-1, 1], by fewer polynomials."""
-        parts = zip((*self.maps, self.X0, self.Y), self.sizes, self.allowed, strict=True)
-        fewer = (_localize(values, size, allowed, start, end) for values, size, allowed in parts)
-        *maps, X0, Y = fewer
-        if self.sizes[2].sum() * _SINGLE_ROUNDING <= self.allowed[2]:
-            maps[2] = maps[2].astype(np.float32)
-        return _Block(tuple(maps), X0, Y, self.point)
+        parts = *self.maps, self.X0, self.Y
+        local = _to_part(max(len(part.values) for part in parts), start, end)
+        *maps, X0, Y = (part.over(local) for part in parts)
+        return _Block(tuple(maps), X0, Y, self.point, self.twice)
+
+
+def _expand_maps(
+    point: _StepMapSeries, scales: tuple[np.ndarray, np.ndarray], largest: np.ndarray, allowed: float
+) -> list[_Polynomials] | None:
+    """Expand the maps to the end of a step; None if that takes more points."""
+    rows, columns = scales
+    found, scale = [], rows[:, None] * columns
+    orders = point.constant(), point.first(), point.every(2).second()
+    monomials = _monomials_by_order(np.repeat(largest, len(point.table.c))[None])
+    for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
+        values = _chebyshev_coefficients(order)
+        size = (np.abs(values * scale).max(axis=(2, 3)) * factor).sum(axis=1)
+        terms = _Polynomials(values, size, allowed)
+        if not terms.ends_early:
+            return None
+        found.append(terms.shortened(rough=k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed))
+    return found
+
+
+def _expand_accelerations(
+    point: _StepMapSeries, scales: tuple[np.ndarray, np.ndarray], change: float, accuracy: float
+) -> tuple[_Polynomials, _Polynomials]:
+    """Expand X0, and Y, which counts by the relative change that e makes."""
+    rows, columns = scales
+    X0, Y = _chebyshev_coefficients(point.X0), _chebyshev_coefficients(point.Y)
+    forces = np.tile(rows[point.size :] ** 2, len(point.table.c))  # of accelerations, to displacements
+    size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
+    terms = _Polynomials(X0, size, min(_NEGLIGIBLE * accuracy, 1.0) * size.max())
+    size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
+    varied = _Polynomials(Y, size, min(_NEGLIGIBLE * share, 1.0) * size.max())
+    return terms.shortened(rough=False), varied.shortened(rough=change * _SINGLE_ROUNDING <= accuracy)
 
 
 @dataclass(frozen=True)
@@ -239,6 +295,7 @@ class _Block:
     X0: np.ndarray
     Y: np.ndarray
     point: _StepMapSeries
+    twice: bool
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
         """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""
@@ -246,15 +303,13 @@ class _Block:
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
-        *monomials, squares = _monomials_by_order(e)
-        *maps, second = (values.reshape(-1, *values.shape[2:]) for values in self.maps)
-        factors = [_products(T, each, values) for each, values in zip(monomials, self.maps, strict=False)]
-        shape = second.shape[1:]
-        found = np.concatenate(factors, axis=1) @ np.concatenate(maps).reshape(-1, shape[0] * shape[1])
-        kind = second.dtype  # of single precision where that suffices
-        factor = _products(T.astype(kind), squares.astype(kind), self.maps[2])
-        found += factor @ second.reshape(-1, shape[0] * shape[1])
-        return found.reshape(len(e), *shape)
+        sums: dict[np.dtype, np.ndarray] = {}  # of single precision where that suffices
+        for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
+            kind = values.dtype
+            factor = _products(T.astype(kind), monomials.astype(kind), values)
+            term = factor @ values.reshape(factor.shape[1], -1)
+            sums[kind] = sums[kind] + term if kind in sums else term
+        return reduce(np.add, sums.values()).reshape(len(e), *self.maps[0].shape[2:])
 
     def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Accelerations at the nodes, (N, s n), as `steps`, for z (N, 2 n + s l)."""
@@ -264,22 +319,12 @@ class _Block:
         )  # (m, N, s n)
         total = _evaluate(self.X0, T, z)
         more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
-        first = _evaluate(self.Y, T, more)
-        second = (factor * (first @ Z.swapaxes(1, 2))).sum(axis=0)
-        return total + first - _evaluate(self.Y, T, second)
-
-
-def _localize(values: np.ndarray, size: np.ndarray, allowed: float, start: float, end: float) -> np.ndarray:
-    """Chebyshev coefficients over a part of [-1, 1], as many as are not within `allowed` together.
-
-    Those over all of it are given, (p, ...), with their sizes (p,).
-    """
-    if len(values) == 1:
-        return values
-    local = _to_part(len(values), start, end)
-    left_out = np.cumsum((np.abs(local) @ size)[::-1])[::-1]
-    count = int((left_out > allowed).sum())
-    return (local[:count] @ values.reshape(len(values), -1)).reshape(count, *values.shape[1:])
+        kind = self.Y.dtype
+        T, more = T.astype(kind), more.astype(kind)
+        if self.twice:
+            again = _evaluate(self.Y, T, more) @ Z.swapaxes(1, 2)
+            more -= (factor * again).sum(axis=0)
+        return total + _evaluate(self.Y, T, more)
 
 
 @lru_cache(maxsize=64)

@@ -77,7 +77,7 @@ def growth_factors() -> Iterator[Comparison]:
     """Largest Floquet multipliers where the speed varies with about twice the first frequency."""
     for case in load("rotating_beams")["parametric"]:
         for modes, printed in zip(case["modes"], case["spectral_radius"], strict=True):
-            what = f"growth over a period of a varying speed, {case['name']}, {modes} mode(s)"
+            what = f"growth over a period of a varying speed, {case['name']}, {modes} mode{'s'[: modes > 1]}"
             yield _row(what, printed, growth_factor(case, modes), 0.0, 9)
 
 
@@ -86,7 +86,7 @@ def growth_factor(case: dict[str, Any], modes: int) -> float:
     from scipy.integrate import solve_ivp
 
     nu, delta = case["nu"], case["delta"]
-    mount = bd.Mount(abs(delta), 0.0 if delta < 0 else pi, case["bending_angle_deg"])
+    mount = bd.Mount(abs(delta), 0.0 if delta < 0 else pi, np.radians(case["bending_angle_deg"]))
     equations = Model(bd.Scene(_UNIFORM, mount), bd.Ritz(20)).modal_equations(modes)
     system = ModalSystem(equations, _varying_speed(case["gamma"], case["depth"], nu))
 

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from beamdyn.published import load
 
 HARVESTER = "first frequency of the inward harvester at 0, 50, 100 rad/s"
-BLADE = "first flap frequency of an outward blade at speeds 0 to 12"
+BLADE = "first flap frequency of an outward blade at nondimensional speeds 0 to 12"
 ROLLING = "largest deflection of the rolling harvester in 20...30 s"
 CASES = (HARVESTER, BLADE, ROLLING)
 OURS = "beamdyn"

@@ -2,8 +2,8 @@
 
 x points to the right and y up, seen from the front; the wheel's mid-plane is x = 0 and the brake is drawn
 open.  "Right" and "left" are the sides of the pads; the rim pushes them outward.  A dimension of a symmetric
-caliper is that of the right-hand side.  The eeBrake is a reconstruction that meets the numbers of its paper,
-whose own coordinates are lost; the others have dimensions usual for their kind, of no particular product.
+caliper is that of the right-hand side.  The eeBrake is a reconstruction that meets the numbers of the page on
+it, whose own coordinates are lost; the others have dimensions usual for their kind, of no particular product.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ class EeBrake(Design):
         Where the inner wire ends on the panel: at the right pivot [m].
     split : {"equal force", "equal work"}
         How the rim shares the load between the pads, which statics alone does not say: "equal work" is the
-        reading T = 2 delta_R under which the paper's X = 0.875 comes out.
+        reading T = 2 delta_R under which the page's X = 0.875 comes out.
 
     Examples
     --------

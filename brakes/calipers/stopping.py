@@ -78,7 +78,7 @@ def stop(
     """Stop on level ground by the pads of one rim alone, with no more than grip and balance allow.
 
     With the force F on each of two pads, E = (M + J / R^2) v^2 / 2 = integral of 2 mu F (r / R) ds over the
-    stopping distance; constant F, no inertia and r = R give M v^2 = 4 mu F L (the eeBrake paper's form).
+    stopping distance; constant F, no inertia and r = R give M v^2 = 4 mu F L (the eeBrake page's form).
     The rider does not squeeze harder than at the limit of the stance.
 
     Parameters
@@ -96,7 +96,7 @@ def stop(
     tyre_radius : float, optional
         Rolling radius R of the wheels [m]; needed with the inertia of the wheels.
     rim_radius : float, optional
-        Radius r at which the pads press [m]; that of the tyre if not given, as in the paper.
+        Radius r at which the pads press [m]; that of the tyre if not given, as on that page.
     stance : Stance
         The braked wheel, its grip, and where the centre of gravity is; a limit that is not given is named in
         the message.

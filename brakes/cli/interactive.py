@@ -22,5 +22,5 @@ add_command(
     app,
     make_program,
     port=8081,
-    about="The interactive program: forklift, drum brake and caliper in the browser.",
+    about="The interactive program in the browser: forklift, drum brake, calipers, any mechanism.",
 )

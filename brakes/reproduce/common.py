@@ -70,6 +70,9 @@ def step(printed: str, digits: int | None = None) -> float:
     return 10.0 if printed.endswith("0") else 1.0
 
 
+Heads = tuple[tuple[str, ...], tuple[str, ...]]  # of the inputs and of the quantities of a table's rows
+
+
 @dataclass(frozen=True)
 class Row:
     """A row of a printed table: the inputs that vary, as text, and the compared numbers."""

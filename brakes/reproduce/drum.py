@@ -15,7 +15,7 @@ from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult
 from brakes.published import load
 from brakes.reproduce import drum_as_printed as as_printed
-from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
+from brakes.reproduce.common import Cell, Heads, Row, errata_table, rows_table, step
 
 _SYMBOLS = (
     "A pmax: width times radius times largest pressure; K, S, C: integrals of sin, sin^2, sin cos;\n"
@@ -38,8 +38,11 @@ def introduction() -> str:
     )
 
 
+HEADS: Heads = (("arc [deg]",), ("rho [mm]", "MT1 [N m]", "MT2 [N m]"))
+
+
 def rows() -> list[Row]:
-    """Compare Table 1 cell by cell."""
+    """Compare Table 1 cell by cell; the last row has the largest difference of the torques."""
     paper, ours = load("vardanyan_2019")["table_1"], as_printed.table_1()
     columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
     compared = []
@@ -49,7 +52,9 @@ def rows() -> list[Row]:
             for name, unit in columns.items()
         )
         compared.append(Row((f"{arc}",), tuple(cells)))
-    compared.append(Row(("largest MT2 - MT1",), (_cell(paper["difference"]["printed"], ours.difference),)))
+    compared.append(
+        Row(("largest MT2 - MT1 [N m]",), (_cell(paper["difference"]["printed"], ours.difference),))
+    )
     return compared
 
 
@@ -60,8 +65,7 @@ def _cell(printed: str, ours: float) -> Cell:
 def tables() -> Iterator[Group]:
     """Make Table 1, the corrected table, and the table of errata."""
     *body, _ = rows()
-    heads = ("rho", "MT1", "MT2")
-    yield rows_table("Table 1: rho [mm], torques [N m], as printed", ("arc [deg]",), heads, body)
+    yield rows_table("Table 1: effective arm and torques, as printed", *HEADS, body)
     yield _corrected_table()
     heading = f"What is wrong in the paper, and what follows at its longest arc (80 deg)\n{_SYMBOLS}"
     yield errata_table(heading, as_printed.errata())

@@ -20,7 +20,7 @@ from brakes.drawings.forklift import distances, forces_over, truck
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, follow_shoes, internal_forces, stop
 from brakes.published import load
 from brakes.reproduce import forklift_as_printed as as_printed
-from brakes.reproduce.common import Cell, Row, errata_table, rows_table, step
+from brakes.reproduce.common import Cell, Heads, Row, errata_table, rows_table, step
 from brakes.reproduce.newton import newton_raphson
 
 # Table: inputs of its rows and of its columns as (key, heading, scale), and its quantities.
@@ -74,6 +74,17 @@ def rows() -> dict[str, list[Row]]:
     return compared | {name: _force_rows(paper, name, ours) for name in _BRAKE}
 
 
+def heads() -> dict[str, Heads]:
+    """Names with units of the inputs and of the quantities of each table's rows."""
+    vehicle = {
+        name: ((down, across), tuple(_HEADS[q] for q in quantities))
+        for name, ((_, down), (_, across), quantities) in _VEHICLE.items()
+    }
+    return vehicle | {
+        name: ((head,), tuple(f"{f} [N]" for f in _FORCES)) for name, (_, head) in _BRAKE.items()
+    }
+
+
 def _vehicle_rows(paper: dict[str, Any], name: str, ours: dict, right: dict) -> list[Row]:
     (down, _), (across, _), quantities = _VEHICLE[name]
     data = paper[name]
@@ -122,9 +133,8 @@ def _force_rows(paper: dict[str, Any], name: str, ours: dict) -> list[Row]:
 def tables() -> Iterator[Group]:
     """Make Tables 2-7 and the table of errata."""
     paper, compared = load("yoo_1997"), rows()
-    for name, ((_, down), (_, across), quantities) in _VEHICLE.items():
-        heads = [_HEADS[q] for q in quantities]
-        yield rows_table(_title(paper, name, quantities), (down, across), heads, compared[name])
+    for name, (_, _, quantities) in _VEHICLE.items():
+        yield rows_table(_title(paper, name, quantities), *heads()[name], compared[name])
     for name, (_, head) in _BRAKE.items():
         yield rows_table(_title(paper, name, ("forces [N]",)), (head,), _FORCES, compared[name])
     yield errata_table("What is wrong in the paper, and what follows at its base case", as_printed.errata())

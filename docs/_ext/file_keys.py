@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from importlib import import_module
-from typing import Any
+from typing import Any, get_args, get_origin
 
-from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.edge.inputs import Input, Section, describe
 
 MARK = re.compile(r"^<!-- keys of (\S+):(\w+) -->$", re.MULTILINE)
 _BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section"}
@@ -19,11 +19,32 @@ def tables_of(section: Any) -> str:
     groups: dict[str, list[Input]] = {}
     for entry in describe(section):
         groups.setdefault(entry.path.rpartition(".")[0], []).append(entry)
-    return "\n\n".join("\n".join(_table(path, entries)) for path, entries in groups.items())
+    repeated = set(_repeated(section))
+    return "\n\n".join(
+        "\n".join(_table(f"[[{path}]]" if path in repeated else f"[{path}]", entries))
+        for path, entries in groups.items()
+    )
 
 
-def _table(path: str, entries: Sequence[Input]) -> Iterator[str]:
-    yield f"### {f'`[{path}]`' if path else 'At the top'}\n\n{_HEAD}"
+def _repeated(annotation: Any, path: str = "") -> Iterator[str]:
+    """Paths of the tables that may be there as often as needed."""
+    if _is_section(annotation):
+        for name, field in annotation.model_fields.items():
+            yield from _repeated(field.annotation, f"{path}.{name}".lstrip("."))
+        return
+    within = get_args(annotation)
+    if get_origin(annotation) is list and within and _is_section(within[0]):
+        yield path
+    for part in within:
+        yield from _repeated(part, path)
+
+
+def _is_section(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, Section)
+
+
+def _table(heading: str, entries: Sequence[Input]) -> Iterator[str]:
+    yield f"### {'At the top' if heading == '[]' else f'`{heading}`'}\n\n{_HEAD}"
     all_kinds = dict.fromkeys(_kind(entry) for entry in entries)
     for name in dict.fromkeys(entry.name for entry in entries):
         own = [entry for entry in entries if entry.name == name]
@@ -49,7 +70,7 @@ def _what(entries: Sequence[Input], name: str) -> str:
 
 def _default(entry: Input, name: str) -> str:
     if name == "kind":
-        return "the first"
+        return str(entry.choices[0])
     if entry.required:
         return "**required**"
     if entry.default in (None, [], ()):

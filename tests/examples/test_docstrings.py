@@ -38,6 +38,8 @@ def public_names() -> dict[str, Any]:
 
 
 NAMES = public_names()
+# Authors and year: "Lee and Yoo (2019)", "Nayfeh and Mook, 1979", "Keller's (1977)".
+CITED = re.compile(r"((?:[A-Z][a-z]+(?:, | and | et al\.)?)+)(?:'s)?,? \(?((?:19|20)\d\d)\)?")
 
 
 def documentation(item: Any) -> str:
@@ -183,3 +185,15 @@ def test_sources_lead_to_pages_and_names_that_there_are() -> None:
         for other in re.findall(r"As `([\w.]+)`", text):
             of_module = f"{name.rpartition('.')[0]}.{other}"
             assert source_of(NAMES.get(of_module) or NAMES[f"brakes.{other}"]), name
+
+
+def test_what_is_cited_stands_in_the_literature() -> None:
+    page = (ROOT / "docs" / "reference" / "literature.md").read_text(encoding="utf-8")
+    listed = {(row.split()[0].rstrip(","), year) for row, year in CITED.findall(page)}
+    cited = {
+        (who.split()[0].rstrip(","), year)
+        for name, item in NAMES.items()
+        if "References" in (text := " ".join(documentation(item).split()))
+        for who, year in CITED.findall(text.partition("References")[2].partition("Examples")[0])
+    }
+    assert len(cited) > 15 and cited <= listed, cited - listed

@@ -13,6 +13,8 @@ import pytest
 from beamdyn.config.scene_inputs import SceneInput
 from brakes.config.drum import DrumInput
 from brakes.config.forklift import ForkliftInput
+from brakes.config.mechanism import CompleteMechanismInput
+from brakes.planar import JOINTS, LOADS
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "input_files.md"
@@ -30,7 +32,7 @@ def test_the_page_has_the_tables_of_all_files() -> None:
     source = [PAGE.read_text(encoding="utf-8")]
     extension().write_tables(None, "input_files", source)
     assert "<!-- keys" not in source[0]
-    for heading in ("### `[beam.tip]`", "### `[second_shoe]`", "### `[levers]`"):
+    for heading in ("### `[beam.tip]`", "### `[second_shoe]`", "### `[levers]`", "### `[[rotation_lock]]`"):
         assert heading in source[0]
 
 
@@ -62,3 +64,20 @@ def test_rows_say_unit_bound_default_and_where_a_key_belongs() -> None:
     assert "| `width` | width of the section [m], greater than 0 | **required** | rectangular |" in text
     assert "| `law` | law of the spin-up: smooth, linear | smooth | `spin_up` |" in text
     assert not re.search(r"Input \|$", text, re.MULTILINE)  # no name of a class
+
+
+def test_tables_that_may_be_repeated_have_two_brackets() -> None:
+    assert "### `[[beam.point_mass]]`" in extension().tables_of(SceneInput)
+    text = extension().tables_of(CompleteMechanismInput)
+    assert "### `[run]`" in text and all(f"### `[[{part.key()}]]`" in text for part in (*JOINTS, *LOADS))
+
+
+def test_the_default_of_a_kind_is_its_name() -> None:
+    assert "sampled_translation | steady |" in extension().tables_of(SceneInput)
+
+
+def test_the_page_of_mechanisms_has_every_part() -> None:
+    page = (ROOT / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    parts = page.partition("## Parts")[2].partition("##")[0]
+    listed = re.findall(r"^\| `(\w+)` \|", parts, re.MULTILINE)
+    assert listed == [part.key() for part in (*JOINTS, *LOADS)]

@@ -28,11 +28,17 @@ def test_every_published_file_is_in_it() -> None:
     by_reproduce = {*tables.PAPERS, *(f"blade_{name}" for name in tables.BLADES), "blades"}
     by_name = {name for name in published.available() if f'load("{name}")' in TEXT}
     assert {*published.available()} == by_reproduce | by_name
-    brakes = {"drum_textbooks", "eebrake", "vardanyan_2019", "yoo_1997"}  # the last three by `reproduce`
+    brakes = {
+        "drum_textbooks",
+        "statics",
+        "eebrake",
+        "vardanyan_2019",
+        "yoo_1997",
+    }  # the last three by `reproduce`
     assert {*published_brakes.available()} == brakes
 
 
-@pytest.mark.parametrize("part", ["brakes", "textbooks", "wider_models", "single_answers"])
+@pytest.mark.parametrize("part", ["brakes", "textbooks", "statics", "wider_models", "single_answers"])
 def test_no_value_differs_without_a_reason(part: str) -> None:
     """Of the quick parts; `reproduce` is held to the same by its own tests."""
     rows = [row for section in validation_manual.PARTS[part][1]().values() for row in section]

@@ -70,3 +70,19 @@ def test_examples_have_an_answer(shown, program, name, tmp_path, monkeypatch, ca
         assert code == DONE and out, err
         wanted = re.findall(r"--(?:plot|json|output|free-bodies) (\S+)", line)
         assert all((tmp_path / file).stat().st_size for file in wanted)
+
+
+@pytest.mark.parametrize(("program", "name"), EACH)
+def test_help_is_in_the_words_of_its_program(program, name, capsys):
+    """No switch that only empties a list, and in the help of brakes no inputs of a beam."""
+    assert PROGRAMS[program].main([name, "--help"]) == DONE
+    text = capsys.readouterr().out
+    assert "--empty-" not in text
+    assert program == "beamdyn" or not re.search(r"thickness=|damping_ratio=", text)
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_the_page_of_commands_has_each(program):
+    page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    listed = re.findall(rf"^\| `{program} ([\w-]+)` \|", page, re.MULTILINE)
+    assert sorted(listed) == sorted(name for each, name in COMMANDS if each == program)

@@ -132,6 +132,24 @@ def test_peak_between_samples_is_larger_than_the_samples(short: bd.Transient) ->
     assert short.peak(1.0, 2.0) >= dense * (1 - 1e-14)
 
 
+@pytest.mark.parametrize("w", [5.0, 40.0, 300.0])
+def test_peaks_of_a_sine_and_its_values_at_the_ends_of_a_window(w: float) -> None:
+    """Of the largest everywhere, and of windows that end on a slope or hold less than a step."""
+
+    class Sine:
+        start, end = 0.0, 10.0
+        samples = np.linspace(0, 10, 8001), np.sin(w * np.linspace(0, 10, 8001))[:, None], np.empty(0)
+
+        def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return np.sin(w * t)[:, None], np.empty(0)
+
+    rise = 0.5 * np.pi / w
+    windows = [(0.0, 10.0), (0.0, 0.7 * rise), (1.3 * rise, 1.5 * rise), (0.3 * rise, 0.30001 * rise)]
+    found = largest_in_each(lambda q: np.abs(q[:, 0]), Sine(), windows)
+    wanted = [1.0, np.sin(0.35 * np.pi), np.sin(0.65 * np.pi), np.sin(0.150005 * np.pi)]
+    np.testing.assert_allclose(found, wanted, rtol=1e-12)  # a parabola over 1e-3 rad errs by less
+
+
 def test_windows_searched_together_are_those_searched_alone(short: bd.Transient) -> None:
     windows = [(0.0, 2.0), (0.3, 0.31), (1.0, 1.0 + 1e-9), (1.5, 2.0)]  # the third is between two samples
     assert isinstance(short.system, ModalSystem)

@@ -35,9 +35,9 @@ class SpreadOptions:
     Parameters
     ----------
     spread : tuple of str
-        An input and its tolerance, name=tolerance, such as "thickness=+-2%", "+1% -2%", "+-0.01 mm",
-        "0.19 mm to 0.21 mm" (all values as likely), or "sd 1%" (normal); give the option once for each input.
-        Names are those of the file.
+        An input and its tolerance, NAME=tolerance, such as "NAME=+-2%", "NAME=+1% -2%", "NAME=+-0.01 mm",
+        "NAME=0.19 mm to 0.21 mm" (all values as likely), or "NAME=sd 1%" (normal). Give the option once for
+        each input. Names are those of the file.
     samples : int
         Number n of designs in each of 2 + d random samples of d inputs: a power of two, from 128.
     seed : int

@@ -41,9 +41,9 @@ class VaryOptions:
     Parameters
     ----------
     vary : tuple of str
-        An input and its values: name=start:stop:count and a unit, such as "thickness=0.1:0.4:31 mm";
-        at equal ratios "damping_ratio=1e-4:1e-1:13:log"; or a list, "thickness=0.2,0.25,0.3 mm". Give the
-        option once for each input. Names are those of the file.
+        An input and its values: NAME=start:stop:count and a unit, such as "NAME=0.1:0.4:31 mm"; at equal
+        ratios "NAME=1e-4:1e-1:13:log"; or a list, "NAME=0.2,0.25,0.3 mm". Give the option once for each
+        input. Names are those of the file.
     together : bool
         Take the first values of all inputs, then the second, in place of all combinations.
     workers : int

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]
 Keep = Callable[[Any, Any], None]
 _IN_FLIGHT = 256  # tasks that an executor has at a time: enough for its workers, few for the memory
-_PER_WORKER = 3  # the same for each worker of our own
+_PER_WORKER = 2  # the same for each worker of our own: one that it solves, and the next
 
 
 class RunInterrupted(RuntimeError):
@@ -87,7 +87,7 @@ class TaskRunner:
     Parameters
     ----------
     workers : int
-        Number of processes; 1 is this one.
+        Number of processes; this one is the first of them.
     executor : Executor, optional
         Any of `concurrent.futures`, in place of workers.
     store : str or Path, optional
@@ -149,12 +149,13 @@ class TaskRunner:
 
         With a store, in which all results may be, they start when they are needed.
         """
-        if self.executor is not None or self.store is not None or min(self.workers, tasks) == 1:
+        others = min(self.workers, tasks) - 1
+        if self.executor is not None or self.store is not None or others < 1:
             yield
             return
-        with Workers(min(self.workers, tasks)) as self._pool:
+        with Workers(others) as self._pool:
             try:
-                for _ in range(min(self.workers, tasks)):
+                for _ in range(others):
                     self._pool.submit(_import, solve)
                 yield
             finally:
@@ -184,10 +185,10 @@ class TaskRunner:
         elif self.workers == 1 or len(tasks) == 1:
             run.here(tasks)
         elif self._pool is not None:
-            run.by(self._pool, _PER_WORKER * self.workers, tasks)
+            run.beside(self._pool, tasks)
         else:
-            with Workers(min(self.workers, len(tasks))) as pool:
-                run.by(pool, _PER_WORKER * self.workers, tasks)
+            with Workers(min(self.workers, len(tasks)) - 1) as pool:
+                run.beside(pool, tasks)
 
 
 class _Pending(NamedTuple):
@@ -219,16 +220,42 @@ class _TaskRun:
         missing = self._missing(tasks)
         try:
             while True:
-                for pending in islice(missing, most - len(self.flying)):
-                    future = self._ask(executor.submit, _returning_errors, self.solve, pending.made)
-                    self.flying[future] = pending
+                self._submit(executor, islice(missing, most - len(self.flying)))
                 if not self.flying:
                     return
-                for future in wait(self.flying, return_when=FIRST_COMPLETED).done:
-                    result = self._ask(future.result)
-                    self._finish(self.flying.pop(future), result)
+                self._collect(wait(self.flying, return_when=FIRST_COMPLETED).done)
         finally:
             self._land()
+
+    def beside(self, workers: Workers, tasks: Sequence[Task]) -> None:
+        """Solve the tasks here and in workers, which spares the start of one process."""
+        missing, most = self._missing(tasks), _PER_WORKER * workers.count
+        try:
+            while True:
+                self._submit(workers, islice(missing, most - len(self.flying)))
+                if (own := next(missing, None) or self._take_back()) is not None:
+                    self._finish(own, _solve(self.solve, own.made))
+                elif not self.flying:
+                    return
+                limit = None if own is None else 0.0
+                self._collect(wait(self.flying, limit, FIRST_COMPLETED).done)
+        finally:
+            self._land()
+
+    def _submit(self, executor: Executor, tasks: Iterable[_Pending]) -> None:
+        for pending in tasks:
+            future = self._ask(executor.submit, _returning_errors, self.solve, pending.made)
+            self.flying[future] = pending
+
+    def _collect(self, done: Iterable[Future[Any]]) -> None:
+        for future in done:
+            result = self._ask(future.result)
+            self._finish(self.flying.pop(future), result)
+
+    def _take_back(self) -> _Pending | None:
+        """A task that waits for a worker; None if none waits."""
+        waiting = next((future for future in reversed(self.flying) if future.cancel()), None)
+        return None if waiting is None else self.flying.pop(waiting)
 
     def _missing(self, tasks: Sequence[Task]) -> Iterator[_Pending]:
         """Yield the tasks that are not in the store, made when they are wanted; keep those that are."""

@@ -45,6 +45,7 @@ class Workers(ThreadPoolExecutor):
 
     def __init__(self, count: int) -> None:
         super().__init__(count, thread_name_prefix="beamdyn-worker")
+        self.count = count
         self._own = threading.local()
         self._processes: list[_Process] = []
         self._lock = threading.Lock()

@@ -47,8 +47,8 @@ class Spread(Result):
         What the derivatives at the nominal design say: `smallest`, `largest`, `mean`, `deviation`, `share` of
         each input in the variance; `slope`, `slope_error`.
     worst : WorstCases
-        `smallest` and `largest` answers within all tolerances, with their errors, the inputs `smallest_at`
-        and `largest_at` which they are found, and whether they were `searched`, so that there may be worse.
+        `smallest` and `largest` answers within all tolerances, with their errors, the inputs at which they
+        are found (`smallest_at`, `largest_at`), and whether they were `searched`, so that there may be worse.
     trends : ndarray of str, shape (d, k)
         How each answer changes with each input, as far as n pairs of random designs show: "rises", "falls",
         "rises and falls", "does not change".

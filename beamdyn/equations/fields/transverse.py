@@ -250,7 +250,7 @@ class TransverseField(Field):
         raise NotImplementedError
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Assemble eqs. (14) of Lee and Yoo (2019), corrected, with tip body, and what goes beyond them."""
+        """Assemble eq. (14) of Lee and Yoo (2019), corrected, with tip body, and what goes beyond them."""
         own = Trial(self, scene, spaces)
         terms = [*self._terms_with(Pair(own, own))]
         for partner in self.partners:

@@ -168,10 +168,10 @@ class SpinUp(Rotation):
 
 def _smooth(x: np.ndarray) -> Kinematics:
     """Integral, value and derivative of the speed x - sin(2 pi x)/(2 pi), for 0 <= x <= 1."""
-    sine = np.sin(np.pi * x) / np.pi
+    y, sine = np.pi * x, np.sin(np.pi * x)
     # x^2/2 - sin(pi x)^2/(2 pi^2) as a product, because the difference cancels at small x.
-    integral = _subtract_sine(np.pi * x) / np.pi * (x + sine) / 2
-    return integral, _subtract_sine(2 * np.pi * x) / (2 * np.pi), 2 * (np.pi * sine) ** 2
+    integral = _subtract(y, sine) * (y + sine) / (2 * np.pi**2)
+    return integral, _subtract(2 * y, np.sin(2 * y)) / (2 * np.pi), 2 * sine**2
 
 
 def _linear(x: np.ndarray) -> Kinematics:
@@ -182,17 +182,19 @@ def _linear(x: np.ndarray) -> Kinematics:
 _LAWS: dict[str, Callable[[np.ndarray], Kinematics]] = {"smooth": _smooth, "linear": _linear}
 
 
-def _subtract_sine(y: np.ndarray) -> np.ndarray:
-    """Compute y - sin(y) for y >= 0, by its Taylor series for y < 1, where the difference cancels."""
+def _subtract(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
+    """Compute y - sin(y) for y >= 0 from both, by its Taylor series for y < 1, where that cancels."""
     y = np.asarray(y)
-    difference = np.asarray(y - np.sin(y))
+    difference = np.asarray(y - sine)
     below = y < 1
     if below.any():
         small = y[below]
-        series = np.ones_like(small)
+        square, series = small**2, np.ones_like(small)
         for n in range(18, 2, -2):
-            series = 1 - small**2 / (n * (n + 1)) * series
-        difference[below] = small**3 / 6 * series
+            series *= square
+            series *= -1 / (n * (n + 1))
+            series += 1
+        difference[below] = square * small / 6 * series
     return difference
 
 

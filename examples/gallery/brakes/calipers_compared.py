@@ -2,8 +2,8 @@
 Six bicycle calipers, squeezed alike
 ====================================
 
-Force of a pad over that of the finger while the brake closes. That of the eeBrake rises over the stroke:
-quick at first, strong at the end.
+Force of a pad over that of the finger while the brake closes. That of the eeBrake rises most over the
+stroke: quick at first, strong at the end. The V-brake has the largest, and pays for it by the longest travel.
 """
 
 import matplotlib.pyplot as plt

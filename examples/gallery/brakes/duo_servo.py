@@ -16,9 +16,14 @@ torque = np.linspace(8000, 12000, 81)
 forces = forklift.internal_forces(forklift.BENDIX_12_5, torque=torque, piston_force=11650.0, clearance=0.0106)
 
 fig, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
-for name in ("A", "B", "Q", "P_L"):
-    left.plot(torque / 1e3, getattr(forces, name) / 1e3, label=name)
-left.set(xlabel="torque [kN m]", ylabel="force [kN]")
+for name, part in {
+    "A": "A, normal force on the leading shoe",
+    "P_L": "P_L, its piston",
+    "B": "B, friction on it",
+    "Q": "Q, the adjuster",
+}.items():
+    left.plot(torque / 1e3, getattr(forces, name) / 1e3, label=part)
+left.set(xlabel="torque [kN m]", ylabel="force [kN]", ylim=(0, 180))
 left.legend()
 right.plot(torque / 1e3, 100 * forces.leading_share, label="leading shoe")
 right.plot(torque / 1e3, 100 * forces.trailing_share, label="trailing shoe")

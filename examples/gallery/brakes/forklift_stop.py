@@ -19,6 +19,8 @@ for slope in (0, 5, 10, 17.3, 22, 27):
     conditions = forklift.StopConditions(
         np.radians(slope), speed / 3.6, 0.7, reaction_time=0.5, rise_time=0.3
     )
-    ax.plot(speed, forklift.stop(truck, conditions).distance, label=f"{slope:g} deg")
+    stop = forklift.stop(truck, conditions)
+    label = f"{slope:g} deg" if stop.stops.any() else f"{slope:g} deg: does not stop"
+    ax.plot(speed, stop.distance, label=label)
 ax.set(xlabel="speed [km/h]", ylabel="stopping distance [m]")
 ax.legend(title="slope")

@@ -15,13 +15,14 @@ beam = bd.Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_mod
 amplitudes = np.linspace(0, 0.2, 41)  # over the length
 
 fig, ax = plt.subplots()
-for name, angle in (("inward", 0.0), ("outward", np.pi)):
-    scene = bd.Scene(
-        beam, bd.Mount(radius=0.215, setting_angle=angle), physics=bd.Physics(large_deflection=True)
-    )
-    for speed in (0.0, 100.0):
-        curve = bd.backbone(scene, speed)
-        frequencies = [curve.at(a * beam.length) / curve.frequency for a in amplitudes]
-        ax.plot(frequencies, amplitudes, label=f"{name}, {speed:g} rad/s: {curve.frequency:.2f} Hz")
+for name, angle, speed in (
+    ("at rest", 0.0, 0.0),
+    ("inward, 100 rad/s", 0.0, 100.0),
+    ("outward, 100 rad/s", np.pi, 100.0),
+):
+    mount = bd.Mount(radius=0.215, setting_angle=angle)
+    curve = bd.backbone(bd.Scene(beam, mount, physics=bd.Physics(large_deflection=True)), speed)
+    frequencies = [curve.at(a * beam.length) / curve.frequency for a in amplitudes]
+    ax.plot(frequencies, amplitudes, label=f"{name}: {curve.frequency:.2f} Hz")
 ax.set(xlabel="frequency over that of small vibration", ylabel="amplitude over length")
 ax.legend()

@@ -3,7 +3,7 @@ A shaken wheel: one frequency in, two out
 =========================================
 
 The axle is shaken along a fixed direction, but the strip turns: it feels each frequency f at f less and
-plus the turns per second. The two curves are the strain at its root at these two.
+plus n, the turns per second. The two curves are the strain at its root at these two.
 """
 
 import matplotlib.pyplot as plt

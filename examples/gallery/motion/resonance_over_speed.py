@@ -4,7 +4,8 @@ Where a wheel on a wavy road resonates
 
 The road acts at a frequency proportional to speed, and the turning strip sees it at that less and plus
 the speed itself. Resonance is where one of these lines meets a natural frequency, which itself falls
-with speed.
+with speed (circles). Squares: parametric resonances, at which a line meets twice the natural frequency; with
+this damping the motion does not grow there. Below: the amplitude, and the sum of all its lines as a bound.
 """
 
 import matplotlib.pyplot as plt

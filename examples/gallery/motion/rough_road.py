@@ -1,6 +1,6 @@
 """
-A year on a rough road, by its statistics
-=========================================
+A rough road, by its statistics
+===============================
 
 Root strain of a harvester's strip in a wheel on a road of class C at 90 km/h: density over frequency,
 and the root mean square that a fatigue estimate starts from.
