@@ -7,8 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.app.screens import KeyResult
+from beamdyn.common.display_units import ShownUnit
 from beamdyn.common.one_line import number
 from beamdyn.model_error.left_out_effects import say_size
+from beamdyn.scene.validity import LARGE_DEFLECTION
 from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.locus import Locus
 from beamdyn.spectrum.modes import Modes
@@ -18,26 +20,29 @@ from beamdyn.steady.response import SteadyResponse
 def of_locus(locus: Locus, critical: CriticalPoint) -> Iterator[KeyResult]:
     """First frequency at both ends of the speeds, the critical speed, and its margin."""
     first, speeds = locus.frequency[:, 0], locus.speeds
+    unit = locus.display_units.speed_unit()
     yield KeyResult("first frequency at rest", _said(first[0], "Hz"))
-    yield KeyResult(f"at {number(speeds[-1], 'rad/s')}", _said(first[-1], "Hz"))
+    yield KeyResult(f"at {_in(unit, speeds[-1])}", _said(first[-1], "Hz"))
     if np.isfinite(critical.speed):
-        yield KeyResult("critical speed", number(critical.speed, "rad/s"))
+        yield KeyResult("critical speed", _in(unit, critical.speed))
         yield KeyResult("margin of the top speed", _margin(float(speeds[-1]), critical.speed))
     else:
         bound = critical.none_below
-        below = f" below {number(bound, 'rad/s')}" if np.isfinite(bound) else ""
+        below = f" below {_in(unit, bound)}" if np.isfinite(bound) else ""
         yield KeyResult("critical speed", f"none{below}")
 
 
 def of_steady(response: SteadyResponse) -> Iterator[KeyResult]:
-    """The largest deflection of the tip, and the speed at which it is."""
+    """The largest deflection of the tip, whether it is past linear theory, and the speed at which it is."""
     amplitude = np.asarray(response.amplitude)
     if not np.isfinite(amplitude).any():
         yield KeyResult("largest deflection of the tip", "no steady state")
         return
     at = int(np.nanargmax(np.where(np.isfinite(amplitude), amplitude, np.nan)))
-    yield KeyResult("largest deflection of the tip", number(1e3 * amplitude[at], "mm"))
-    yield KeyResult("at the speed", number(response.speeds[at], "rad/s"))
+    past = amplitude[at] > LARGE_DEFLECTION * response.scene.beam.length
+    units, beyond = response.display_units, ", past linear theory" if past else ""
+    yield KeyResult(f"largest deflection of the tip{beyond}", _in(units.length_unit(), amplitude[at]))
+    yield KeyResult("at the speed", _in(units.speed_unit(), response.speeds[at]))
 
 
 def of_modes(modes: Modes) -> Iterator[KeyResult]:
@@ -48,9 +53,9 @@ def of_modes(modes: Modes) -> Iterator[KeyResult]:
         yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))
 
 
-def of_peak(peak: float, at: float) -> Iterator[KeyResult]:
-    """The largest deflection of the tip [m], and its time [s]."""
-    yield KeyResult("largest deflection of the tip", number(1e3 * peak, "mm"))
+def of_peak(peak: float, at: float, unit: ShownUnit) -> Iterator[KeyResult]:
+    """The largest deflection of the tip [m], shown in a unit, and its time [s]."""
+    yield KeyResult("largest deflection of the tip", _in(unit, peak))
     yield KeyResult("at the time", number(at, "s"))
 
 
@@ -59,6 +64,11 @@ def of_trade(modes: Modes, time: float, cheapest: str) -> Iterator[KeyResult]:
     yield KeyResult("cheapest, physics included", cheapest)
     yield KeyResult("time of the chosen model", number(1e3 * time, "ms"))
     yield from [*of_modes(modes)][1:]
+
+
+def _in(unit: ShownUnit, value: float) -> str:
+    """A value of SI in the unit that it is shown in."""
+    return number(unit.of(value), unit.name)
 
 
 def _said(frequency: float, unit: str) -> str:

@@ -13,8 +13,10 @@ from pydantic import BaseModel, Field, create_model
 from beamdyn import natural_modes
 from beamdyn.common.app.screens import Drag
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.display_units import known_unit
 from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, describe
+from beamdyn.common.edge.units import unit_as_written
 from beamdyn.config.scene_inputs import RectangularInput, SceneInput, StiffnessInput
 from beamdyn.config.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
@@ -34,6 +36,7 @@ _LISTS = {
     "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
     "beam.point_spring": 'springs along the beam, each such as { position = "20 mm", stiffness = "10 N/m" }',
 }
+_USUAL_SPEED = "rad/s"
 _FASTEST = 10  # times the first natural frequency at rest
 
 
@@ -138,7 +141,7 @@ def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
     options = read_aside(tables, "options")
-    scene = read_scene(tables)
+    scene = _shown_in(read_scene(tables), tables["options"]["top_speed"])
     _check_effort(scene, options.top_speed, "options.top_speed")
     return scene, options.top_speed, int(options.modes)
 
@@ -146,9 +149,17 @@ def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
 def read_at_speed(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, one speed [rad/s] and the number of modes; raises `ConfigError`."""
     speed, modes = read_aside(tables, "operation").speed, read_aside(tables, "options").modes
-    scene = read_scene(tables)
+    scene = _shown_in(read_scene(tables), tables["operation"]["speed"])
     _check_effort(scene, speed, "operation.speed")
     return scene, speed, int(modes)
+
+
+def _shown_in(scene: Scene, speed: object) -> Scene:
+    """The scene, with results in the unit of a speed given beside it, unless that is the usual one."""
+    unit = known_unit("speed", unit_as_written(speed, "rad/s")[0])
+    if unit in ("", _USUAL_SPEED):
+        return scene
+    return dataclasses.replace(scene, units=scene.units.with_others({"speed": unit}))
 
 
 def read_scene(tables: Mapping[str, Any]) -> Scene:

@@ -36,7 +36,7 @@ def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
         if name not in known
     ]
     rows += [(name, "not modelled", "", "no model here has it") for name in effects.not_modelled]
-    heads = "left out", "largest change", "each three blocks: ten times", "how to include it"
+    heads = "left out", "largest change", "size, logarithmic", "how to include it"
     return table(f"What the physics leaves out, and by how much it changes the {of}", heads, rows, (0, 2, 3))
 
 

@@ -118,4 +118,6 @@ def _marks(
     if 0 <= at <= last:
         yield ChartMark(speed.of(at), f"{words} {speed.say(at, 5)}")
     if motion_speed is not None and 0 < motion_speed <= last:
-        yield ChartMark(speed.of(motion_speed), f"speed of the motion {speed.say(motion_speed, 5)}")
+        yield ChartMark(
+            speed.of(motion_speed), f"speed of the motion {speed.say(motion_speed, 5)}", at_foot=True
+        )

@@ -36,6 +36,7 @@ _RUNS = 5  # of the chosen model, the shortest of which counts
 _KEPT = 8  # scenes whose measurements are kept
 _LARGEST, _LEAST = 1.0, 1e-14  # relative errors that are drawn
 _ROUNDING = 1e-9  # relative, of a power of ten
+_FAMILIES = {"tolerance=": "chosen by tolerance"}  # called so in Python
 NEEDS = ("trade", "options", "operation", *SCENE_TABLES)
 
 
@@ -118,7 +119,7 @@ def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
     for m in diagram.measurements:
         if 0 < m.error < np.inf:
             families.setdefault(m.family, []).append((m.time, m.error))
-    curves = [_curve(family, points) for family, points in families.items()]
+    curves = [_curve(_FAMILIES.get(family, family), points) for family, points in families.items()]
     front = _curve("Pareto front", [(m.time, m.error) for m in diagram.front if m.error > 0])
     times = [m.time for m in diagram.measurements]
     limit = ChartCurve(

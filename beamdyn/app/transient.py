@@ -225,8 +225,13 @@ def tables(answer: Playable) -> Sequence[RenderableType]:
     return [transient_table(answer.run, answer.window), *said, *describe_choice(answer.run), effects]
 
 
+def headline(answer: Playable) -> Sequence[KeyResult]:
+    """The peak, and when the speed first passes a resonance."""
+    unit = answer.run.display_units.length_unit()
+    return [*of_peak(answer.peak, answer.peak_at, unit), *_of_passages(answer)]
+
+
 def _of_passages(answer: Playable) -> Iterator[KeyResult]:
-    """When the speed first passes a resonance."""
     for at, _ in answer.passages[:1]:
         yield KeyResult("passes a resonance at", number(at, "s"))
 
@@ -252,7 +257,7 @@ TRANSIENT = Screen(
     drags=DRAGS,
     drawings=drawings,
     charts=charts,
-    headline=lambda answer: [*of_peak(answer.peak, answer.peak_at), *_of_passages(answer)],
+    headline=headline,
     effort=EFFORT,
     sketch=sketch,
 )

@@ -21,7 +21,7 @@ from beamdyn.common.edge.input_sweep import Output, numbers
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
-from beamdyn.common.edge.wording import in_range
+from beamdyn.common.edge.wording import in_range, in_small_units
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import PlanarAnswer
@@ -42,7 +42,7 @@ from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
 from brakes.drawings.caliper import caliper_drawing, caliper_figure, curves_figure, title_of
 from brakes.drawings.caliper_sketches import caliper_sketch, mechanism_sketch
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
-from brakes.planar.diagnosis import join_names
+from brakes.planar.diagnosis import OppositeTravelError, join_names
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _AT_STOPS = 11  # positions of a stroke at which the slider stops
@@ -142,7 +142,7 @@ class CaliperAnswer(PlanarAnswer):
     @property
     def refusals(self) -> Sequence[str]:
         """What statics does not determine, what opens, and that friction jams the brake."""
-        stuck = self.friction and not self.friction.has_answer and self.friction.message
+        stuck = self.friction and not self.friction.has_answer and in_small_units(self.friction.message)
         return (*super().refusals, *([stuck] if stuck else []))
 
     @property
@@ -150,7 +150,7 @@ class CaliperAnswer(PlanarAnswer):
         """Warnings of the stroke, and that friction holds the brake."""
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
-        return (*self.run.warnings, *held)
+        return tuple(map(in_small_units, (*self.run.warnings, *held)))
 
     @property
     def error(self) -> float:
@@ -422,11 +422,18 @@ def _answer_to(design: CaliperInput | MechanismInput) -> PlanarAnswer:
         if isinstance(core, Caliper):
             return CaliperAnswer.of(core, design)
         return MechanismAnswer.of(core, design)
-    except (AssemblyError, OutOfReachError) as error:
-        raise NoAnswer(str(error)) from None
+    except OutOfReachError as error:
+        what = "clearance" if design.run.travel is None else "travel"
+        raise NoAnswer(f"{in_small_units(error.reason)}; give a smaller {what}, or move points") from None
+    except OppositeTravelError:
+        if isinstance(design, MechanismInput):
+            raise
+        raise ValueError("the cable opens the pads: move pads, pivots or the ends of the cable") from None
+    except AssemblyError as error:
+        raise NoAnswer(in_small_units(str(error))) from None
     except ValueError as error:
         if _mobility(core) != 1:
-            raise NoAnswer(str(error)) from None
+            raise NoAnswer(in_small_units(str(error))) from None
         raise
 
 

@@ -17,7 +17,7 @@ from beamdyn.common.edge.tables import table
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput
-from brakes.drawings.drum import brake_figure, curves_figure, free_body
+from brakes.drawings.drum import brake_figure, curves_figure, drawing_of
 from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult
 
@@ -110,17 +110,15 @@ class DrumAnswer(Answer):
         return brake_figure(self.result)
 
     def drawings(self, place: float) -> Rows:
-        """Free bodies; none of a locked brake."""
-        return () if self.refusals else ((free_body(self.result),),)
+        """Free bodies; of a locked brake its parts."""
+        return ((drawing_of(self.result),),)
 
     def curves(self, place: float) -> Figure:
         """Pressures and factors."""
         return curves_figure(self.result)
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Lining, pin, force and drum of the first shoe; none of a locked brake, which is not drawn."""
-        if self.refusals:
-            return ()
+        """Lining, pin, force and drum of the first shoe."""
         shoe = self.result.shoes[0].shoe
         r, force = float(shoe.drum_radius), float(shoe.force_arm)
         pivot = float(shoe.pivot[0]), float(shoe.pivot[1])

@@ -178,8 +178,6 @@ class ForkliftAnswer(Answer):
 
     def figure(self, place: float | None = None) -> Figure:
         """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
-        if self.stages == ("forces",) and self.forces is not None and self.forces.status != "equilibrium":
-            return _say(self.forces.message)
         return figure_of(self.drawings(place) if place is not None else self._all_drawings())
 
     def drawings(self, place: float) -> Rows:
@@ -245,13 +243,6 @@ def _motion_drawing(motion: ShoeMotion, progress: float) -> Drawing:
     shoes, drum = np.degrees((seated * float(motion.seating_turn), turned * float(motion.drum_turn)))
     title = f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg"
     return duo_servo(motion.geometry, motion, progress, title)
-
-
-def _say(message: str) -> Figure:
-    """Why a brake without equilibrium is not drawn."""
-    figure = Figure(figsize=(10.0, 5.4))
-    figure.text(0.5, 0.5, message, ha="center", va="center", wrap=True)
-    return figure
 
 
 # From file to answer ------------------------------------------------------------------------------------

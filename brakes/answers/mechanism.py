@@ -16,6 +16,7 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.results import plain
 from brakes.answers.planar import PlanarAnswer
 from brakes.answers.planar_friction import BRANCHES, WITHOUT, MechanismFriction, unknown_loads
@@ -149,7 +150,7 @@ class MechanismAnswer(PlanarAnswer):
         """What statics does not determine, what opens, and which way friction lets nothing move."""
         found = super().refusals
         if self.friction is not None:
-            return (*found, *self.friction.refusals)
+            return (*found, *map(in_small_units, self.friction.refusals))
         if self._mechanism.friction and self.last.is_determined:
             return (*found, f"friction acts against one motion; the mobility is {self.equilibrium.mobility}")
         return found
@@ -158,7 +159,8 @@ class MechanismAnswer(PlanarAnswer):
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and which way friction holds the mechanism."""
         toggles = [toggle.message for toggle in self.motion.toggles] if self.motion else []
-        return (*self.last.warnings, *toggles, *(self.friction.warnings if self.friction else ()))
+        held = self.friction.warnings if self.friction else ()
+        return tuple(map(in_small_units, (*self.last.warnings, *toggles, *held)))
 
     @property
     def error(self) -> float:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.wording import in_small_units
 from brakes.answers.base import Answer
 from brakes.answers.planar_tables import units_of
 from brakes.config.caliper import CaliperInput
@@ -58,7 +59,7 @@ class PlanarAnswer(Answer):
     @property
     def refusals(self) -> Sequence[str]:
         """Which bodies are loose, or which reactions statics does not determine."""
-        return () if self.status == "determined" else (self.message,)
+        return () if self.status == "determined" else (in_small_units(self.message),)
 
     def handles(self, place: float) -> Sequence[Handle]:
         """The points of the file: a named caliper's dimensions, or a mechanism's named points."""

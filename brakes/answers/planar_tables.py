@@ -9,6 +9,7 @@ import numpy as np
 
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.wording import in_small_units
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, Joint, Load, Mechanism
 
@@ -96,7 +97,7 @@ def largest_error(equilibrium: Equilibrium) -> float:
 def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float) -> str:
     """Diagnosis in a sentence or two."""
     return (
-        f"Statics: {message}. Mobility {int(np.max(equilibrium.mobility))}, indeterminacy "
+        f"Statics: {in_small_units(message)}. Mobility {int(np.max(equilibrium.mobility))}, indeterminacy "
         f"{int(np.max(equilibrium.indeterminacy))}; virtual work of all loads "
         f"{virtual_work:.1e} of the largest force."
     )

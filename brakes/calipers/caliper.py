@@ -133,7 +133,7 @@ class Caliper:
         try:
             return driver_at_travel(self.free, self.cable, dict.fromkeys(self.pads, -0.5), self.clearance)
         except OppositeTravelError:
-            raise ValueError(
+            raise OppositeTravelError(
                 f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
                 f"{self.pads[1]!r} away from the rim, or the cable"
             ) from None

@@ -11,45 +11,60 @@ from beamdyn.common.curves import grid
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
 from beamdyn.common.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
-from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
+from brakes.drum import BrakeResult, DrumBrake, Shoe, ShoeResult, brake_torque
 
 _FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
 
 
 def brake_figure(result: BrakeResult) -> Figure:
-    """Draw free-body diagram, pressure and shoe factors; of a locked brake the factors alone.
+    """Draw the brake with its forces, pressure and shoe factors; of a locked brake no pressure.
 
     Parameters
     ----------
     result : BrakeResult
         A result of one case.
     """
-    if result.locked:
-        return curves_figure(result)
     from beamdyn.common.drawing.on_axes import draw_in
 
     figure = Figure(figsize=(11.5, 7.0))
-    draw_in(figure, (0.005, 0.01, 0.55, 0.98), free_body(result))
+    draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing_of(result))
     _plot_curves(figure, result, left=0.62)
     return figure
 
 
 def curves_figure(result: BrakeResult) -> Figure:
     """Draw pressure and shoe factors; of a locked brake the factors alone."""
-    if result.locked:
-        figure = Figure(figsize=(7.5, 4.8), layout="constrained")
-        factors(figure.subplots(), result.brake, float(result.friction), result.reverse)
-        return figure
-    figure = Figure(figsize=(7.0, 7.0))
+    figure = Figure(figsize=(7.0, 4.8 if result.locked else 7.0))
     _plot_curves(figure, result, left=0.1)
     return figure
 
 
 def _plot_curves(figure: Figure, result: BrakeResult, left: float) -> None:
-    """Plot pressure and shoe factors below one another, from a part of the figure's width on."""
-    cells = figure.add_gridspec(2, 1, left=left, right=0.985, bottom=0.075, top=0.955, hspace=0.3)
-    pressures(figure.add_subplot(cells[0, 0]), result)
-    factors(figure.add_subplot(cells[1, 0]), result.brake, float(result.friction), result.reverse)
+    """Plot pressure, if there is any, and shoe factors below it, from a part of the figure's width on."""
+    rows = 1 if result.locked else 2
+    cells = figure.add_gridspec(rows, 1, left=left, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
+    if not result.locked:
+        pressures(figure.add_subplot(cells[0, 0]), result)
+    factors(figure.add_subplot(cells[-1, 0]), result.brake, float(result.friction), result.reverse)
+
+
+def drawing_of(result: BrakeResult) -> Drawing:
+    """The brake with its forces, or where it locks."""
+    return locked_brake(result) if result.locked else free_body(result)
+
+
+def locked_brake(result: BrakeResult) -> Drawing:
+    """The shoes in the drum, those that lock with a mark; of one case, in m."""
+    r = float(result.shoes[0].shoe.drum_radius)
+    arrows = ForceArrows(0.0)
+    _draw_drum(arrows, r, result.reverse)
+    for i, shoe in enumerate(result.shoes):
+        placed = _placement(result, i)
+        _draw_ends(arrows, *_draw_parts(arrows, shoe.shoe, placed))
+        if shoe.locked:
+            _mark_locked(arrows, shoe, placed, f"{i + 1}")
+    title = f"Friction {float(result.friction):.3g}: the brake locks itself"
+    return arrows.drawing(title, "A drum brake that locks: its shoes, and a mark on each that locks", {})
 
 
 def free_body(result: BrakeResult) -> Drawing:
@@ -61,13 +76,20 @@ def free_body(result: BrakeResult) -> Drawing:
     r = float(result.shoes[0].shoe.drum_radius)
     largest = max(float(np.hypot(*v)) for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
     arrows = ForceArrows(0.75 * r / max(largest, float(result.force)))
-    arrows.shapes += [Disc((0, 0), r, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0)]
+    _draw_drum(arrows, r, result.reverse)
     for i, shoe in enumerate(result.shoes):
         _draw_shoe(arrows, shoe, _placement(result, i), f"{i + 1}")
-    _draw_rotation(arrows, r, result.reverse)
     title = f"Forces on the shoes at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
     key = {"load": "actuating force P", "normal": "pressure N", "friction": "friction T", "reaction": "pin R"}
     return arrows.drawing(title, "A drum brake: its shoes with the forces on them", key)
+
+
+def _mark_locked(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str) -> None:
+    """Mark a shoe that locks, on its lining, and say from which friction on it does."""
+    r, middle = float(s.shoe.drum_radius), np.array([np.mean(s.shoe.lining)])
+    arrows.shapes.append(Symbol("cross", (_on_rim(r, middle) @ placed)[0], "inside", 16.0))
+    text = f"{name}: locks from\nfriction {float(s.locking_friction):.3g} on"
+    arrows.labels.append(Label(text, r * np.array([0.36, 0.3]) @ placed, "inside", priority=4))
 
 
 def _placement(result: BrakeResult, i: int) -> np.ndarray:
@@ -79,18 +101,8 @@ def _placement(result: BrakeResult, i: int) -> np.ndarray:
 
 
 def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str) -> None:
-    shoe = s.shoe
-    a1, a2 = shoe.lining
-    alpha = np.linspace(a1, a2, 80)
-    r = float(shoe.drum_radius)
-    rim = r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1) @ placed
-    pin = np.array(shoe.pivot, dtype=float) @ placed
-    lever = np.array([0.55 * r, float(shoe.force_arm)]) @ placed
-    arrows.shapes += [
-        Outline(np.vstack([pin, 0.86 * rim, lever]), "body", 5.0),
-        Outline(rim, "support", 7.0),
-        *(Symbol("dot", at, "support", 3.0) for at in (rim[0], rim[-1])),
-    ]
+    r = float(s.shoe.drum_radius)
+    pin, lever = _draw_parts(arrows, s.shoe, placed)
     centre = -float(s.effective_arm) * s.normal / np.hypot(*s.normal) @ placed
     arrows.shapes.append(Outline(np.vstack([(0, 0), centre]), "normal", 0.9, (1.0, 2.0)))
     arrows.add(lever, np.array([float(s.force), 0.0]) @ placed, f"P_{name}", "load", ends_here=True)
@@ -101,15 +113,40 @@ def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str
     )
     for at, vector, symbol, role in acting:
         arrows.add(at, vector @ placed, f"{symbol}_{name}", role)
-    arrows.shapes += [Symbol("pin", pin, "reaction", 8.0), Symbol("dot", lever, "load", 3.0)]
+    _draw_ends(arrows, pin, lever)
     word = "leading" if s.leading else "trailing"
     middle = r * np.array([0.36, 0.3]) @ placed
     text = f"{name}: {word}\n{float(s.torque):.4g} N m\nC* {float(s.c_star):.3g}"
     arrows.labels.append(Label(text, middle))
 
 
-def _draw_rotation(arrows: ForceArrows, r: float, reverse: bool) -> None:
-    """Add the sense of rotation at the top of the drum: clockwise when forward."""
+def _draw_parts(arrows: ForceArrows, shoe: Shoe, placed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Add a shoe with lining and pin; the places (2,) of its pin and of where the force presses."""
+    r = float(shoe.drum_radius)
+    rim = _on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
+    pin = np.array(shoe.pivot, dtype=float) @ placed
+    lever = np.array([0.55 * r, float(shoe.force_arm)]) @ placed
+    arrows.shapes += [
+        Outline(np.vstack([pin, 0.86 * rim, lever]), "body", 5.0),
+        Outline(rim, "support", 7.0),
+        *(Symbol("dot", at, "support", 3.0) for at in (rim[0], rim[-1])),
+    ]
+    return pin, lever
+
+
+def _draw_ends(arrows: ForceArrows, pin: np.ndarray, lever: np.ndarray) -> None:
+    """Add the pin, and the place where the force presses, over what has been drawn."""
+    arrows.shapes += [Symbol("pin", pin, "reaction", 8.0), Symbol("dot", lever, "load", 3.0)]
+
+
+def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
+    """Places (k, 2) on the drum at angles from straight down."""
+    return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
+
+
+def _draw_drum(arrows: ForceArrows, r: float, reverse: bool) -> None:
+    """Add the drum with its sense of rotation at the top: clockwise when forward."""
+    arrows.shapes += [Disc((0, 0), r, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0)]
     start, end = np.radians((70.0, 110.0) if reverse else (110.0, 70.0))
     way = arc((0, 0), 1.08 * r, start, end)
     arrows.shapes += [Outline(way[:-4], "neutral", 1.5), Arrow(way[-6], way[-1], "neutral", width=1.5)]

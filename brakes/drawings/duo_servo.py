@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol
+from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from brakes.drawings.arrows import ForceArrows
 from brakes.forklift import DuoServo, InternalForces, Kinematics, ShoeMotion
 
@@ -140,14 +140,35 @@ def free_bodies(forces: InternalForces, followed: Kinematics | None = None) -> l
     ]
 
 
-def _free_body(
-    arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str, name: str
-) -> Drawing:
+def bare_shoes(forces: InternalForces, followed: Kinematics | None = None) -> list[Drawing]:
+    """Both shoes, which are in no equilibrium, without forces; as `free_bodies`."""
+    why = {"locked": "locks itself", "no solution": "no equilibrium"}[str(forces.status)]
+    drawings = []
+    for side, name in (("left", "trailing shoe"), ("right", "leading shoe")):
+        arrows = ForceArrows(0.0)
+        _draw_shoe(arrows, forces, followed, side)
+        arrows.labels.append(Label(why, (0, 0), "inside", (0.0, 1.0), priority=4))
+        drawings.append(arrows.drawing(name, f"The {name}, which has no equilibrium", {}))
+    return drawings
+
+
+def _draw_shoe(
+    arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Add the drum and the outline of a shoe if it is known; where piston and adjuster act (2,) [m]."""
     r = float(f.levers.drum_radius)
     arrows.shapes += [Disc((0, 0), r, "axis", 1.2, (4.0, 2.0)), Symbol("cross", (0, 0), "axis", 8.0)]
     outline, tip, pin = _outline(f, followed, side)
     if outline is not None:
         arrows.shapes.append(Outline(outline, "body", 6.0))
+    return tip, pin
+
+
+def _free_body(
+    arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str, name: str
+) -> Drawing:
+    r = float(f.levers.drum_radius)
+    tip, pin = _draw_shoe(arrows, f, followed, side)
     A, B = (f.A_vector, f.B_vector) if side == "right" else (f.C_vector, f.D_vector)
     contact = -r * A / np.hypot(*A)
     alpha, gamma = float(f.levers.alpha1 if side == "right" else f.levers.alpha2), float(f.levers.gamma)

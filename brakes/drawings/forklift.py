@@ -14,7 +14,7 @@ from beamdyn.common.curves import curves
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
-from brakes.drawings.duo_servo import free_bodies, positions
+from brakes.drawings.duo_servo import bare_shoes, free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 
@@ -41,15 +41,16 @@ def answer_drawings(
     followed : Kinematics, optional
         The brake's two stages.
     forces : InternalForces, optional
-        Free bodies of its shoes.
+        Free bodies of its shoes; where they have no equilibrium the shoes alone.
     outlines : Kinematics, optional
         The motion that gives these their outlines.
     """
     rows = [] if stop is None else [[truck(stop)]]
     if followed is not None:
         rows.append(positions(followed))
-    if forces is not None and forces.status == "equilibrium":
-        rows.append(free_bodies(forces, outlines))
+    if forces is not None:
+        draw = free_bodies if forces.status == "equilibrium" else bare_shoes
+        rows.append(draw(forces, outlines))
     return rows
 
 

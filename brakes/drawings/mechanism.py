@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -223,14 +223,22 @@ def _add_forces(
     sketch: _Sketch, forces: Sequence[parts.OuterForce], scale: float, extent: tuple[np.ndarray, np.ndarray]
 ) -> None:
     low, high = extent
+    said = {label.text for label in sketch.labels}  # of a bar or cable to the ground along its line
+    middle = (low + high) / 2
     for outer in forces:
-        aside = outer.at[0] - (low[0] + high[0]) / 2  # from outside, where it would cross the middle
-        inwards = outer.reaction and abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
-        _add_arrow(sketch, outer, scale, inwards)
+        aside = outer.at[0] - middle[0]  # from outside, where it would cross the middle
+        far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
+        pressed = outer.along_bar and outer.force @ (middle - outer.at) > 0
+        _add_arrow(sketch, outer, scale, bool(outer.reaction and (far or pressed)), said)
 
 
-def _add_arrow(sketch: _Sketch, outer: parts.OuterForce, scale: float, inwards: bool) -> None:
-    """Add an arrow from its point, or to it if `inwards`; none for a force of nearly 0 or nan."""
+def _add_arrow(
+    sketch: _Sketch, outer: parts.OuterForce, scale: float, inwards: bool, said: Container[str] = ()
+) -> None:
+    """Add an arrow from its point, or to it if `inwards`; none for a force of nearly 0 or nan.
+
+    Its label is left out if it is among those said already.
+    """
     size, reach = float(np.linalg.norm(outer.force)), outer.force * scale * _MM
     if not np.linalg.norm(reach) > _SHORTEST:
         return
@@ -240,6 +248,8 @@ def _add_arrow(sketch: _Sketch, outer: parts.OuterForce, scale: float, inwards: 
     sketch.shapes.append(Arrow(foot, tip, role, outer.name))
     away = outer.force / size * (-1 if inwards else 1)
     words = f"{outer.name} {size:.4g} N"
+    if words in said:
+        return
     ends = np.stack([foot, (foot + tip) / 2] if inwards else [tip, (foot + tip) / 2])
     sketch.labels.append(Label(words, ends, role, (away[0], away[1]), priority=_FORCES))
 

@@ -21,12 +21,13 @@ class Member(NamedTuple):
 
 
 class OuterForce(NamedTuple):
-    """A force: name, where it acts (2,) [m], its components (2,) [N], and whether it is a reaction."""
+    """A force: name, where it acts (2,) [m], its components (2,) [N]; whether a reaction, and along a bar."""
 
     name: str
     at: np.ndarray
     force: np.ndarray
     reaction: bool
+    along_bar: bool = False
 
 
 def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndarray]]:
@@ -72,14 +73,15 @@ def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
 
 
 def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
-    """Bodies on which two pins act and nothing else."""
+    """Bodies on which two pins act, at two places, and nothing else."""
     return tuple(body for body in mechanism.bodies if _is_two_force(mechanism, body))
 
 
 def _is_two_force(mechanism: Mechanism, body: str) -> bool:
     joints = [joint for joint in mechanism.joints if body in joint.acts_on]
     loaded = any(body in load.acts_on for load in mechanism.loads)
-    return len(joints) == 2 and all(joint.is_hinge for joint in joints) and not loaded
+    straight = len(joints) == len(mechanism.points[body]) == 2
+    return straight and all(joint.is_hinge for joint in joints) and not loaded
 
 
 def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
@@ -122,17 +124,37 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
 
 
 def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
-    """Forces on the mechanism from outside: loads, and reactions and friction of the ground."""
+    """Forces on the mechanism from outside: loads, and reactions and friction of the ground.
+
+    That on a bar is at its end on the ground, where an arrow along it does not cover it.
+    """
     mechanism = equilibrium.position.mechanism
+    on_ground = _ends_on_ground(equilibrium.position)
     loads = {load.name for load in mechanism.loads}
     outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}
     outer |= {f"friction of {name}" for name in outer & {*mechanism.friction}}
     return [
-        OuterForce(action.name, action.at, action.force, action.name not in loads)
+        OuterForce(
+            action.name,
+            on_ground.get(action.name, action.at),
+            action.force,
+            action.name not in loads,
+            action.name in on_ground,
+        )
         for body in mechanism.bodies
         for action in free_body(equilibrium, body)
         if action.name in outer and np.isfinite(action.at).all()
     ]
+
+
+def _ends_on_ground(position: Position) -> dict[str, np.ndarray]:
+    """The ends (2,) [m] of bars on the ground, by the names of the bars."""
+    return {
+        name: points[k]
+        for name, shape, points in shapes(position, "bar")
+        for k, (body, _) in enumerate(shape.ends)
+        if body == GROUND
+    }
 
 
 def extent(*positions: Position) -> tuple[np.ndarray, np.ndarray]:

@@ -120,7 +120,7 @@ class DuoServo:
         """
         c = positive("clearance", clearance, "m")
         together(clearance=c, geometry=self.drum_radius * np.asarray(self.tip[0]) * self.adjuster[0])
-        advice = "give m; take less clearance"
+        advice = "take less clearance"
         bound = "larger than the drum allows, its radius is {limit}"
         refuse(c >= np.asarray(self.drum_radius), "clearance", c, "m", bound, advice, limit=self.drum_radius)
         turn = self._seating_turn(c)

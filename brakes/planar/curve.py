@@ -58,7 +58,9 @@ def follow(system: System, node: Node) -> Iterator[Node]:
         while (following := _advance(system, node, step)) is None:
             step /= 2
             if step < _LEAST:
-                raise OutOfReachError("the curve of positions ends: two joints meet, or motions branch there")
+                raise OutOfReachError(
+                    "the curve of positions ends: two joints meet, or motions branch there", "end it before"
+                )
         yield following
         step = min(_LARGEST, step * min(2.0, 0.7 * _TURN / max(_angle(node, following), 1e-3)))
         node = following

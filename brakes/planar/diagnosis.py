@@ -28,11 +28,25 @@ class OppositeTravelError(ValueError):
 class OutOfReachError(ValueError):
     """A driver does not reach a value: it turns back before it.
 
+    Parameters
+    ----------
+    reason : str
+        What is not reached, and where it ends.
+    remedy : str
+        What to do.
+
     Examples
     --------
     >>> issubclass(planar.OutOfReachError, ValueError)
     True
     """
+
+    def __init__(self, reason: str, remedy: str) -> None:
+        super().__init__(reason, remedy)
+        self.reason, self.remedy = reason, remedy
+
+    def __str__(self) -> str:
+        return f"{self.reason}; {self.remedy}"
 
 
 def moving_bodies(motions: np.ndarray) -> np.ndarray:

@@ -205,16 +205,16 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     target = real_array("values", values) / _units(system)[k]
     if not target.size:
         raise ValueError("values is empty: give at least one value of the driver")
-    up = _reach(system, start, k, target.max(initial=0.0), driver)
-    down = _reach(system, start.reversed(), k, target.min(initial=0.0), driver)
+    up = _reach(mechanism, start, k, target.max(initial=0.0), driver)
+    down = _reach(mechanism, start.reversed(), k, target.min(initial=0.0), driver)
     nodes = [node.reversed() for node in reversed(down[1:])] + up
     try:
         ends = (min(0.0, target.min()), max(0.0, target.max()))
         y = solve_at_values(system, nodes, k, start.value[k] + np.append(target, ends))
     except np.linalg.LinAlgError:
         raise OutOfReachError(
-            f"no position is found at one of the values of {driver!r}: it turns back or motions branch "
-            "there; end the stroke before it, or follow the motion with trace"
+            f"no position is found at one of the values of {driver!r}: it turns back or motions branch there",
+            "end the stroke before it, or follow the motion with trace",
         ) from None
     if len(nodes) > 1:  # the curve followed ends past the values
         nodes[0], nodes[-1] = (node_at(system, y[i], nodes[end].tangent) for i, end in ((-2, 0), (-1, -1)))
@@ -313,8 +313,9 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
         if last is not node:
             reached, moved = weight @ (last.value - start.value), (last.value[k] - start.value[k]) * unit[k]
             raise OutOfReachError(
-                f"the travel of {join_names(weights)} cannot reach {value:g}: it is {reached:.9g} where it "
-                f"or the driver {driver!r} turns back, at {moved:.9g}"
+                f"the travel of {join_names(weights)} cannot reach {value:g} m: it is {reached:.9g} m where "
+                f"it or the driver {driver!r} turns back, at {_amount(mechanism, driver, moved)}",
+                "give less",
             )
         before = node
     raise AssertionError("a curve is followed until it ends with an error")
@@ -347,24 +348,27 @@ def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
     return system, node if node.rate[k] > 0 else node.reversed(), k
 
 
-def _reach(system: System, start: Node, k: int, value: float, driver: str) -> list[Node]:
+def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str) -> list[Node]:
     """Nodes from the first to where coordinate k has moved by a value."""
+    system = mechanism.system
+    wanted = _amount(mechanism, driver, value * _units(system)[k], 6)
     nodes, target, sense = [start], start.value[k] + value, np.sign(value)
     for node in follow(system, start) if value else ():
         if node.rate[k] * sense <= 0:
             turning = find_zero(system, nodes[-1], node, lambda n: n.rate[k])
             if (target - turning.value[k]) * sense > 0:
+                reached = (turning.value[k] - start.value[k]) * _units(system)[k]
                 raise OutOfReachError(
-                    _turns_back(system, driver, value, turning.value[k] - start.value[k], k)
+                    f"driver {driver!r} cannot reach {wanted}: it turns back at "
+                    f"{_amount(mechanism, driver, reached)} (toggle position)",
+                    "stay below it, drive another load, or follow the motion past it with trace",
                 )
             node = turning
         nodes.append(node)
         if (node.value[k] - target) * sense >= 0:
             return nodes
     if value:
-        raise OutOfReachError(
-            f"driver {driver!r} stops before {value * _units(system)[k]:g}; give a smaller value"
-        )
+        raise OutOfReachError(f"driver {driver!r} stops before {wanted}", "give a smaller value")
     return nodes
 
 
@@ -414,28 +418,26 @@ def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float])
 
 def _toggle(mechanism: Mechanism, node: Node, moved: float, k: int, load: str | None) -> Toggle:
     value = float(moved * _units(mechanism.system)[k])
+    there = f"at driver value {_amount(mechanism, [*mechanism.system.loads][k], value, 6)}"
     position = Position(mechanism, node.y)
     if load is None:
-        message = f"motions branch at driver value {value:g}: the mechanism may leave the drawn one there"
+        message = f"motions branch {there}: the mechanism may leave the drawn one there"
         return Toggle(None, value, position, (), message)
     moving = moving_bodies(node.tangent[:, None])
     still = tuple(name for name, moves in zip(mechanism.bodies, moving, strict=True) if not moves)
-    message = f"toggle position of {load!r} at driver value {value:g}: its motion reverses"
+    message = f"toggle position of {load!r} {there}: its motion reverses"
     message += f"; {join_names(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
     return Toggle(load, value, position, still, message)
-
-
-def _turns_back(system: System, driver: str, value: float, reached: float, k: int) -> str:
-    unit = _units(system)[k]
-    return (
-        f"driver {driver!r} cannot reach {value * unit:g}: it turns back at {reached * unit:.9g} "
-        "(toggle position); stay below it, drive another load, or follow the motion past it with trace"
-    )
 
 
 def _units(system: System) -> np.ndarray:
     """Unit of each load's coordinate: L for a length, 1 for an angle."""
     return system.length / system.unit[list(system.loads.values())]
+
+
+def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> str:
+    """How far the coordinate of a load has moved, with its SI unit."""
+    return f"{moved:.{digits}g} {'rad' if mechanism.load(load).is_couple else 'm'}"
 
 
 def _gaps(system: System, value: np.ndarray) -> str:

@@ -41,7 +41,7 @@ def check_distinct(key: str, points: Iterable[Point], remedy: str) -> None:
     """A ValueError if two successive points coincide."""
     for p, q in pairwise(tuple(map(float, point)) for point in points):
         if p == q:
-            raise ValueError(f"{key} has zero length at {p}: {remedy}")
+            raise ValueError(f"{key} has zero length at {p} m: {remedy}")
 
 
 def suggest(name: object, known: Iterable[str]) -> str:

@@ -17,6 +17,7 @@ from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.app.chart import options_of
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.handles import draw_sheet
+from beamdyn.common.app.input_words import as_on_form
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.shapes import Outline
 from beamdyn.common.edge.rendering import html
@@ -253,6 +254,7 @@ def test_digits_that_the_physics_does_not_have_are_said_to_be_missing():
     assert "the physics misses the tolerance" in said
     (numbers, _) = TRADE.charts(answer, 0.0)
     assert curve(numbers, "tolerance 1e-09").y.tolist() == [1e-9, 1e-9]
+    assert curve(numbers, "chosen by tolerance").points  # not as it is called in Python
 
 
 def test_measurements_are_made_once_for_all_digits():
@@ -287,3 +289,41 @@ def test_moving_drawing_keeps_its_place(screen):
     view = draw_sheet(screen, answer, screen.last).view
     held = draw_sheet(screen, answer, 0.0, view).view
     assert np.allclose(view.limits, held.limits)
+
+
+@pytest.mark.parametrize(
+    "screen, path, text, words",
+    [
+        (FREQUENCIES, "options.top_speed", "1400 rpm", ("at 1400 rpm", "1526 rpm")),
+        (STEADY_STATE, "options.top_speed", "1400 rpm", ("rpm",)),
+        (TRANSIENT, "beam.length", "5 cm", ("cm",)),
+    ],
+    ids=["frequencies", "steady", "transient"],
+)
+def test_results_are_shown_in_the_unit_that_is_typed(screen, path, text, words):
+    work = OpenDocument(SCENE)
+    work.put(path, text)
+    assert work.solve(screen), work.mistakes
+    answer = work.answered[screen.name].answer
+    said = " ".join(part for result in screen.headline(answer) for part in result)
+    assert all(word in said for word in words) and "rad/s" not in said
+    unit = text.split()[1]
+    assert any(unit in (chart.x.unit, chart.y.unit) for chart in screen.charts(answer, screen.last))
+
+
+def test_a_deflection_past_linear_theory_does_not_stand_first_without_saying_so():
+    words = []
+    for top in ("40 rad/s", "60 rad/s"):  # below and past a resonance
+        work = OpenDocument(SCENE)
+        work.put("options.top_speed", top)
+        assert work.solve(STEADY_STATE), work.mistakes
+        words.append(STEADY_STATE.headline(work.answered[STEADY_STATE.name].answer)[0].words)
+    assert words == ["largest deflection of the tip", "largest deflection of the tip, past linear theory"]
+
+
+def test_warnings_name_inputs_as_the_form_does():
+    said = "shear deformation, left out, matters; [physics] shear_stiffness = true includes it"
+    given = OpenDocument(SCENE).inputs, SCENE.headings
+    assert as_on_form(said, *given).endswith("; Physics: shear stiffness = true includes it")
+    assert as_on_form("[model] gravity = 0", *given) == "Gravity and damping ratio: gravity = 0"
+    assert as_on_form("speed [Hz] of = 2", *given) == "speed [Hz] of = 2"

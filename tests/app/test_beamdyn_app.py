@@ -159,3 +159,26 @@ def test_page_marks_a_mistake_and_slider_writes_the_field(simulate, fields):
         assert page.field("mount.radius").value == "250 mm"
 
     simulate(BEAMDYN, body)
+
+
+def test_a_slider_without_a_unit_writes_a_number_alone(simulate, fields):
+    async def body(another):
+        page = fields(await another())
+        page.go("Trade")
+        elements = page.user.client.elements.values()
+        slider = next(e for e in elements if e.tag == "q-slider" and e.props["aria-label"] == "digits, n")
+        with page.user.client:
+            slider.set_value(5)
+        assert page.field("trade.digits").value == "5"
+
+    simulate(BEAMDYN, body)
+
+
+def test_notes_on_the_page_name_inputs_as_the_form_does(simulate, fields):
+    async def body(another):
+        page = fields(await another())
+        page.go("Steady response")
+        assert "Physics: shear = true includes it" in page.text()
+        assert "[physics]" not in page.text()
+
+    simulate(BEAMDYN, body)

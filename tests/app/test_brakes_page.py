@@ -3,6 +3,7 @@
 import pytest
 
 from brakes.app.program import BRAKES
+from brakes.calipers import NAMED
 
 SCREENS = ("Vehicle", "Kinematics", "Internal forces", "Drum brake", "Caliper", "Mechanism")
 
@@ -122,5 +123,18 @@ def test_every_field_has_a_label_and_help(simulate, fields):
         made = [e for e in page.user.client.elements.values() if e.props.get("data-path")]
         assert len(made) > 60
         assert all(e.props.get("label") and e.props.get("hint") for e in made)
+
+    simulate(BRAKES, body)
+
+
+def test_the_sketch_is_that_of_the_caliper_that_is_chosen(simulate, fields):
+    """Also where the form stays the same: a cantilever has the dimensions of a centre-pull."""
+
+    async def body(another):
+        page = fields(await another())
+        page.go("Caliper")
+        for name in ("centre-pull", "cantilever", "v-brake"):
+            page.enter("caliper", name)
+            assert f"{NAMED[name].label}, seen from the front" in page.text()
 
     simulate(BRAKES, body)

@@ -253,3 +253,12 @@ def test_another_unit_is_the_same_quantity(text, unit, target, expected):
 
 def test_mistake_about_no_field_is_kept():
     assert by_field(ValueError("something is wrong"), FORKLIFT.inputs({})) == {"": ["something is wrong"]}
+
+
+def test_mistake_has_the_value_as_it_stands_in_its_field():
+    work = OpenDocument(FORKLIFT)
+    work.put("brake.clearance", "80 mm")
+    assert not work.solve(KINEMATICS)
+    ((path, (said,)),) = work.mistakes[KINEMATICS.name].items()
+    assert path == "brake.clearance"
+    assert said.startswith('brake.clearance = "80 mm": larger than the drum allows') and " m;" not in said

@@ -159,17 +159,21 @@ def test_dragged_too_far_marks_the_field_and_greys_and_back_recovers(page):
 
 
 def test_dragged_until_the_brake_locks_and_back(page):
-    """A locked brake is not drawn: its handle is away, but still held."""
+    """A locked brake is drawn with its handles, by which it is brought back."""
     go(page, "Drum brake")
     friction = field(page, "brake.friction")
     before = drawing(page)
     friction.fill("0.9")
     redrawn(page, before)
     found = handle(page, "end of the lining")
-    x, y = pull(page, found, -90, -90)
-    expect(page.locator(".handle:visible")).to_have_count(0)
-    page.mouse.move(x + 93, y + 92, steps=5)
+    pull(page, found, -90, -90)
+    locks = page.locator(f"{DRAWING}:visible").get_by_text("locks from")
+    expect(locks).to_have_count(1)
     expect(page.locator(".handle:visible")).to_have_count(5)
+    page.mouse.up()
+    expect(locks).to_have_count(1)
+    pull(page, found, 93, 92)
+    expect(locks).to_have_count(0)
     page.mouse.up()
 
 

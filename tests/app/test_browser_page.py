@@ -59,6 +59,17 @@ def used(page):
     return [node for node in nodes if not node["ignored"] and node["role"]["value"] in NAMED]
 
 
+@pytest.mark.parametrize("program, name", [("brakes", "Internal forces"), ("beamdyn", "Mode shapes")])
+def test_letters_of_drawings_below_one_another_are_readable_on_a_phone(opened, program, name):
+    page = opened(program, width=390)
+    go(page, name)
+    expect(shown(page, "Up to date.")).to_be_visible()
+    heights = page.locator(f"{DRAWING}:visible text").evaluate_all(
+        "(all) => all.map((text) => parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a)"
+    )
+    assert len(heights) > 3 and min(heights) > 7.0  # px
+
+
 def test_form_stays_while_results_scroll_and_another_screen_starts_at_its_top(page):
     page.mouse.move(900, 500)
     page.mouse.wheel(0, 10_000)

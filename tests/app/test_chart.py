@@ -151,3 +151,31 @@ def test_number_at_the_end_of_an_axis_is_left_out_where_it_would_cover_another(h
 def test_words_say_what_it_shows():
     chart = made(ChartCurve("mode 1", [0], [1]), marks=[ChartMark(1.0, "critical speed 164 rad/s")])
     assert chart.words == "A chart: frequency [Hz] over speed [rad/s]; mode 1; critical speed 164 rad/s"
+
+
+def test_curves_that_are_compared_with_differ_by_their_dashes_and_have_no_dots_in_the_legend():
+    x = np.arange(3.0)
+    lines = [ChartCurve(name, x, x, dashed=True, pale=True) for name in ("road -", "road +", "2 per rev")]
+    measured = ChartCurve("measured", x, x, points=True)
+    chart = made(measured, *lines)
+    kinds = [series(chart, line.name)["lineStyle"]["type"] for line in lines]
+    assert len({json.dumps(kind) for kind in kinds}) == 3
+    entries = {each["name"]: each for each in options_of(chart)["legend"]["data"]}
+    assert [*entries] == ["measured", *(line.name for line in lines)]
+    assert all(entries[line.name]["itemStyle"]["opacity"] == 0 for line in lines)
+    assert "itemStyle" not in entries["measured"]
+
+
+def test_a_wide_chart_leaves_no_room_for_rows_of_a_legend_that_it_does_not_have():
+    x = np.arange(3.0)
+    options = options_of(made(*(ChartCurve(f"elements, graded, extrapolated {i}", x, x) for i in range(8))))
+    wide, narrow = options["media"]
+    assert wide["query"] == {"minWidth": 700} and "query" not in narrow  # which holds where no other does
+    assert narrow["option"]["grid"]["bottom"] == options["grid"]["bottom"]
+    assert wide["option"]["grid"]["bottom"] <= narrow["option"]["grid"]["bottom"] - 30
+
+
+def test_a_mark_has_its_text_where_curves_leave_room():
+    chart = made(marks=[ChartMark(1.0, "critical"), ChartMark(2.0, "the motion's speed", at_foot=True)])
+    critical, motion = options_of(chart)["series"][0]["markLine"]["data"]
+    assert "position" not in critical["label"] and motion["label"]["position"] == "insideStartTop"

@@ -200,6 +200,26 @@ def test_results_that_differ_are_those_of_the_answers(compared):
     assert [*result_differences(here.tables, here.tables)] == []
 
 
+@pytest.mark.parametrize(
+    "here, there, change",
+    [
+        ("15.458", "13.425", "+15.1 %"),
+        ("1000 kg", "3500 kg", "-71.4 %"),
+        ("-1.5", "-3", "+50 %"),
+        ("(9.806 m/s2)", "9.81 m/s2", "-0.0408 %"),
+        ("20 %", "0.3019 rad", ""),
+        ("5", "0", ""),
+        ("stops", "never", ""),
+        ("0.149 ± 0.006", "0.15", ""),
+        ('["1 mm", "2 mm"]', '["1 mm", "3 mm"]', ""),
+    ],
+)
+def test_the_change_stands_beside_two_numbers_of_one_unit(here, there, change):
+    made = Difference("x", here, there)
+    assert made.change == change
+    assert f'<td class="number">{change}</td></tr>' in differences_html([made], "results", "other")
+
+
 def test_other_design_is_solved_once_and_again_for_another(compared):
     assert not compared.wants_other(SCREEN)
     work = OpenDocument(VEHICLE)
@@ -257,6 +277,9 @@ def test_examples_are_designs_with_titles(program):
     assert len({example.title for example in found}) == len(found)
     for example in found:
         assert example.document in program.documents and len(example.title) <= 110
+        assert not example.title.endswith(
+            (" of which", " front", " of", " the", " and")
+        )  # cut within a clause
         example.document.check(example.text, example.name)
 
 

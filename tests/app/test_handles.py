@@ -6,9 +6,9 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from beamdyn.common.app import tasks
-from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.handles import Sheet, changed_texts, describe_place, draw_sheet
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screen_view import ScreenView
@@ -137,13 +137,30 @@ def test_held_picture_of_another_design_stays_in_place(document, entries):
     assert moved > 1e-4  # else nothing had to be kept
 
 
-def test_locked_brake_is_drawn_without_handles_however_it_is_held():
+def test_locked_brake_is_drawn_in_its_place_with_handles_that_lead_back():
     _, good = answered(DRUM, DRUM.screens[0])
-    held = draw_sheet(DRUM.screens[0], good, 1.0).view
+    held = draw_sheet(DRUM.screens[0], good, 1.0)
     _, locked = answered(DRUM, DRUM.screens[0], {"brake.friction": "1.2"})
-    made = draw_sheet(DRUM.screens[0], locked, 1.0, held)
-    assert made.handles == ()
-    assert made.text == drawn(DRUM.screens[0], locked, 1.0)
+    made = draw_sheet(DRUM.screens[0], locked, 1.0, held.view)
+    assert [handle.label for handle in made.handles] == [handle.label for handle in held.handles]
+    assert [made.place(handle) for handle in made.handles] == [held.place(handle) for handle in held.handles]
+    assert "1: locks from" in made.element
+
+
+@pytest.mark.parametrize(
+    "document, screen, entries, mark",
+    [
+        (DRUM, DRUM.screens[0], {"brake.friction": "1.2"}, "locks from"),
+        (FORKLIFT, VEHICLE, {"stop.slope": "40 deg"}, "does not stop"),
+    ],
+    ids=["drum locks", "never stops"],
+)
+def test_what_has_no_answer_is_drawn_with_a_mark_and_without_matplotlib(
+    document, screen, entries, mark, monkeypatch
+):
+    _, answer = answered(document, screen, entries)
+    monkeypatch.setattr(Figure, "savefig", lambda *_, **__: pytest.fail("the server draws no figure"))
+    assert mark in draw_sheet(screen, answer, screen.last).element
 
 
 # In the fields ------------------------------------------------------------------------------------------
@@ -363,7 +380,7 @@ def test_held_point_stays_when_the_brake_locks(simulate, fields):
         x, y = handles.place(label)
         handles.send(label, "pointerdown", x - 0.1, y - 0.1, False)
         await asyncio.sleep(0.1)
-        assert "away" in held.classes
+        assert "away" not in held.classes  # the locked brake is drawn, too
         handles.send(label, "pointerdown", x, y, True)
         await asyncio.sleep(0.1)
         assert handles.element(label) is held

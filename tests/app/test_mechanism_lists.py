@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.open_document import OpenDocument, OpenEntries
 from brakes.app.caliper import MECHANISM
 from brakes.app.mechanism_lists import add, advice, covers, empty, groups, put, remove
 from brakes.app.program import BRAKES
@@ -193,5 +193,51 @@ def test_buttons_add_and_remove_and_lists_write_into_the_document(simulate, fiel
             page.field("points.C.x")
         click("add force")
         assert "without magnitude" in page.text()
+
+    simulate(BRAKES, body)
+
+
+def test_fields_stay_while_names_change_and_things_are_added(simulate, fields):
+    """One that were made anew would lose the focus, or what is being typed into it."""
+
+    async def body(another):
+        page = fields(await another())
+        page.go("Mechanism")
+        name, x, other = (page.field(path) for path in ("points.C.name", "points.C.x", "points.D.x"))
+        with page.user.client:
+            other.set_value("41")  # and not left yet
+        page.leave("points.C.name", "corner")
+        assert (page.field("points.corner.name"), page.field("points.corner.x")) == (name, x)
+        assert "corner" in page.field("bar.0.at").options and page.field("bar.0.at").value == "corner"
+        assert other.value == "41"
+        page.leave("points.D.x", "41")
+        assert other.value == "41 mm"
+        page.leave("points.corner.name", "D")  # which there is already
+        assert name.value == "corner"
+
+    simulate(BRAKES, body)
+
+
+def test_a_change_of_a_list_is_solved_once(simulate, fields, monkeypatch):
+    async def body(another):
+        page = fields(await another())
+        page.go("Mechanism")
+        solved = []
+        of_screen = OpenEntries.solve
+        monkeypatch.setattr(OpenEntries, "solve", lambda self: solved.append(1) or of_screen(self))
+        page.leave("points.C.x", "21")
+        assert solved == [1]
+
+    simulate(BRAKES, body)
+
+
+def test_what_stands_in_other_fields_stays_when_a_list_is_changed(simulate, fields):
+    async def body(another):
+        page = fields(await another())
+        page.go("Mechanism")
+        page.enter("run.friction", "0,2")
+        page.leave("pin.0.radius", "8")
+        assert page.field("pin.0.radius").value == "8 mm"
+        assert page.field("run.friction").value == "0,2"
 
     simulate(BRAKES, body)

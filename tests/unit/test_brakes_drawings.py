@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import subprocess
 import sys
 from pathlib import Path
@@ -12,11 +13,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from beamdyn.common.curves import curves, sweep_figure
+from beamdyn.common.drawing.shapes import Outline, Symbol
 from brakes import drum, forklift
 from brakes.drawings import mechanism_parts
-from brakes.drawings.drum import brake_figure, factors, free_body, pressures
+from brakes.drawings.drum import brake_figure, drawing_of, factors, free_body, pressures
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
-from brakes.drawings.forklift import answer_figure, distances, forces_over, truck
+from brakes.drawings.forklift import answer_drawings, answer_figure, distances, forces_over, truck
 
 ROOT = Path(__file__).parents[2]
 SHOE = drum.Shoe(0.138, 0.05, (np.radians(30.0), np.radians(110.0)), (0.020, -0.110), 0.115)
@@ -77,10 +79,45 @@ def test_factors_end_before_locking_and_say_where_it_is() -> None:
     assert not any("locks" in text.get_text() for text in trailing.texts)
 
 
-@pytest.mark.parametrize("friction, panels", [(0.35, 3), (1.2, 1)])
+@pytest.mark.parametrize("friction, panels", [(0.35, 3), (1.2, 2)])
 def test_figure_of_a_brake(friction: float, panels: int) -> None:
     found = drum.brake_torque(drum.simplex(SHOE), friction=friction, force=1000.0)
     assert len(brake_figure(found).axes) == panels
+
+
+def test_a_locked_brake_is_drawn_with_a_mark_on_the_shoe_that_locks() -> None:
+    found = drum.brake_torque(drum.simplex(SHOE), friction=1.2, force=1000.0)
+    drawn = drawing_of(found)
+    limit = float(found.locking_friction)
+    assert [label.said for label in drawn.labels if "locks" in label.text] == [
+        f"1: locks from\nfriction {limit:.3g} on"
+    ]
+    (mark,) = [shape for shape in drawn.shapes if isinstance(shape, Symbol) and shape.role == "inside"]
+    assert np.hypot(*mark.at) == pytest.approx(0.138, rel=1e-12)  # on the lining
+    slides = drum.brake_torque(drum.simplex(SHOE), friction=0.35, force=1000.0)
+    outlines = [s.points for s in drawn.shapes if isinstance(s, Outline) and s.role in ("body", "support")]
+    same = [
+        s.points
+        for s in drawing_of(slides).shapes
+        if isinstance(s, Outline) and s.role in ("body", "support")
+    ]
+    assert all(map(np.array_equal, outlines, same)) and len(outlines) == len(same) == 4
+
+
+@pytest.mark.parametrize(
+    "levers, given, said",
+    [
+        ({}, {"friction": 2.0}, "locks itself"),
+        ({"a1": 0.3, "b2": 0.3, "b1": 0.3}, {"torque": 1e6}, "no equilibrium"),
+    ],
+)
+def test_shoes_without_equilibrium_are_drawn_with_a_mark(levers, given, said) -> None:
+    known = dataclasses.replace(BRAKE.find_levers(0.0106), **levers)
+    found = forklift.internal_forces(known, piston_force=11650.0 if "friction" in given else 10.0, **given)
+    ((left, right),) = answer_drawings(None, None, found, forklift.follow_shoes(BRAKE, 0.0106))
+    for shoe, name in ((left, "trailing shoe"), (right, "leading shoe")):
+        assert shoe.title == name and [label.text for label in shoe.labels] == [said]
+        assert not shoe.arrows and any(shape.role == "body" for shape in shoe.shapes)
 
 
 def test_axle_loads_and_friction_as_drawn() -> None:

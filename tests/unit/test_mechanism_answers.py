@@ -5,13 +5,15 @@ from __future__ import annotations
 import csv
 import json
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from beamdyn._version import __version__
-from brakes.answers.caliper import MECHANISM
+from beamdyn.common.edge.program import NoAnswer
+from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.calipers import NAMED
 from brakes.cli import main
 from brakes.config.mechanism import load_mechanism, parse_mechanism
@@ -328,3 +330,88 @@ def test_inputs_in_json_are_in_si():
     assert given["points"]["grip"] == [0.08, 0.012]
     assert given["run"]["travel"] == 0.014
     assert math.isclose(math.hypot(*given["force"][0]["direction"]), 1.0)
+
+
+# Where it ends ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "tables, said",
+    [
+        (
+            {"run": {"travel": "30 mm"}},
+            "driver 'cable' cannot reach 30 mm: it turns back at 21.6949 mm (toggle position); "
+            "give a smaller travel, or move points",
+        ),
+        (
+            {"dimensions": {"clearance": "30 mm"}},
+            "the travel of right pad and left pad cannot reach 30 mm: it is 12.8918 mm where it or the "
+            "driver 'cable' turns back, at 21.6949 mm; give a smaller clearance, or move points",
+        ),
+        (
+            {"dimensions": {"pad": ["12.5 mm", "46 mm"]}},
+            "the cable opens the pads: move pads, pivots or the ends of the cable",
+        ),
+    ],
+    ids=["travel", "clearance", "opens"],
+)
+def test_what_a_caliper_does_not_reach_is_said_as_its_file_and_form_have_it(tables, said):
+    with pytest.raises((NoAnswer, ValueError)) as refused:
+        CALIPER.answer({"caliper": "dual-pivot"} | tables, "test")
+    assert str(refused.value) == said
+
+
+def test_places_and_toggles_are_said_in_the_units_of_the_drawing():
+    tables = tomllib.loads(CLAMP)
+    tables["points"]["B"] = ["20 mm", "20 mm"]
+    answer = MECHANISM.answer(tables, "test")
+    assert "handle turns about (20, 20) mm" in answer.refusals[0]
+    assert "turns about (20, 20) mm" in str(answer.tables()[-1])
+    assert answer.warnings[0].startswith("toggle position of 'work' at driver value 2.80925 mm: ")
+
+
+def test_a_driver_that_turns_is_said_in_degrees():
+    tables = tomllib.loads(CLAMP)
+    tables["moment"] = [{"name": "turn", "body": "arm", "magnitude": "0 N m"}]
+    tables["run"] = {"driver": "turn", "travel": "200 deg"}
+    with pytest.raises(NoAnswer, match=r"'turn' cannot reach 200 deg: it turns back at [-\d.]+ deg "):
+        MECHANISM.answer(tables, "test")
+
+
+# What stands in its drawing -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", [0.0, 1.0])
+def test_the_force_of_a_bar_to_the_ground_is_said_once(place):
+    ((drawing,),) = MECHANISM.answer(tomllib.loads(CLAMP), "test").drawings(place)
+    texts = [label.text for label in drawing.labels]
+    assert sum(text.startswith("CD ") for text in texts) == 1
+    (arrow,) = [shape for shape in drawing.shapes if getattr(shape, "name", "") == "CD"]
+    np.testing.assert_allclose(
+        arrow.foot, (40, 54.64101615), rtol=1e-9
+    )  # D, beyond which it does not cover CD
+    assert arrow.tip[1] > arrow.foot[1]
+
+
+def test_the_reaction_of_a_bar_that_is_pressed_comes_from_beyond_its_end():
+    tables = tomllib.loads(CLAMP)
+    tables["force"][0]["direction"] = "90 deg"
+    ((drawing,),) = MECHANISM.answer(tables, "test").drawings(0.0)
+    (arrow,) = [shape for shape in drawing.shapes if getattr(shape, "name", "") == "CD"]
+    np.testing.assert_allclose(arrow.tip, (40, 54.64101615), rtol=1e-9)
+    assert arrow.foot[1] > arrow.tip[1]
+
+
+def test_no_label_of_a_caliper_stands_twice():
+    for name in NAMED:
+        ((drawing,),) = CALIPER.answer({"caliper": name}, "test").drawings(1.0)
+        texts = [label.text for label in drawing.labels]
+        assert len(set(texts)) == len(texts), texts
+
+
+def test_a_body_with_two_pins_at_one_place_is_drawn():
+    """So it is while a mechanism is built: another pin first stands where the last one does."""
+    pins = [{"name": name, "body": "arm", "at": "A"} for name in ("first", "second")]
+    tables = {"bodies": ["arm"], "points": {"A": ["0 mm", "0 mm"]}, "pin": pins}
+    ((drawing,),) = MECHANISM.answer(tables, "test").drawings(0.0)
+    assert sum(getattr(shape, "kind", "") == "pin" for shape in drawing.shapes) == 2

@@ -112,7 +112,9 @@ def test_toggles_beyond_the_stroke_are_not_reported():
 
 def test_a_driver_past_its_toggle_is_refused_with_the_place():
     reach = CRANK + ROD - slider(1.0)
-    with pytest.raises(OutOfReachError, match=r"'push' cannot reach 0\.1: it turns back at 0\.0580127139"):
+    with pytest.raises(
+        OutOfReachError, match=r"'push' cannot reach 0\.1 m: it turns back at 0\.0580127139 m"
+    ):
         stroke(slider_crank(), "push", [0.0, 0.1])
     run = stroke(slider_crank(), "push", [reach * (1 - 1e-6)])
     assert slider(1.0 + run.travel["turn"][0]) == pytest.approx(

@@ -22,7 +22,7 @@ class BranchChoice:
         with self._row:
             ui.label("Forces drawn:")
             self._toggle: Any = ui.toggle([], on_change=chosen)
-            self._toggle.props('dense no-caps outline role="group" aria-label="forces drawn"')
+            self._toggle.props('no-caps outline padding="xs md" role="group" aria-label="forces drawn"')
         self._row.set_visibility(False)
 
     def choose(self, answer: Any, branches: Mapping[str, Any]) -> Any:

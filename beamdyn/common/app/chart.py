@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,9 @@ _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
 _FEW = 8  # decades of an axis up to which its small ticks are drawn, too
 _NAMED, _PALE = 12, 11  # sizes of letters [px]
+_WIDE_CHART = 700  # from which on a chart is wide [px]
+_LETTERS, _LETTERS_WIDE = 52, 100  # in a row of the legend of a narrow chart, and of a wide one
+_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # of curves that are compared with, in turn
 
 
 @dataclass(frozen=True)
@@ -103,10 +107,11 @@ class ChartPoints:
 
 @dataclass(frozen=True)
 class ChartMark:
-    """An upright line with a text."""
+    """An upright line with a text, at its head, or at its foot where curves pass the head."""
 
     at: float
     text: str
+    at_foot: bool = False
 
 
 @dataclass(frozen=True)
@@ -188,10 +193,12 @@ def options_of(chart: Chart) -> dict[str, Any]:
 
     Its colours are those of the page; no text is taken for HTML, and none for a script.
     """
+    narrow, wide = ({"grid": {"bottom": _below(chart, letters)}} for letters in (_LETTERS, _LETTERS_WIDE))
     return {
         "animation": False,
         "textStyle": {"color": _paint("text"), "fontFamily": "inherit"},
-        "grid": {"left": 64, "right": 28, "top": 58, "bottom": 50 + 24 * _legend_rows(chart)},
+        "grid": {"left": 64, "right": 28, "top": 58} | narrow["grid"],
+        "media": [{"query": {"minWidth": _WIDE_CHART}, "option": wide}, {"option": narrow}],
         "legend": _legend(chart),
         "tooltip": _tooltip(chart),
         "toolbox": _toolbox(chart),
@@ -277,18 +284,23 @@ def _ends(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
 def _legend(chart: Chart) -> dict[str, Any]:
     return {
         "bottom": 0,
-        "itemWidth": 22,
+        "itemWidth": 30,
         "itemHeight": 10,
         "textStyle": {"color": _paint("text"), "fontSize": _NAMED},
         "inactiveColor": _paint("ghost"),
-        "data": [each.name for each in (*chart.curves, *chart.points)],
+        "data": [*map(_in_legend, chart.curves), *({"name": each.name} for each in chart.points)],
     }
 
 
-def _legend_rows(chart: Chart) -> int:
-    """Rows of the legend on a narrow page."""
-    letters = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))
-    return min(math.ceil(letters / 52), 5)
+def _in_legend(curve: ChartCurve) -> dict[str, Any]:
+    """The entry of a curve: its line, with a dot only where its points are marked."""
+    return {"name": curve.name} if curve.points else {"name": curve.name, "itemStyle": {"opacity": 0}}
+
+
+def _below(chart: Chart, letters: int) -> int:
+    """Room below a chart for the axis and rows of a legend of so many letters [px]."""
+    needed = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))
+    return 50 + 18 * min(math.ceil(needed / letters), 6)
 
 
 def _tooltip(chart: Chart) -> dict[str, Any]:
@@ -330,10 +342,12 @@ def _toolbox(chart: Chart) -> dict[str, Any]:
 def _series(chart: Chart) -> Iterator[dict[str, Any]]:
     """Marks and bands first, in a series of their own, which a moving cursor alone replaces."""
     yield marks_of(chart)
-    roles = iter(range(len(chart.curves)))
+    roles, dashes = count(), count()
     for i, curve in enumerate(chart.curves):
         role = "ground" if curve.pale else _COLOURS[next(roles) % len(_COLOURS)]
-        yield _line(i, curve, role)
+        dashed = curve.dashed or i >= len(_COLOURS)
+        kind = _DASHES[next(dashes) % len(_DASHES) if curve.pale else 0] if dashed else "solid"
+        yield _line(i, curve, role, kind)
     yield from map(_points, chart.points)
 
 
@@ -351,10 +365,9 @@ def marks_of(chart: Chart) -> dict[str, Any]:
     }
 
 
-def _line(i: int, curve: ChartCurve, role: str) -> dict[str, Any]:
+def _line(i: int, curve: ChartCurve, role: str, kind: str | list[int]) -> dict[str, Any]:
     x, y = thinned(curve.x, curve.y, curve.most)
     alone = _alone(y)
-    kind = "dashed" if curve.dashed or i >= len(_COLOURS) else "solid"
     return {
         "id": f"curve {i}",
         "name": curve.name,
@@ -403,7 +416,11 @@ def _points(points: ChartPoints) -> dict[str, Any]:
 def _marks(chart: Chart) -> dict[str, Any]:
     """Upright lines, their texts at different heights where they are near one another."""
     each = [
-        {"xAxis": _place(mark.at), "name": mark.text, "label": {"formatter": "{b}"}}
+        {
+            "xAxis": _place(mark.at),
+            "name": mark.text,
+            "label": {"formatter": "{b}"} | ({"position": "insideStartTop"} if mark.at_foot else {}),
+        }
         for mark in chart.marks
         if math.isfinite(mark.at)
     ]
@@ -417,7 +434,7 @@ def _marks(chart: Chart) -> dict[str, Any]:
         "label": {
             "color": _paint("text"),
             "fontSize": _PALE,
-            "position": "insideEndBottom",
+            "position": "insideEndTop",
             "textBorderColor": _paint("paper", area=True),
             "textBorderWidth": 3,
         },

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 _MOST = 60  # differences of results that are listed
 _DASH = (4.0, 2.5)
+_NUMBER = re.compile(r"\(?([-+]?\d+\.?\d*(?:e[-+]?\d+)?)\s*([^\d\s)][^)]*)?\)?", re.ASCII)  # and its unit
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,14 @@ class Difference(NamedTuple):
     words: str
     here: str
     there: str
+
+    @property
+    def change(self) -> str:
+        """By how much the value here is the larger; "" where the two are no numbers of one unit."""
+        here, there = (_NUMBER.fullmatch(text) for text in (self.here, self.there))
+        if here is None or there is None or here[2] != there[2] or not float(there[1]):
+            return ""
+        return f"{100 * (float(here[1]) - float(there[1])) / abs(float(there[1])):+.3g} %"
 
 
 def input_differences(
@@ -115,14 +125,15 @@ def differences_html(differences: Sequence[Difference], what: str, other: str) -
         return f"<p>The {escape(what)} are the same.</p>"
     rows = "".join(
         f'<tr><td class="words">{escape(d.words)}</td><td class="number">{escape(d.here)}</td>'
-        f'<td class="number">{escape(d.there)}</td></tr>'
+        f'<td class="number">{escape(d.there)}</td><td class="number">{d.change}</td></tr>'
         for d in differences[:_MOST]
     )
     more = len(differences) - _MOST
     said = f"<p>{more} more differ.</p>" if more > 0 else ""
     return (
         f'<div class="scrolls" tabindex="0"><table><thead><tr><th class="words">{escape(what)}</th>'
-        f'<th class="number">here</th><th class="number">{escape(other)}</th></tr></thead>'
+        f'<th class="number">here</th><th class="number">{escape(other)}</th>'
+        f'<th class="number">change</th></tr></thead>'
         f"<tbody>{rows}</tbody></table></div>{said}"
     )
 

@@ -13,7 +13,6 @@ from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.handles import Place, Sheet, Viewport
 from beamdyn.common.app.screens import Handle
 from beamdyn.common.drawing.svg import page_colours
-from beamdyn.common.edge.rendering import data_url
 
 STYLE = (
     f"""
@@ -21,7 +20,6 @@ STYLE = (
     + """
 .board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
 .board .machine { display: block; width: 100%; height: auto; user-select: none; }
-.board .drawing { display: block; width: 100%; min-width: 0; max-height: none; user-select: none; }
 .waits { opacity: 0.4; }
 .curves .drawing { max-width: 720px; min-width: 0; }
 .handle { position: absolute; width: 16px; height: 16px; margin: -8px; border-radius: 50%; cursor: grab;
@@ -100,8 +98,6 @@ class DraggableDrawing:
         with ui.element("div").classes("w-full drawing-frame"):
             self._board: Any = ui.element("div").classes("board")
         with self._board:
-            self._figure: Any = ui.element("img").classes("drawing").props("draggable=false")
-            self._figure.props["alt"] = words
             self._machine: Any = ui.html("", sanitize=False)
         self._board.props["data-words"] = words
         self._how: Any = ui.label("Drag the round points, or choose one by Tab and move it by arrow keys.")
@@ -111,7 +107,7 @@ class DraggableDrawing:
 
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
         """Show a drawing; `words` describes the position of each handle for screen readers."""
-        parts = self._said, self._board, self._figure, self._machine, self._how
+        parts = self._said, self._board, self._machine, self._how
         with self._brush.stroke(*parts, *self._handles):
             self._put_sheet(sheet, words)
 
@@ -134,11 +130,7 @@ class DraggableDrawing:
         if drawn:
             self._board.style(f"--ratio: {sheet.ratio:.6g}")
             self._board.props["data-picture"] = sheet.name
-            self._figure.set_visibility(not sheet.element)
-            self._machine.set_visibility(bool(sheet.element))
             self._machine.set_content(sheet.element)
-            if not sheet.element:
-                self._figure.props["src"] = data_url(sheet.text)
 
     def _make(self, labels: list[str]) -> None:
         """Make handles for these points; existing ones are kept."""

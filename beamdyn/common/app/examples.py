@@ -13,6 +13,7 @@ from beamdyn.common.edge.config import ConfigError
 
 _LONGEST = 110  # characters of a title
 _SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # its end
+_CLAUSE = re.compile(r"[;:,] ")
 
 
 @dataclass(frozen=True)
@@ -69,12 +70,17 @@ def _texts() -> Iterator[Path]:
 
 
 def _title(text: str, name: str) -> str:
-    """The first sentence of the comment at the head of a file; its name where there is none."""
+    """The first sentence of the comment at the head of a file, or its clauses that are not too long.
+
+    The file's name where there is none.
+    """
     lines = []
     for line in text.splitlines():
         if not line.startswith("#"):
             break
         lines.append(line.lstrip("# "))
     words = _SENTENCE.split(" ".join(lines))[0]
-    sentence = words.partition(": ")[0] if len(words) > _LONGEST else words
-    return shorten(sentence, _LONGEST, placeholder=" ...").rstrip(" .:") or name
+    if len(words) > _LONGEST:
+        ends = [end for found in _CLAUSE.finditer(words) if (end := found.start()) <= _LONGEST]
+        words = words[: ends[-1]] if ends else shorten(words, _LONGEST, placeholder=" ...")
+    return words.rstrip(" .:") or name

@@ -15,6 +15,7 @@ from beamdyn.common.app.form_entries import has_rows, in_unit, units_of
 from beamdyn.common.app.input_words import (
     NOT_GIVEN,
     default_words,
+    heading_of,
     help_of,
     label,
     label_html,
@@ -84,10 +85,8 @@ class Form:
     def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
         given = any(entries.get(entry.path, "") for entry in inputs)
         usual = all(default_words(entry) != NOT_GIVEN for entry in inputs)
-        words = section.replace("_", " ").capitalize() or "General"
-        table = ui.expansion(self._headings.get(section, words), value=given or usual or not section).classes(
-            "w-full section"
-        )
+        heading = heading_of(section, self._headings)
+        table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
         with table.props("dense"):
             for entry in inputs:
                 with ui.element("div"):
@@ -120,7 +119,7 @@ class Form:
 
         def write(at: float | None) -> None:
             if at is not None and at != place():  # else it has followed the field
-                field.set_value(f"{at:g} {drag.unit}")
+                field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def follow(at: float, done: bool) -> None:
             if not done:
@@ -135,7 +134,8 @@ class Form:
             follow, min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
             on_change=lambda e: write(e.value),
         )  # fmt: skip
-        made.props(f'dense aria-label="{label(entry)} [{drag.unit}]"').classes("q-px-md")
+        unit = f" [{drag.unit}]" if drag.unit else ""
+        made.props(f'dense aria-label="{label(entry)}{unit}"').classes("q-px-md")
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
 
     def _be_held(self, held: bool) -> None:

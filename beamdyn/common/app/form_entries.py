@@ -6,9 +6,11 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
-from beamdyn.common.edge.config import ConfigError, path_of
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of
 
 Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
@@ -144,11 +146,19 @@ def toml_value(value: Any) -> str:
     return repr(value)
 
 
-def by_field(error: Exception, inputs: Sequence[Input]) -> dict[str, list[str]]:
-    """The sentences of an error by the path of the field that each is about; "" for no single field."""
+def by_field(
+    error: Exception, inputs: Sequence[Input], entries: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, list[str]]:
+    """The sentences of an error by the path of the field that each is about; "" for no single field.
+
+    One on the value of a field has it as it stands there, among the entries.
+    """
     paths = [entry.path for entry in inputs]
     if not isinstance(error, ConfigError):
-        return {path_of(error, paths): [str(error)]}
+        path = path_of(error, paths)
+        if isinstance(error, InvalidValue) and path in entries:
+            return {path: [said_of(error, path, entries[path])]}
+        return {path: [str(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
         sentences.setdefault(_field(place, paths), []).append(sentence)

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from zlib import crc32
 
 import numpy as np
@@ -19,11 +19,7 @@ from beamdyn.common.drawing.layout import Layout
 from beamdyn.common.drawing.sheet import WIDTH, Paper, Rows, lay_out
 from beamdyn.common.drawing.svg import as_file, element
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.rendering import drawing
 from beamdyn.common.edge.units import quantity
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Place = tuple[float, float]
 _UNITS = {"m": "mm", "rad": "deg"}  # where a field does not say in which
@@ -44,19 +40,16 @@ class Viewport:
         Lower left and upper right corner of the drawing, in its own coordinates.
     corners : ndarray, shape (2, 2)
         The same corners in the picture: part of its width from the left, of its height from the top.
-    boxes : tuple
-        Places that the layout gave to all axes of a figure.
-    paper : Paper, optional
-        Of drawings.
-    layout : Layout, optional
+    paper : Paper
+        Of all drawings.
+    layout : Layout
         Of the first of them.
     """
 
     limits: np.ndarray
     corners: np.ndarray
-    boxes: tuple[Any, ...] = ()
-    paper: Paper | None = None
-    layout: Layout | None = None
+    paper: Paper
+    layout: Layout
 
     @classmethod
     def of_layout(cls, layout: Layout, paper: Paper) -> Viewport:
@@ -66,25 +59,9 @@ class Viewport:
         corners = places / (paper.width, paper.height)
         return cls(layout.fit.from_paper(places), corners, paper=paper, layout=layout)
 
-    @classmethod
-    def of(cls, figure: Figure) -> Viewport:
-        """The view of a figure, which must have been drawn: its layout is made only then."""
-        ax = figure.axes[0]
-        limits = np.array([ax.get_xlim(), ax.get_ylim()], dtype=float).T
-        parts = ax.transData.transform(limits) / figure.bbox.size
-        boxes = tuple(axes.get_position(original=True) for axes in figure.axes)
-        return cls(limits, np.abs(parts - (0.0, 1.0)), boxes)
-
     def holds(self, rows: Rows) -> bool:
         """Whether it is that of drawings in as many rows."""
-        return self.paper is not None and len(self.paper.heights) == len(rows)
-
-    def keep(self, figure: Figure) -> None:
-        """Give another figure of the same kind this view: same limits, same places of all axes."""
-        for axes, box in zip(figure.axes, self.boxes, strict=True):
-            axes.set_position(box)
-        (left, low), (right, high) = self.limits.tolist()
-        figure.axes[0].set(xlim=(left, right), ylim=(low, high))
+        return len(self.paper.heights) == len(rows)
 
     def place(self, point: Place) -> Place:
         """Where a point of the axes is in the picture."""
@@ -107,15 +84,15 @@ class Sheet:
     Parameters
     ----------
     said : str
-        The sentence why there is none; of a figure its SVG file.
+        The sentence why there is none.
     handles : tuple of Handle
         Its points that can be moved.
     view : Viewport, optional
-        Where its axes lie; None if there is no drawing.
+        Where the first lies; None if there is no drawing.
     ratio : float
         Its width over its height.
     element : str
-        The same as an element of the page, in its colours; of drawings only.
+        The drawing as an element of the page, in its colours.
     """
 
     said: str
@@ -171,7 +148,7 @@ def draw_sheet(
     """
     rows = screen.drawings(answer, progress)
     if not rows:
-        return Sheet("") if screen.charts else _sheet_of_figure(screen, answer, progress, view)
+        return Sheet("")
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
@@ -198,30 +175,12 @@ def _sheet_of_drawings(rows: Rows, handles: tuple[Handle, ...], view: Viewport |
     points = {handle.label: np.multiply(handle.scale, handle.at) for handle in handles}
     (first, *others), *more = rows
     rows = [[replace(first, points=points), *others], *more]
-    held = view.paper if view is not None and view.holds(rows) else None
-    paper = held or Paper.of(rows, width)
-    layouts = lay_out(rows, paper, None if held is None or view is None else view.layout)
+    held = view if view is not None and view.holds(rows) else None
+    paper = Paper.of(rows, width) if held is None else held.paper
+    layouts = lay_out(rows, paper, None if held is None else held.layout)
     made = element(layouts, paper)
     ratio = paper.width / paper.height
     return Sheet("", handles, Viewport.of_layout(layouts[0], paper), ratio, made)
-
-
-def _sheet_of_figure(screen: Screen, answer: Any, progress: float, view: Viewport | None) -> Sheet:
-    handles: list[Handle] = []
-    figures: list[Figure] = []
-
-    def draw() -> Figure:
-        handles.extend(screen.handles(answer, progress))
-        figures.append(screen.draw(answer, progress))
-        if view is not None and view.boxes and handles:
-            view.keep(figures[0])
-        return figures[0]
-
-    text = drawing(draw)
-    if not text.startswith("<?xml"):
-        return Sheet(text)
-    width, height = figures[0].get_size_inches()
-    return Sheet(text, tuple(handles), Viewport.of(figures[0]), float(width / height))
 
 
 # In the fields ------------------------------------------------------------------------------------------

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Mapping, Sequence
 from html import escape
 
 from beamdyn.common.app.form_entries import toml_value
@@ -11,6 +13,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import show
 
 NOT_GIVEN = "not given"
+_KEY = re.compile(r"\[(\w+)\] (\w+) = ")
 
 
 def label(entry: Input) -> str:
@@ -44,6 +47,23 @@ def name_words(entry: Input) -> str:
 def table_of(path: str) -> str:
     """The table that an input stands in; "" outside any."""
     return path.partition(".")[0] if "." in path else ""
+
+
+def heading_of(section: str, headings: Mapping[str, str]) -> str:
+    """What stands above a table of the form."""
+    return headings.get(section, section.replace("_", " ").capitalize() or "General")
+
+
+def as_on_form(sentence: str, inputs: Sequence[Input], headings: Mapping[str, str]) -> str:
+    """A sentence with tables and keys of a file, "[physics] shear = true", as the form calls them."""
+    tables = {table_of(entry.path) for entry in inputs}
+
+    def named(found: re.Match[str]) -> str:
+        if found[1] not in tables:
+            return found[0]
+        return f"{heading_of(found[1], headings)}: {found[2].replace('_', ' ')} = "
+
+    return _KEY.sub(named, sentence)
 
 
 def options_of(entry: Input) -> tuple[str, ...]:

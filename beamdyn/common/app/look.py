@@ -15,9 +15,10 @@ _BAR = "#005a8c"
 
 _COLOURS = """
 :root { --soft: #4a4a4a; --edge: #c8c8c8; --wrong: #8c1c00; --careful: #5a4200; --stripe: #f4f4f4;
-  --beyond: #6b6b6b; --focus: #0072B2; }
+  --beyond: #6b6b6b; --focus: #0072B2; --note: #ffffff; }
 body.body--dark { --soft: #b9bdc3; --edge: #4a5059; --wrong: #ff9c85; --careful: #f0c060; --stripe: #22272d;
-  --beyond: #9aa0a8; --focus: #62b8ee; background: #16191d;
+  --beyond: #9aa0a8; --focus: #62b8ee; --note: #2b3138;
+  background: #16191d;
   /* before those that the page sets as its own style */
   --q-primary: #62b8ee !important; --q-negative: #ff9c85 !important; }
 """
@@ -68,6 +69,11 @@ body {{ font-size: 15px; }}
 .left .nicegui-expansion-content {{ display: grid;
   grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); align-items: start; }}
 .section .q-field__messages {{ line-height: 1.25; }}
+/* A hint lies over what stands below its field: else that would move when the field is left, from under the
+   pointer that is about to click on it. */
+.section .q-field:not(.q-field--error) .q-field__bottom {{ position: absolute; top: calc(100% + 2px); left: 0;
+  right: 0; z-index: 5; padding: 4px 8px; min-height: 0; border-radius: 4px; background: var(--note);
+  color: var(--soft); box-shadow: 0 1px 4px rgb(0 0 0 / 0.35); pointer-events: none; }}
 .status {{ font-size: 0.85rem; color: var(--soft); }}
 .mistake {{ color: var(--wrong); font-weight: 600; border-left: 4px solid var(--wrong);
   padding-left: 0.5rem; }}
@@ -103,6 +109,7 @@ _NARROW = """
 }
 @media (max-width: 600px) {
   .board, .drawing { min-width: 0; }
+  .board { width: min(100%, 1000px); }  /* drawings below one another are as high as they are */
   .slider { padding: 0 2.5rem; }
   .stroke { padding-bottom: 2rem; }
   .slider .q-slider__marker-labels { white-space: normal; width: 5.2rem; text-align: center;

@@ -51,7 +51,7 @@ class OpenEntries:
             answer = self.screen.solve(tables_of(self.entries, self.inputs, self.screen.needs))
             tables, notes = [*self.screen.tables(answer)], [*self.screen.notes(answer)]
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            return by_field(error, self.inputs)
+            return by_field(error, self.inputs, self.entries)
         return Answered(answer, tables, notes, self.entries)
 
     def glance(self, last: Answered) -> Answered | Mapping[str, list[str]]:
@@ -60,7 +60,7 @@ class OpenEntries:
             tables = tables_of(self.entries, self.inputs, self.screen.needs)
             answer = self.screen.solve(self.screen.coarser(tables))
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            return by_field(error, self.inputs)
+            return by_field(error, self.inputs, self.entries)
         return Answered(answer, last.tables, last.notes, self.entries)
 
 

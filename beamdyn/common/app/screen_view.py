@@ -24,6 +24,7 @@ from beamdyn.common.app.folded_drawing import FoldedDrawing, PictureOf
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
+from beamdyn.common.app.input_words import as_on_form, options_of
 from beamdyn.common.app.list_editor import ListEditor
 from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.player import Player
@@ -145,12 +146,15 @@ class ScreenView:
                 self._hold, self.work.document.headings, self._brush,
             )  # fmt: skip
         self._shape = [entry.path for entry in self._fielded]
+        self._choices = {entry.path for entry in self._fielded if options_of(entry)}
         self.form.mark(self.work.mistakes.get(self.screen.name, {}))
         self.state()
 
     def _make_lists(self) -> ListEditor | None:
         lists = self.screen.lists
-        return None if lists is None else ListEditor(lists, self.work.entries, self._listed, self._brush)
+        if lists is None:
+            return None
+        return ListEditor(lists, lambda: self.work.entries, self._listed, self._brush)
 
     @property
     def _fielded(self) -> list[Input]:
@@ -161,7 +165,7 @@ class ScreenView:
     def _listed(self, entries: Entries) -> None:
         """Something in the lists has changed."""
         self.work.show(entries)
-        self.enter()
+        self.put_entries()
         self.solve()
         self._edited()
 
@@ -171,6 +175,8 @@ class ScreenView:
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
+        elif self._sketch is not None and path in self._choices:
+            self._sketch.show(self.work.entries)
         self.solve(held=self._holds)
         if not self._holds:  # what is written on the way is neither stored nor told to other screens
             self._edited()
@@ -199,10 +205,11 @@ class ScreenView:
 
     def put_entries(self) -> None:
         """Make the entries stand in the form, which is made again only if its fields are others."""
-        if self._has_shape:
-            self.form.put(self.work.entries)
-        else:
-            self.rebuild()
+        if not self._has_shape:
+            return self.rebuild()
+        self.form.put(self.work.entries)
+        if self._sketch is not None:
+            self._sketch.show(self.work.entries)
 
     @property
     def _has_shape(self) -> bool:
@@ -312,7 +319,10 @@ class ScreenView:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
             for sentence in dict.fromkeys(warnings):
-                ui.label(f"Warning: {sentence}").classes("warning")
+                ui.label(f"Warning: {self._as_on_form(sentence)}").classes("warning")
+
+    def _as_on_form(self, said: str) -> str:
+        return as_on_form(said, self.work.inputs, self.work.document.headings)
 
     def _show(self) -> None:
         answered = self.work.answered.get(self.screen.name)
@@ -325,7 +335,7 @@ class ScreenView:
         self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
         if not self.dragged:  # while a point is moved, its drawing alone follows
             self._plot()
-            self._tables.set_content(html(answered.tables))
+            self._tables.set_content(self._as_on_form(html(answered.tables)))
             self.comparison.show(answered)
             for more in self._more:
                 more.show(answered.answer)

@@ -158,7 +158,7 @@ class Screen:
     tables : callable
         The answer as tables and sentences.
     draw : callable
-        Answer and place of the slider in, figure out.
+        Answer and place of the slider in; the figure for files out.
     notes : callable
         Warnings and refusals of an answer, a sentence each.
     rows : callable
@@ -174,8 +174,7 @@ class Screen:
     handles : callable
         Answer and place of the slider in; points of the first drawing that can be moved out.
     drawings : callable
-        Answer and place of the slider in; rows of drawings out, which are shown in place of the figure. None
-        where the figure is shown.
+        Answer and place of the slider in; rows of drawings out. None on a screen of charts.
     coarser : callable
         Tables in, those of a question out whose drawing is the same and that is answered sooner: solved while
         a point is moved.
@@ -188,8 +187,7 @@ class Screen:
     effort : str
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional
-        Answer and place of the slider in; charts out, which are shown below the drawings, and in place of the
-        figure where there are none.
+        Answer and place of the slider in; charts out, which are shown below the drawings.
     branches : callable
         Answer in; out, by their names, the same answer with each of several solutions drawn, the usual one
         first, among which the page lets one choose. None where there is one.

@@ -33,12 +33,16 @@ class SketchPanel:
     def __init__(self, sketch: Sketcher, entries: Mapping[str, str], shown: bool) -> None:
         self._shown = shown
         self._fold: Any = None
-        if rows := sketch(entries):
-            paper = sketch_paper(rows)
-            made = element(lay_out(rows, paper), paper)
+        self._sketch = sketch
+        if made := _drawn(sketch, entries):
             self._fold = ui.expansion("What the symbols mean", value=shown)
             with self._fold.classes("w-full section sketch").props("dense"):
-                ui.html(made, sanitize=False)
+                self._drawing: Any = ui.html(made, sanitize=False)
+
+    def show(self, entries: Mapping[str, str]) -> None:
+        """Sketch what is chosen in a form now."""
+        if self._fold is not None:
+            self._drawing.set_content(_drawn(self._sketch, entries))
 
     @property
     def shown(self) -> bool:
@@ -50,3 +54,12 @@ class SketchPanel:
         self._shown = False
         if self._fold is not None:
             self._fold.close()
+
+
+def _drawn(sketch: Sketcher, entries: Mapping[str, str]) -> str:
+    """A sketch as an element of the page; "" where there is none."""
+    rows = sketch(entries)
+    if not rows:
+        return ""
+    paper = sketch_paper(rows)
+    return element(lay_out(rows, paper), paper)

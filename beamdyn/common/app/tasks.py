@@ -43,9 +43,7 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
 
 def curves(document: Document, screen: Screen, answer: Any, place: float) -> str:
     """The curves below the drawings of an answer in HTML; empty where there are none."""
-    if screen.curves is None or not screen.drawings(answer, place):  # else its figure stands in their place
-        return ""
-    figure = screen.curves(answer, place)
+    figure = None if screen.curves is None else screen.curves(answer, place)
     return "" if figure is None else picture(drawing(lambda: figure), f"{screen.name}: curves")
 
 

@@ -175,9 +175,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
         return str(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
         inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
-        kind = InvalidInput if type(reason) is InvalidValue else type(reason)
-        said: dict[str, Any] = vars(reason) | {"field": f"{place}.{inner}".lstrip(".")}
-        return str(_as_written(kind(**said), _found(given, inner))), key
+        return said_of(reason, f"{place}.{inner}".lstrip("."), _found(given, inner)), key
     return f"{place or 'model'}: {reason}", path
 
 
@@ -204,6 +202,13 @@ def _found(given: Any, place: str) -> Any:
         except (KeyError, IndexError, TypeError):
             return None
     return given
+
+
+def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
+    """What a refusal by the core says of what is given at a place of a file, as that has it."""
+    kind = InvalidInput if type(refusal) is InvalidValue else type(refusal)
+    said: dict[str, Any] = vars(refusal) | {"field": place}
+    return str(_as_written(kind(**said), given))
 
 
 def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:

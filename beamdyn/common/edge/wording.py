@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -10,6 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, RefusedCases
+
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+_AMOUNT = re.compile(
+    rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
+)
+_SMALLER = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}
 
 
 @contextmanager
@@ -45,6 +52,16 @@ def in_degrees(error: InvalidValue) -> InvalidValue:
     value = math.degrees(error.value) if isinstance(error.value, float) else error.value
     limit = None if error.limit is None else math.degrees(error.limit)
     return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
+
+
+def in_small_units(sentence: str) -> str:
+    """A sentence of the core with its lengths and angles in mm and degrees, as drawings have them."""
+
+    def convert(found: re.Match[str]) -> str:
+        unit, factor = _SMALLER[found[2]]
+        return _NUMBER.sub(lambda number: f"{factor * float(number[0]):.6g}", found[1]) + f" {unit}"
+
+    return _AMOUNT.sub(convert, sentence)
 
 
 def _cases_in_degrees(cases: RefusedCases | None) -> RefusedCases | None:
