@@ -2,8 +2,8 @@
 
 Prints how long each screen's drawing takes to be laid out and written as SVG, and how large that is, and how
 long labels take.  With --browser instead, in Chromium, how many different pictures of a solved position are
-painted a second while a point or a slider is dragged, told by the id of the picture in the page; how much of
-the processor each takes; how soon all is solved after the release, or a screen that takes long says so.
+painted a second while a point or a slider is dragged, told by the id of the position in the page; how much
+of the processor each takes; how soon all is solved after the release, or a screen that takes long says so.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -27,11 +28,11 @@ from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
 from benchmarks.hostile_entries import children_of
 from benchmarks.rows import Row, show
-from benchmarks.served import browser, free_port, go, open_page, start, stop, up_to_date
+from benchmarks.served import PATIENCE, browser, free_port, go, open_page, start, stop, up_to_date
 from brakes.app.program import BRAKES
 
 RUNS = 15  # how often each is timed
-DRAG, STEP = 3.0, 0.012  # length of a drag, and between two moves of the mouse [s]
+DRAG, STEP = 3.0, 0.004  # length of a drag, and between two moves of the mouse [s]
 LABELS, SHAPES, BOUND, PAINTED = 40, 180, 5, 20
 AT_REST, BUSY = 300, 300  # bounds of the full answer and of the busy sign [ms]
 REACH = 14  # how far the mouse goes to both sides [px]
@@ -43,19 +44,17 @@ POINTS = {
     "Mechanism": "E",  # C soon leaves the reach of the hand
 }
 SLIDER = "radius, r [mm]"
-SLIDERS: dict[str, str] = dict.fromkeys(["Frequencies", "Rotor", "Mode shapes"], SLIDER)
+SLIDERS = {"Frequencies": "", "Rotor": "tip: setting angle", "Mode shapes": ""}  # each slider, and this point
 LONG = ("Steady response", "Transient")
-# Counts each picture that is there when a frame is painted, once.
+# Counts each solved position whose picture is there when a frame is painted, once.
 COUNT = """() => {
-  window.pictures = new Set(); window.frames = 0; window.counting = true;
-  const look = () => {
-    for (const it of document.querySelectorAll('[data-picture]'))
-      if (it.getBoundingClientRect().height > 50) window.pictures.add(it.dataset.picture);
-    window.frames += 1;
-    if (window.counting) requestAnimationFrame(look);
-  };
-  requestAnimationFrame(look);
+  window.pictures = new Set();
+  const look = (it) =>
+    requestAnimationFrame(() => it.checkVisibility() && window.pictures.add(it.dataset.solved));
+  window.counting = new MutationObserver((seen) => look(seen[0].target));
+  window.counting.observe(document.body, {subtree: true, attributeFilter: ["data-solved"]});
 }"""
+COUNTED = "() => { window.counting.disconnect(); return window.pictures.size; }"
 # Waits for some events, and then for words of the page; in `window.told` the time between them [ms].
 WATCH = """([events, words]) => {
   const seen = () => [...document.querySelectorAll(".status[role=status], .q-btn")].some(
@@ -121,13 +120,14 @@ def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
     try:
         with browser() as made:
             page = open_page(made.new_context(viewport={"width": 1280, "height": 900}), port)
-            for name, label in things.items():
+            for name, label in [pair for thing in things.items() for pair in _held(page, *thing)]:
                 go(page, name)
+                rest(process.pid)
                 before = processor_time([process.pid, *children_of(process.pid)])
-                painted, frames, rest = _drag(page, label)
+                painted, late = _drag(page, label)
                 spent = processor_time([process.pid, *children_of(process.pid)]) - before
                 yield (
-                    f"{name}: pictures painted a second ({frames:.0f} frames)",
+                    f"{name}: {label}: pictures painted a second",
                     f"{painted:.1f}",
                     f"{PAINTED}",
                 )
@@ -136,7 +136,7 @@ def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
                     f"{1e3 * spent / painted / DRAG:.0f}",
                     "",
                 )
-                yield "... from release to the full answer [ms]", f"{rest:.0f}", f"{AT_REST}"
+                yield "... from release to the full answer [ms]", f"{late:.0f}", f"{AT_REST}"
     finally:
         stop(process)
 
@@ -159,6 +159,14 @@ def wait_for_sign() -> Iterator[Row]:
         stop(process)
 
 
+def rest(program: int) -> None:
+    """Wait until a program has drawn what it draws beside the answer, and started what it keeps ready."""
+    deadline, last = time.monotonic() + PATIENCE, -1.0
+    while (now := processor_time([program, *children_of(program)])) > last and time.monotonic() < deadline:
+        last = now
+        time.sleep(0.5)
+
+
 def processor_time(ids: Iterable[int]) -> float:
     """Time that processes have had the processor [s], as /proc tells it."""
     ticks = 0
@@ -169,6 +177,13 @@ def processor_time(ids: Iterable[int]) -> float:
     return ticks / os.sysconf("SC_CLK_TCK")
 
 
+def _held(page: Any, name: str, point: str) -> list[tuple[str, str]]:
+    """What is dragged on a screen: a point, and each slider of its form."""
+    go(page, name)
+    sliders = page.locator(".left .q-slider:visible").all()
+    return [(name, label) for label in [point, *(it.get_attribute("aria-label") for it in sliders)] if label]
+
+
 def _thing(page: Any, label: str) -> Any:
     """The handle of a point or of a slider in front."""
     found = page.get_by_role("slider", name=label, exact=True).locator("visible=true")
@@ -176,26 +191,42 @@ def _thing(page: Any, label: str) -> Any:
     return thumb if thumb.count() else found
 
 
-def _drag(page: Any, label: str) -> tuple[float, float, float]:
-    """Drag in a small circle; pictures and frames a second, and the time from release to the answer [ms]."""
+def _drag(page: Any, label: str) -> tuple[float, float]:
+    """Drag; pictures a second, and the time from release to the answer [ms]."""
     handle = _thing(page, label)
     handle.scroll_into_view_if_needed()
-    box = handle.bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    x, y = _middle(handle)
+    slider = page.locator(f".q-slider[aria-label='{label}']:visible")
+    way = _across(slider.bounding_box()) if slider.count() else partial(_around, x, y)
     page.mouse.move(x, y)
     page.mouse.down()
     page.evaluate(COUNT)
     begin, now = time.monotonic(), 0.0
     while now < DRAG:
-        page.mouse.move(x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now))
+        page.mouse.move(*way(now))
         time.sleep(STEP)
         now = time.monotonic() - begin
-    found = page.evaluate("() => { window.counting = false; return [window.pictures.size, window.frames]; }")
+    found = page.evaluate(COUNTED)
     page.evaluate(WATCH, ["pointerup mouseup", "Up to date."])
     page.mouse.move(x, y)  # where there is an answer
     page.mouse.up()
     rest = page.evaluate(TOLD)
-    return found[0] / now, found[1] / now, rest
+    return found / now, rest
+
+
+def _middle(thing: Any) -> tuple[float, float]:
+    box = thing.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def _around(x: float, y: float, now: float) -> tuple[float, float]:
+    """Where the mouse is with a point of a drawing: on a small figure about where it was."""
+    return x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now)
+
+
+def _across(box: Mapping[str, float]) -> Callable[[float], tuple[float, float]]:
+    """Where it is with a slider: once across, so that each of its places comes once."""
+    return lambda now: (box["x"] + box["width"] * now / DRAG, box["y"] + box["height"] / 2)
 
 
 PARTS = time_labels, time_screens

@@ -10,6 +10,7 @@ from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.document_report import report_of
+from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Program
@@ -129,7 +130,7 @@ def test_each_screen_shows_the_entries_that_it_solves(simulate, fields):
 def test_slider_follows_its_field_and_leaves_it_as_it_is(simulate, fields):
     async def body(client):
         page = fields(await client())
-        sliders = [e for e in page.user.client.elements.values() if e.tag == "q-slider"]
+        sliders = [e for e in page.user.client.elements.values() if isinstance(e, DragSlider)]
         slider = next(e for e in sliders if "radius" in e.props["aria-label"])
         for text, at in (("0.2003 m", 200.3), ("1 m", 500.0), ("wide", 500.0)):
             page.enter("mount.radius", text)
@@ -188,6 +189,28 @@ def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_n
         assert page.greyed() == 0
 
     simulate(slow.program, body, InThread())
+
+
+@pytest.mark.parametrize("solver", [None, InThread()])
+def test_an_answer_that_cannot_be_shown_is_an_error_and_not_computed_forever(simulate, fields, solver):
+    def chart(answer, _):
+        if answer.locus.scene.mount.radius == 0.13:
+            raise TypeError("of a kind that no one has foreseen")
+        return FREQUENCIES.charts(answer)
+
+    async def body(client):
+        page = fields(await client())
+        await becomes("Up to date.", page)
+        page.enter("mount.radius", "0.13 m")
+        await becomes("of a kind that no one has foreseen", page)
+        assert "Computing" not in page.text() and "Up to date." not in page.text()
+        assert page.greyed() == 1
+        page.enter("mount.radius", "0.14 m")
+        await becomes("Up to date.", page)
+        assert "foreseen" not in page.text() and page.greyed() == 0
+
+    screen = replace(FREQUENCIES, charts=chart)
+    simulate(Program("unshown", "Unshown", (replace(SCENE, screens=(screen,)),)), body, solver)
 
 
 def test_report_and_downloads_wait_for_the_answer(simulate, fields):

@@ -8,6 +8,7 @@ import pytest
 from beamdyn import frequency_locus, load_scene
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.document_report import drawn
+from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
@@ -152,7 +153,7 @@ def test_page_marks_a_mistake_and_slider_writes_the_field(simulate, fields):
         page.enter("mount.radius", "0.2 m")
         assert page.field("mount.radius").error is None
         made = page.user.client.elements.values()
-        slider = next(e for e in made if e.tag == "q-slider" and "radius" in e.props["aria-label"])
+        slider = next(e for e in made if isinstance(e, DragSlider) and "radius" in e.props["aria-label"])
         with page.user.client:
             slider.set_value(250)
         assert page.field("mount.radius").value == "250 mm"

@@ -84,6 +84,44 @@ def test_point_follows_the_mouse_and_writes_its_field(page, screen, label, path,
     assert field(page, path).input_value() == written
 
 
+def test_what_has_followed_a_point_lasts_when_another_screen_was_in_front(page):
+    go(page, "Vehicle")
+    found = handle(page, "centre of gravity of the load")
+    x, y = pull(page, found, -20, -15)
+    follows(page, found, x, y)
+    page.mouse.up()
+    written = at_rest(page, field(page, "truck.load_cg_x").input_value)
+    place, picture = middle(found), drawing(page)
+    go(page, "Drum brake")
+    go(page, "Vehicle")
+    assert field(page, "truck.load_cg_x").input_value() == written
+    assert middle(found) == pytest.approx(place, abs=1) and drawing(page) == picture
+
+
+@pytest.mark.parametrize("screen", ["Frequencies", "Rotor"])
+def test_slider_pulled_by_the_mouse_is_followed_and_stays(opened, screen):
+    page = opened("beamdyn")
+    go(page, screen)
+    expect(shown(page, "Up to date.")).to_be_visible()
+    before, radius = drawing(page), field(page, "mount.radius")
+    slider = page.get_by_role("slider", name="radius, r [mm]").locator("visible=true")
+    x, y = middle(slider.locator("[tabindex='0']"))
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y, steps=12)
+    redrawn(page, before)
+    expect(shown(page, "The drawing follows; the tables wait.")).to_be_visible()
+    place = at_rest(page, lambda: radius.input_value())
+    page.mouse.up()
+    expect(shown(page, "Up to date.")).to_be_visible()
+    assert radius.input_value() == place
+    assert slider.get_attribute("aria-valuenow") == place.removesuffix(" mm")
+    go(page, "Mode shapes")
+    go(page, screen)
+    assert field(page, "mount.radius").input_value() == place
+    assert slider.get_attribute("aria-valuenow") == place.removesuffix(" mm")
+
+
 def test_picture_is_fitted_when_the_point_is_let_go(page):
     go(page, "Caliper")
     found = handle(page, "stop of the housing, on the arm of the left pad")

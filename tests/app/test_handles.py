@@ -428,3 +428,22 @@ def test_field_moves_its_handle_and_another_caliper_has_its_own(simulate, fields
         assert [record.getMessage() for record in caplog.records if record.levelname == "ERROR"] == []
 
     on_page(simulate, fields, "Caliper", body)
+
+
+def test_the_page_is_not_rendered_anew_for_each_place_of_a_point(simulate, fields, monkeypatch):
+    told = []
+
+    async def body(page, handles):
+        label = "tip of the shoe"
+        await handles.pull(label, -0.01, 0.01)  # says that the tables wait
+        monkeypatch.setattr(page.user.client.outbox, "enqueue_update", told.append)
+        before, text = handles.picture("Kinematics"), page.field("brake.tip_x").value
+        await handles.pull(label, -0.01, 0.01)
+        assert handles.picture("Kinematics") != before
+        assert page.field("brake.tip_x").value != text
+        assert told == []
+        await handles.pull(label, 0.0, 0.0, done=True)
+        assert page.field("brake.tip_x") in told
+        assert handles.element(label) in told
+
+    on_page(simulate, fields, "Kinematics", body)

@@ -12,7 +12,7 @@ import pytest
 
 from beamdyn.common.app import tasks
 from beamdyn.common.app.open_document import Answered, OpenDocument
-from beamdyn.common.app.processes import Processes, TakesTooLong
+from beamdyn.common.app.processes import Processes, Share, TakesTooLong
 from beamdyn.common.app.refusals import outcome_of
 from brakes.app.program import BRAKES
 from brakes.cli.interactive import make_program
@@ -216,3 +216,21 @@ def test_processes_end_with_a_program_that_is_killed_in_the_middle_of_a_task():
     while alive(process) and time.monotonic() < deadline:
         time.sleep(0.1)
     assert not alive(process)
+
+
+def test_a_page_at_many_long_answers_leaves_a_process_to_others():
+    async def body(processes):
+        busy, other = Share(processes, 2), Share(processes, 2)
+        long = [busy.submit(sleep, FORKLIFT, VEHICLE, 60) for _ in range(4)]
+        assert isinstance(await other.submit(sleep, FORKLIFT, VEHICLE, 0.0), int)
+        assert not any(each.done() for each in long)
+        long[2].cancel()  # while it waits
+        long[0].cancel()
+        await asyncio.wait([long[0], long[2]])
+        assert isinstance(await other.submit(sleep, FORKLIFT, VEHICLE, 0.0), int)
+        for each in long:
+            each.cancel()
+        await asyncio.wait(long)
+        assert isinstance(await busy.submit(sleep, FORKLIFT, VEHICLE, 0.0), int)
+
+    running(body, most=3)

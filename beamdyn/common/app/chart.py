@@ -319,6 +319,7 @@ def _tooltip(chart: Chart) -> dict[str, Any]:
 def _toolbox(chart: Chart) -> dict[str, Any]:
     name = "-".join("".join(c if c.isalnum() else " " for c in chart.title.lower()).split())
     return {
+        "show": True,
         "right": 12,
         "top": 0,
         "iconStyle": {"borderColor": _paint("dimension")},

@@ -10,13 +10,14 @@ from zlib import crc32
 
 from nicegui import ui
 
+from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.chart import Chart, chart_colours, marks_of, options_of
 
 STYLE = (
     chart_colours(":root")
     + chart_colours(".body--dark", dark=True)
     + """
-.chart { width: 100%; max-width: 1000px; height: clamp(330px, 52vh, 480px); }
+.chart { width: 100%; max-width: 1000px; height: clamp(330px, 52vh, 480px); contain: strict; }
 .chart-title { font-weight: 600; margin-top: 0.4rem; }
 """
 )
@@ -37,6 +38,8 @@ _KEYS = """(event) => {
   chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
 }"""
 
+_NO_SIGNS = {"toolbox": {"show": False}}  # while something is held: they are made anew for each picture
+
 
 class ChartBoard:
     """Charts below one another; each is kept and given new data, so that zooming lasts.
@@ -45,9 +48,12 @@ class ChartBoard:
     ----------
     words : str
         What they show.
+    brush : Brush
+        What writes them while something is held.
     """
 
-    def __init__(self, words: str) -> None:
+    def __init__(self, words: str, brush: Brush) -> None:
+        self._brush = brush
         self._made: list[tuple[Any, Any]] = []  # headings and charts
         self._shown: list[dict[str, Any]] = []  # options, but for what moves with the player
         self._column: Any = ui.column().classes("w-full gap-0 charts")
@@ -60,6 +66,10 @@ class ChartBoard:
         while len(self._made) < len(charts):
             with self._column:
                 self._made.append(self._make())
+        with self._brush.stroke(self._column, self._how, *(heading for heading, _ in self._made)):
+            self._put(charts)
+
+    def _put(self, charts: Sequence[Chart]) -> None:
         for i, parts in enumerate(self._made):
             for part in parts:
                 part.set_visibility(i < len(charts))
@@ -73,8 +83,17 @@ class ChartBoard:
                 made.run_chart_method("setOption", {"series": [marks_of(chart)]})
                 continue
             heading.set_text(chart.title)
+            self._fill(made, chart)
+
+    def _fill(self, made: Any, chart: Chart) -> None:
+        with made.props.suspend_updates():
             made.props["aria-label"] = chart.words
-            made.props["options"] = options_of(chart)
+            last, made.props["options"] = made.props["options"], (options := options_of(chart))
+        if self._brush.wet:
+            others = {name: value for name, value in options.items() if last.get(name) != value}
+            self._brush.write(made, {"options": _without_scripts(others) | _NO_SIGNS})
+            self._brush.tell_later(made)
+        else:
             made.update()
 
     def _make(self) -> tuple[Any, Any]:
@@ -83,3 +102,12 @@ class ChartBoard:
         chart = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         chart.on("keydown", js_handler=_KEYS % chart.id)
         return heading, chart
+
+
+def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:
+    """Options without those that the component reads as scripts, which stay what they are."""
+    return {
+        name: _without_scripts(value) if isinstance(value, dict) else value
+        for name, value in options.items()
+        if not name.startswith(":")
+    }

@@ -9,6 +9,7 @@ from typing import Any
 
 from nicegui import ui
 
+from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.handles import Place, Sheet, Viewport
 from beamdyn.common.app.screens import Handle
 from beamdyn.common.drawing.svg import page_colours
@@ -72,6 +73,8 @@ class DraggableDrawing:
         What the drawing shows, for those who do not see it.
     moved : callable
         Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
+    brush : Brush
+        What writes it while something is held.
 
     Attributes
     ----------
@@ -81,10 +84,10 @@ class DraggableDrawing:
         That of the drawing which is shown.
     """
 
-    def __init__(self, words: str, moved: Callable[[Handle, Place, bool], object]) -> None:
+    def __init__(self, words: str, moved: Callable[[Handle, Place, bool], object], brush: Brush) -> None:
         self.held: Viewport | None = None
         self.view: Viewport | None = None
-        self._moved = moved
+        self._moved, self._brush = moved, brush
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
@@ -104,6 +107,11 @@ class DraggableDrawing:
 
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
         """Show a drawing; `words` describes the position of each handle for screen readers."""
+        parts = self._said, self._board, self._machine, self._how
+        with self._brush.stroke(*parts, *self._handles):
+            self._put_sheet(sheet, words)
+
+    def _put_sheet(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
         self._show(sheet)
         self._how.set_visibility(bool(sheet.handles))
         for element in self._handles:

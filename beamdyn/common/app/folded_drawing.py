@@ -22,7 +22,7 @@ class PictureOf:
     """
 
     def __init__(self, kind: str = "") -> None:
-        self._way = UnderWay(self._settle, lambda: None)
+        self._way = UnderWay(self._settle, self._fail)
         self._frame: Any = ui.html("", sanitize=False).classes(f"w-full drawing-frame {kind}")
 
     def want(self, start: Callable[[], asyncio.Future[str]]) -> None:
@@ -41,9 +41,14 @@ class PictureOf:
         if self._frame.is_deleted or future.cancelled():
             return
         error = future.exception()
-        made = future.result() if error is None else picture(f"There is no drawing: {error}", "")
-        self._frame.set_content(made)
-        self._frame.set_visibility(bool(made))
+        if error is not None:
+            return self._fail(error)
+        self._frame.set_content(future.result())
+        self._frame.set_visibility(bool(future.result()))
+
+    def _fail(self, error: BaseException) -> None:
+        self._frame.set_content(picture(f"There is no drawing: {error}", ""))
+        self._frame.set_visibility(True)
 
 
 class FoldedDrawing:

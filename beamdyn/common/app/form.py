@@ -9,6 +9,8 @@ from typing import Any
 
 from nicegui import ui
 
+from beamdyn.common.app.brush import Brush
+from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.form_entries import has_rows, in_unit, units_of
 from beamdyn.common.app.input_words import (
     NOT_GIVEN,
@@ -24,8 +26,6 @@ from beamdyn.common.app.input_words import (
 from beamdyn.common.app.reading import Reading, is_bare, read_entry, unit_of, usual_unit
 from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.inputs import Input
-
-_OFTEN = 0.03  # least time between two messages of a slider that is dragged [s]
 
 
 class Form:
@@ -47,6 +47,8 @@ class Form:
         Called with True when a slider is taken hold of, with False when it is let go.
     headings : mapping
         Words above the tables, where those that follow from their names are not good ones.
+    brush : Brush
+        What writes into the fields while something is held.
 
     Attributes
     ----------
@@ -63,7 +65,9 @@ class Form:
         drags: Sequence[Drag] = (),
         hold: Callable[[bool], object] = lambda _: None,
         headings: Mapping[str, str] = MappingProxyType({}),
+        brush: Brush | None = None,
     ) -> None:
+        self._brush = brush or Brush()
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
@@ -71,7 +75,7 @@ class Form:
         self._headings = headings
         self._tables: dict[str, Any] = {}
         self._changed = changed
-        self._hold = hold
+        self._hold, self._held = hold, False
         self._drags = {drag.path: drag for drag in drags}
         for section in sections:
             chosen = [entry for entry in inputs if table_of(entry.path) == section]
@@ -117,16 +121,27 @@ class Form:
             if at is not None and at != place():  # else it has followed the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
+        def follow(at: float, done: bool) -> None:
+            if not done:
+                self._be_held(True)
+            with self._brush.stroke(field, made):
+                write(at)
+            if done:
+                self._be_held(False)
+
         start = place()
-        made = ui.slider(
-            min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
+        made = DragSlider(
+            follow, min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
             on_change=lambda e: write(e.value),
         )  # fmt: skip
         unit = f" [{drag.unit}]" if drag.unit else ""
         made.props(f'dense aria-label="{label(entry)}{unit}"').classes("q-px-md")
-        made.on("update:model-value", lambda e: write(e.args), [None], throttle=_OFTEN)
-        made.on("pan", lambda e: self._hold(e.args == "start"))
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
+
+    def _be_held(self, held: bool) -> None:
+        if held != self._held:
+            self._held = held
+            self._hold(held)
 
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in options_of(entry)}
@@ -208,6 +223,13 @@ class Form:
         for path, field in self.fields.items():
             if self._read(path).text != entries.get(path, ""):
                 field.set_value(entries.get(path, ""))
+
+    def write(self, texts: Mapping[str, str]) -> None:
+        """Write into those fields that the form has, while they are dragged or after."""
+        fields = {path: self.fields[path] for path in texts if path in self.fields}
+        with self._brush.stroke(*fields.values()):
+            for path, field in fields.items():
+                field.set_value(texts[path])
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
         """Mark the fields with mistakes, clear the others, and open folded tables with a mistake."""

@@ -9,6 +9,7 @@ from typing import Any
 
 from nicegui import ui
 
+from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.list_rows import ItemRow, Put
 from beamdyn.common.app.lists import Entries, Item, ListGroup, Lists
 
@@ -53,6 +54,11 @@ class GroupRows:
                     )
         self.show(group.items)
 
+    @property
+    def texts(self) -> list[Any]:
+        """The fields that hold texts."""
+        return [field for row in self._rows for field in row.texts]
+
     def show(self, items: Sequence[Item]) -> None:
         """Show these things; rows are kept as far as they fit."""
         kept = sum(
@@ -78,12 +84,14 @@ class ListEditor:
         Gives all entries as they are, also those that other fields have written.
     changed : callable
         Called with all entries after a change.
+    brush : Brush
+        What writes into the fields while something is held.
     """
 
     def __init__(
-        self, lists: Lists, now: Callable[[], Entries], changed: Callable[[Entries], object]
+        self, lists: Lists, now: Callable[[], Entries], changed: Callable[[Entries], object], brush: Brush
     ) -> None:
-        self._lists, self._now, self._changed = lists, now, changed
+        self._lists, self._now, self._changed, self._brush = lists, now, changed, brush
         with ui.column().classes("lists w-full gap-1"):
             ui.button("Start from nothing", icon="note_add", on_click=self._empty).props("flat dense no-caps")
             self._said: Any = ui.column().classes("advice gap-1").props('role="status" aria-live="polite"')
@@ -100,8 +108,9 @@ class ListEditor:
 
     def follow(self, entries: Mapping[str, str]) -> None:
         """Make other entries stand in the lists."""
-        for rows, group in zip(self._groups, self._lists.groups(entries), strict=True):
-            rows.show(group.items)
+        with self._brush.stroke(*(field for rows in self._groups for field in rows.texts)):
+            for rows, group in zip(self._groups, self._lists.groups(entries), strict=True):
+                rows.show(group.items)
 
     def _advise(self, entries: Mapping[str, str]) -> None:
         sentences = self._lists.advice(entries)

@@ -40,6 +40,11 @@ class ItemRow:
             (self._make_short if short else self._make_long)()
         self._say_names()
 
+    @property
+    def texts(self) -> list[Any]:
+        """The fields that hold texts."""
+        return [self._fields[cell.key] for cell in self._item.cells if not cell.options]
+
     def fits(self, item: Item) -> bool:
         """Whether its fields are those of a thing."""
         return [*map(_kind, self._item.cells)] == [*map(_kind, item.cells)]

@@ -19,6 +19,7 @@ from beamdyn.common.app.screens import Document, Program, Screen
 LONGEST = 120.0  # that an answer may take [s]
 MEMORY = 400  # that it may take beyond what an idle process has [MB]
 _MOST = max(3, (os.cpu_count() or 1) + 1)  # processes: one is left where others are at long answers
+_NICE = 5  # how far those who serve and show pages come before them where all want the processor
 _SPARE = 0.5  # after which a task has another process started, for others [s]
 _SERVE = "from beamdyn.common.app.processes import serve_tasks; serve_tasks({caller})"
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
@@ -188,6 +189,59 @@ class Processes:
         await worker.end()
 
 
+class Share:
+    """What one page may have of the processes: never all, so that others find one, whatever it is at.
+
+    Parameters
+    ----------
+    solver : TaskTaker
+        The processes.
+    most : int
+        How many tasks of the page may be under way; others wait in their order.
+    """
+
+    def __init__(self, solver: TaskTaker, most: int = _MOST - 1) -> None:
+        self._solver, self._room = solver, most
+        self._waiting: deque[asyncio.Future[None]] = deque()
+
+    def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
+        """Start ``task(document, screen, *rest)``, or have it wait; to cancel it ends it."""
+        given = task, document, screen, *rest
+        if not self._room:
+            return asyncio.ensure_future(self._later(given))
+        self._room -= 1
+        return self._start(given)
+
+    def _start(self, given: tuple[Any, ...]) -> asyncio.Future[Any]:
+        try:
+            future = self._solver.submit(*given)
+        except BaseException:
+            self._leave()
+            raise
+        if future.done():
+            self._leave()
+        else:
+            future.add_done_callback(lambda _: self._leave())
+        return future
+
+    async def _later(self, given: tuple[Any, ...]) -> Any:
+        self._waiting.append(place := asyncio.get_running_loop().create_future())
+        try:
+            await place
+        except asyncio.CancelledError:
+            if not place.cancelled():  # given at the same time
+                self._leave()
+            raise
+        return await self._start(given)
+
+    def _leave(self) -> None:
+        """Leave the room of a task to the next that waits."""
+        while self._waiting:
+            if not (place := self._waiting.popleft()).done():
+                return place.set_result(None)
+        self._room += 1
+
+
 class _Worker:
     """A process that takes pickled tasks on its standard input and answers on its standard output."""
 
@@ -230,6 +284,8 @@ def serve_tasks(caller: int) -> None:
     from beamdyn.common.parallel.workers import serve
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
     _end_with(caller)
     serve()
 

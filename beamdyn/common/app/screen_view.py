@@ -8,11 +8,13 @@ from dataclasses import replace
 from functools import partial
 from html import escape
 from typing import Any
+from zlib import crc32
 
 from nicegui import ui
 
 from beamdyn.common.app import tasks
 from beamdyn.common.app.branch_choice import BranchChoice
+from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.chart_board import ChartBoard
 from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
@@ -35,6 +37,8 @@ from beamdyn.common.app.under_way import UnderWay
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text, html
+
+_NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
 
 
 class ScreenView:
@@ -59,8 +63,9 @@ class ScreenView:
         self._drawn = ""
         self.narrow = False  # the page, so that drawings have narrow paper
         self._sentences: tuple[list[str], list[str]] = [], []
-        self._way = UnderWay(self._settle, self.state)
+        self._way = UnderWay(self._settle, self._fail, self.state)
         self._holds = False  # a slider of the form
+        self._brush = Brush(lambda: self.dragged)
         self._partial = False  # whether the tables shown are those of an answer before
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
@@ -87,9 +92,10 @@ class ScreenView:
             with ui.column().classes("pictures gap-2"):
                 self._slider()
                 self._branch = BranchChoice(self._redraw)
-                self.board = DraggableDrawing(f"{self.screen.name}: drawing of the result", self._moved)
+                words = f"{self.screen.name}: drawing of the result"
+                self.board = DraggableDrawing(words, self._moved, self._brush)
                 self._curves = PictureOf("curves")
-                self._charts = ChartBoard(f"{self.screen.name}: charts of the result")
+                self._charts = ChartBoard(f"{self.screen.name}: charts of the result", self._brush)
             with ui.column().classes("numbers gap-2"):
                 self.comparison = ComparisonPanel(self.work, self.screen)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full")
@@ -137,7 +143,7 @@ class ScreenView:
             self._lists = self._make_lists()
             self.form = Form(
                 self._fielded, self.screen.sections, self.work.entries, self._changed, self.screen.drags,
-                self._hold, self.work.document.headings,
+                self._hold, self.work.document.headings, self._brush,
             )  # fmt: skip
         self._shape = [entry.path for entry in self._fielded]
         self._choices = {entry.path for entry in self._fielded if options_of(entry)}
@@ -146,7 +152,9 @@ class ScreenView:
 
     def _make_lists(self) -> ListEditor | None:
         lists = self.screen.lists
-        return None if lists is None else ListEditor(lists, lambda: self.work.entries, self._listed)
+        if lists is None:
+            return None
+        return ListEditor(lists, lambda: self.work.entries, self._listed, self._brush)
 
     @property
     def _fielded(self) -> list[Input]:
@@ -170,12 +178,14 @@ class ScreenView:
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
         self.solve(held=self._holds)
-        self._edited()
+        if not self._holds:  # what is written on the way is neither stored nor told to other screens
+            self._edited()
 
     def _hold(self, held: bool) -> None:
         """A slider of the form has been taken hold of; or let go, and then all is solved."""
         self._holds = held
         if not held:
+            self._brush.rest()
             self.solve()
             self._edited()
 
@@ -249,8 +259,15 @@ class ScreenView:
             self._show()
         self.state()
         self._say(mistakes)
-        if self.board.held is None:
+        if not self.dragged:
             self._edited()
+
+    def _fail(self, error: Exception) -> None:
+        """Say that an answer cannot be shown; what stands there may be parts of it."""
+        self.work.answered.pop(self.screen.name, None)
+        self.work.mistakes[self.screen.name] = {"": [_NOT_SHOWN.format(error)]}
+        self.state()
+        self._say(self.work.mistakes[self.screen.name])
 
     def _complete(self, outcome: Any) -> Any:
         """An answer that was made for a drawing alone keeps the tables and notes of the one before it."""
@@ -281,9 +298,10 @@ class ScreenView:
             "Below is the last good result." if self.work.answered.get(self.screen.name) else "No result yet."
         )
         later = "An input has changed since: this result is stale."
-        fresh = "The drawing follows; the tables wait." if held else "Up to date."
-        now = (words if failed else later) if stale else fresh
-        self._status.set_text(f"Computing. {words if stale else ''}".strip() if busy else now)
+        now = (words if failed else later) if stale else "Up to date."
+        now = f"Computing. {words if stale else ''}".strip() if busy else now
+        follows = held and not (failed or self._way.slow)
+        self._status.set_text("The drawing follows; the tables wait." if follows else now)
         if self._sweep is not None:
             self._sweep.state()
 
@@ -310,7 +328,9 @@ class ScreenView:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        self._headline.set_content(headline_of(self.work, self.screen, answered))
+        with self._brush.stroke(self._headline, self._good):
+            self._headline.set_content(headline_of(self.work, self.screen, answered))
+            self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
         self._draw()
         self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
         if not self.dragged:  # while a point is moved, its drawing alone follows
@@ -400,14 +420,12 @@ class ScreenView:
         texts = changed_texts(handle, target, self.work.entries, self.work.inputs)
         for path, text in texts.items():
             self.work.put(path, text)
-        for path, text in texts.items():
-            if path in self.form.fields:
-                self.form.fields[path].set_value(text)
+        self.form.write(texts)
         if self._lists is not None:  # what is missing is told at rest
             (self._lists.show if done else self._lists.follow)(self.work.entries)
         if texts or done:
             self.solve(held=not done)
-            if done:  # what is written on the way is neither stored nor told to other screens
+            if done:
                 self._edited()
 
     def sweep_report(self) -> tuple[str, InputSweep] | None:

@@ -62,9 +62,10 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
 def root_of(program: Program, solver: TaskTaker) -> Callable[[], Awaitable[None]]:
     """The function that builds the page for a client."""
     from beamdyn.common.app.page import Page
+    from beamdyn.common.app.processes import Share
 
     async def root() -> None:
-        await Page(program, solver).recall()
+        await Page(program, Share(solver)).recall()
 
     return root
 
@@ -114,6 +115,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
+            ws_per_message_deflate=False,  # each message would wait for it, on a way that is short
             reconnect_timeout=30.0,
         )
 

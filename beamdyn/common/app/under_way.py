@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable
 from time import monotonic
 from typing import Any
 
 from nicegui import background_tasks
 
-SOON = 0.3  # after which the page says that it computes [s]
+SOON = 0.15  # after which the page says that it computes [s]; it has said so within 0.3 s
+_LOG = logging.getLogger(__name__)
 _PATIENCE = 2.0  # after which what is no longer wanted is ended [s]; to start another process costs one
 
 
@@ -20,6 +22,8 @@ class UnderWay:
     ----------
     settle : callable
         Called with the future of each that is done, and whether nothing newer is wanted.
+    fail : callable
+        Called with the error that `settle` has ended in, an unforeseen one: what is done cannot be shown.
     tell : callable
         Called when `slow` or `busy` has changed.
 
@@ -30,10 +34,13 @@ class UnderWay:
     """
 
     def __init__(
-        self, settle: Callable[[asyncio.Future[Any], bool], object], tell: Callable[[], object]
+        self,
+        settle: Callable[[asyncio.Future[Any], bool], object],
+        fail: Callable[[Exception], object],
+        tell: Callable[[], object] = lambda: None,
     ) -> None:
         self.slow = False
-        self._settle, self._tell = settle, tell
+        self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
         self._task: asyncio.Task[None] | None = None
@@ -46,8 +53,12 @@ class UnderWay:
     def want(self, start: Callable[[], asyncio.Future[Any]]) -> None:
         """Start something, or have it started after what is under way, in place of what waited for that."""
         self._wanted = start
-        if self._task is None and not self._next():
-            self._task = background_tasks.create(self._follow())
+        if self._task is None:
+            future = self._next()
+            if future.done():
+                self._settle(future, True)
+            else:
+                self._task = background_tasks.create(self._follow(future))
 
     def cancel(self) -> None:
         """End what is under way; nothing else starts."""
@@ -60,32 +71,36 @@ class UnderWay:
         if self._task is not None:
             await asyncio.wait([self._task])
 
-    def _next(self) -> bool:
-        """Start what is wanted; whether that is done already."""
+    def _next(self) -> asyncio.Future[Any]:
+        """Start what is wanted."""
         assert self._wanted is not None
         start, self._wanted = self._wanted, None
-        self._future = start()
-        if at_once := self._future.done():
-            self._settle(self._future, True)
-        return at_once
+        self._future = _started(start)
+        return self._future
 
-    async def _follow(self) -> None:
+    def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         try:
-            future = await self._wait()
+            self._show(future, last)
+        except Exception as error:  # whatever it is: the page must not go on saying that it computes
+            _LOG.exception("what has been computed cannot be shown")
+            self._fail(error)
+
+    async def _follow(self, future: asyncio.Future[Any]) -> None:
+        try:
+            await self._wait(future)
             while self._wanted is not None:
-                if not future.cancelled():
-                    self._settle(future, False)
-                if self._next():
-                    return
-                future = await self._wait()
+                done, future = future, self._next()
+                await asyncio.sleep(0)  # it is on its way before the last one is shown, which takes its time
+                if not done.cancelled():
+                    self._settle(done, False)
+                await self._wait(future)
         finally:
             self._task, self.slow = None, False
         self._settle(future, True)
 
-    async def _wait(self) -> asyncio.Future[Any]:
+    async def _wait(self, future: asyncio.Future[Any]) -> None:
         """Wait for what is under way, and end it where it takes long and is no longer wanted."""
-        future, start = self._future, monotonic()
-        assert future is not None
+        start = monotonic()
         await asyncio.wait([future], timeout=SOON)
         while not future.done():
             if not self.slow:
@@ -94,4 +109,13 @@ class UnderWay:
             if self._wanted is not None and monotonic() - start > _PATIENCE:
                 future.cancel()
             await asyncio.wait([future], timeout=SOON)
-        return future
+
+
+def _started(start: Callable[[], asyncio.Future[Any]]) -> asyncio.Future[Any]:
+    """What is started; a future with the error where it cannot be."""
+    try:
+        return start()
+    except Exception as error:
+        failed: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        failed.set_exception(error)
+        return failed
