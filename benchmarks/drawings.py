@@ -55,10 +55,14 @@ COUNT = """() => {
   window.counting.observe(document.body, {subtree: true, attributeFilter: ["data-solved"]});
 }"""
 COUNTED = "() => { window.counting.disconnect(); return window.pictures.size; }"
-# Waits for some events, and then for words of the page; in `window.told` the time between them [ms].
-WATCH = """([events, words]) => {
-  const seen = () => [...document.querySelectorAll(".status[role=status], .q-btn")].some(
-    (e) => e.innerText.trim() === words && e.checkVisibility());
+# Waits for some events, and then for words of the page, or, if wanted, for a new answer, which may come
+# before them; in `window.told` the time between them [ms].
+WATCH = """([events, words, answer]) => {
+  const shown = (of) => [...document.querySelectorAll(of)].filter((e) => e.checkVisibility());
+  const solved = () => shown("[data-solved]").map((e) => e.dataset.solved).join();
+  const before = solved();
+  const seen = () => answer && solved() !== before
+    || shown(".status[role=status], .q-btn").some((e) => e.innerText.trim() === words);
   window.told = new Promise((done) => {
     let begin = null;
     const look = () => seen() ? done(performance.now() - begin) : requestAnimationFrame(look);
@@ -142,7 +146,7 @@ def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
 
 
 def wait_for_sign() -> Iterator[Row]:
-    """How soon the screens that take long say that they compute, after a slider has been moved by a key."""
+    """How soon screens that take long say that they compute, or answer, after a key has moved a slider."""
     process = start(port := free_port(), "beamdyn")
     try:
         with browser() as made:
@@ -150,10 +154,10 @@ def wait_for_sign() -> Iterator[Row]:
             for name in LONG:
                 go(page, name)
                 _thing(page, SLIDER).focus()
-                page.evaluate(WATCH, ["keydown", "Cancel"])
+                page.evaluate(WATCH, ["keydown", "Cancel", True])
                 page.keyboard.press("ArrowRight")
                 told = page.evaluate(TOLD)
-                yield f"{name}: from a change to the busy sign [ms]", f"{told:.0f}", f"{BUSY}"
+                yield f"{name}: from a change to the busy sign, or the answer [ms]", f"{told:.0f}", f"{BUSY}"
                 up_to_date(page)
     finally:
         stop(process)
@@ -207,7 +211,7 @@ def _drag(page: Any, label: str) -> tuple[float, float]:
         time.sleep(STEP)
         now = time.monotonic() - begin
     found = page.evaluate(COUNTED)
-    page.evaluate(WATCH, ["pointerup mouseup", "Up to date."])
+    page.evaluate(WATCH, ["pointerup mouseup", "Up to date.", False])
     page.mouse.move(x, y)  # where there is an answer
     page.mouse.up()
     rest = page.evaluate(TOLD)

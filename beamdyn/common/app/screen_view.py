@@ -185,7 +185,6 @@ class ScreenView:
         """A slider of the form has been taken hold of; or let go, and then all is solved."""
         self._holds = held
         if not held:
-            self._brush.rest()
             self.solve()
             self._edited()
 
@@ -260,6 +259,7 @@ class ScreenView:
         self.state()
         self._say(mistakes)
         if not self.dragged:
+            self._brush.rest()  # not before: the page would be rendered twice
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -267,6 +267,7 @@ class ScreenView:
         self.work.answered.pop(self.screen.name, None)
         self.work.mistakes[self.screen.name] = {"": [_NOT_SHOWN.format(error)]}
         self.state()
+        self._brush.rest()
         self._say(self.work.mistakes[self.screen.name])
 
     def _complete(self, outcome: Any) -> Any:
