@@ -303,13 +303,14 @@ class _Block:
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
+        rows, columns = self.maps[0].shape[2:]
         sums: dict[np.dtype, np.ndarray] = {}  # of single precision where that suffices
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
             kind = values.dtype
             factor = _products(T.astype(kind), monomials.astype(kind), values)
-            term = factor @ values.reshape(factor.shape[1], -1)
+            term = factor @ values.reshape(factor.shape[1], rows * columns)
             sums[kind] = sums[kind] + term if kind in sums else term
-        return reduce(np.add, sums.values()).reshape(len(e), *self.maps[0].shape[2:])
+        return reduce(np.add, sums.values()).reshape(len(e), rows, columns)
 
     def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Accelerations at the nodes, (N, s n), as `steps`, for z (N, 2 n + s l)."""
