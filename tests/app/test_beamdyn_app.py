@@ -166,7 +166,8 @@ def test_a_slider_without_a_unit_writes_a_number_alone(simulate, fields):
         page = fields(await another())
         page.go("Trade")
         elements = page.user.client.elements.values()
-        slider = next(e for e in elements if e.tag == "q-slider" and e.props["aria-label"] == "digits, n")
+        sliders = (e for e in elements if isinstance(e, DragSlider))
+        slider = next(e for e in sliders if e.props["aria-label"] == "digits, n")
         with page.user.client:
             slider.set_value(5)
         assert page.field("trade.digits").value == "5"
