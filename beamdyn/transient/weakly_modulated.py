@@ -33,7 +33,6 @@ _LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
 _SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
 _SAMPLES = 257  # of e, for its largest value
 _NEGLIGIBLE = 1e-3  # share of an accuracy
-_IN_STEP = 0.1  # share of an accuracy for what does not add up over the steps
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # steps solved as one batch
@@ -209,8 +208,6 @@ class _Expansion:
         Ratio of successive terms of the series for e_m = 1.
     point : _StepMapSeries
         The series at the Chebyshev points.
-    twice : bool
-        Whether the accelerations need the second order too, which within one step is mostly negligible.
     """
 
     maps: list[_Polynomials]
@@ -218,7 +215,6 @@ class _Expansion:
     Y: _Polynomials
     ratio: np.ndarray
     point: _StepMapSeries
-    twice: bool
 
     @classmethod
     def of(
@@ -245,14 +241,14 @@ class _Expansion:
             return None
         change = float(ratio @ largest)  # by the first order, over the order before it
         X0, Y = _expand_accelerations(point, scales, change, accuracy)
-        return cls(maps, X0, Y, ratio, point, change**2 > _IN_STEP * accuracy)
+        return cls(maps, X0, Y, ratio, point)
 
     def over(self, start: float, end: float) -> _Block:
         """The maps of the steps that begin from `start` to `end`, both in [-1, 1], by fewer polynomials."""
         parts = *self.maps, self.X0, self.Y
         local = _to_part(max(len(part.values) for part in parts), start, end)
         *maps, X0, Y = (part.over(local) for part in parts)
-        return _Block(tuple(maps), X0, Y, self.point, self.twice)
+        return _Block(tuple(maps), X0, Y, self.point)
 
 
 def _expand_maps(
@@ -295,7 +291,6 @@ class _Block:
     X0: np.ndarray
     Y: np.ndarray
     point: _StepMapSeries
-    twice: bool
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
         """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""
@@ -322,9 +317,8 @@ class _Block:
         more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
         kind = self.Y.dtype
         T, more = T.astype(kind), more.astype(kind)
-        if self.twice:
-            again = _evaluate(self.Y, T, more) @ Z.swapaxes(1, 2)
-            more -= (factor * again).sum(axis=0)
+        again = _evaluate(self.Y, T, more) @ Z.swapaxes(1, 2)
+        more -= (factor * again).sum(axis=0)
         return total + _evaluate(self.Y, T, more)
 
 
