@@ -147,15 +147,23 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
     size = size_of(q)
     t = np.array([_candidates(times, size, *window) for window in windows])
     start, end = np.array(windows).T[:, :, None]
-    half_width, found = np.diff(times).max(), np.empty(0)
+    half_width, found = _spacing_beside(times, t), np.empty(0)
     for _ in range(_REFINEMENTS):
         near = np.linspace(np.maximum(t - half_width, start), np.minimum(t + half_width, end), 35, axis=-1)
         found = size_of(path.at(near.ravel())[0]).reshape(near.shape)
         highest = np.argsort(found.max(axis=2))[:, -_REFINED:]  # the first refinement tells which these are
         best = np.take_along_axis(found.argmax(axis=2), highest, axis=1)
         near = np.take_along_axis(near, highest[:, :, None], axis=1)
-        t, half_width = np.take_along_axis(near, best[:, :, None], axis=2)[:, :, 0], half_width / 17
+        t = np.take_along_axis(near, best[:, :, None], axis=2)[:, :, 0]
+        half_width = np.take_along_axis(half_width, highest, axis=1) / 17
     return _top_between(found).max(axis=1).tolist()
+
+
+def _spacing_beside(times: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """The larger of the distances from the samples beside times t to their neighbours, in the shape of t."""
+    at = np.searchsorted(times, t)
+    spacing = np.diff(times)
+    return np.max([spacing[np.clip(at + k, 0, len(spacing) - 1)] for k in (-2, -1, 0)], axis=0)
 
 
 def _top_between(size: np.ndarray) -> np.ndarray:

@@ -150,6 +150,20 @@ def test_peaks_of_a_sine_and_its_values_at_the_ends_of_a_window(w: float) -> Non
     np.testing.assert_allclose(found, wanted, rtol=1e-12)  # a parabola over 1e-3 rad errs by less
 
 
+def test_peaks_where_samples_are_dense_beside_long_steps() -> None:
+    """A fast sine is found between its samples though others are two hundred times as far apart."""
+    w, t = 200.0, np.concatenate([np.linspace(0, 1, 501)[:-1], np.linspace(1, 21, 51)])
+
+    class Sine:
+        start, end, samples = 0.0, 21.0, (t, np.where(t < 1, np.sin(w * t), 0.0)[:, None], np.empty(0))
+
+        def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return np.where(t < 1, np.sin(w * t), 0.0)[:, None], np.empty(0)
+
+    (found,) = largest_in_each(lambda q: np.abs(q[:, 0]), Sine(), [(0.0, 21.0)])
+    assert found == pytest.approx(1.0, rel=1e-10)  # a parabola over 1e-3 rad errs by less
+
+
 def test_windows_searched_together_are_those_searched_alone(short: bd.Transient) -> None:
     windows = [(0.0, 2.0), (0.3, 0.31), (1.0, 1.0 + 1e-9), (1.5, 2.0)]  # the third is between two samples
     assert isinstance(short.system, ModalSystem)

@@ -170,8 +170,8 @@ def _smooth(x: np.ndarray) -> Kinematics:
     """Integral, value and derivative of the speed x - sin(2 pi x)/(2 pi), for 0 <= x <= 1."""
     y, sine = np.pi * x, np.sin(np.pi * x)
     # x^2/2 - sin(pi x)^2/(2 pi^2) as a product, because the difference cancels at small x.
-    integral = _subtract(y, sine) * (y + sine) / (2 * np.pi**2)
-    return integral, _subtract(2 * y, np.sin(2 * y)) / (2 * np.pi), 2 * sine**2
+    integral = _angle_minus_sine(y, sine) * (y + sine) / (2 * np.pi**2)
+    return integral, _angle_minus_sine(2 * y, np.sin(2 * y)) / (2 * np.pi), 2 * sine**2
 
 
 def _linear(x: np.ndarray) -> Kinematics:
@@ -182,7 +182,7 @@ def _linear(x: np.ndarray) -> Kinematics:
 _LAWS: dict[str, Callable[[np.ndarray], Kinematics]] = {"smooth": _smooth, "linear": _linear}
 
 
-def _subtract(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
+def _angle_minus_sine(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
     """Compute y - sin(y) for y >= 0 from both, by its Taylor series for y < 1, where that cancels."""
     y = np.asarray(y)
     difference = np.asarray(y - sine)
