@@ -10,8 +10,8 @@ from zlib import crc32
 
 from nicegui import ui
 
-from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.chart import Chart, chart_colours, marks_of, options_of
+from beamdyn.common.app.page_writer import PageWriter
 
 STYLE = (
     chart_colours(":root")
@@ -48,12 +48,12 @@ class ChartBoard:
     ----------
     words : str
         What they show.
-    brush : Brush
+    writer : PageWriter
         What writes them while something is held.
     """
 
-    def __init__(self, words: str, brush: Brush) -> None:
-        self._brush = brush
+    def __init__(self, words: str, writer: PageWriter) -> None:
+        self._writer = writer
         self._made: list[tuple[Any, Any]] = []  # headings and charts
         self._shown: list[dict[str, Any]] = []  # options, but for what moves with the player
         self._column: Any = ui.column().classes("w-full gap-0 charts")
@@ -66,7 +66,7 @@ class ChartBoard:
         while len(self._made) < len(charts):
             with self._column:
                 self._made.append(self._make())
-        with self._brush.stroke(self._column, self._how, *(heading for heading, _ in self._made)):
+        with self._writer.writing(self._column, self._how, *(heading for heading, _ in self._made)):
             self._put(charts)
 
     def _put(self, charts: Sequence[Chart]) -> None:
@@ -89,10 +89,10 @@ class ChartBoard:
         with made.props.suspend_updates():
             made.props["aria-label"] = chart.words
             last, made.props["options"] = made.props["options"], (options := options_of(chart))
-        if self._brush.wet:
+        if self._writer.is_ahead:
             others = {name: value for name, value in options.items() if last.get(name) != value}
-            self._brush.write(made, {"options": _without_scripts(others) | _NO_SIGNS})
-            self._brush.tell_later(made)
+            self._writer.write(made, {"options": _without_scripts(others) | _NO_SIGNS})
+            self._writer.tell_later(made)
         else:
             made.update()
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.handles import Place, Sheet, Viewport
+from beamdyn.common.app.page_writer import PageWriter
 from beamdyn.common.app.screens import Handle
 from beamdyn.common.drawing.svg import page_colours
 
@@ -73,7 +73,7 @@ class DraggableDrawing:
         What the drawing shows, for those who do not see it.
     moved : callable
         Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
-    brush : Brush
+    writer : PageWriter
         What writes it while something is held.
 
     Attributes
@@ -84,10 +84,12 @@ class DraggableDrawing:
         That of the drawing which is shown.
     """
 
-    def __init__(self, words: str, moved: Callable[[Handle, Place, bool], object], brush: Brush) -> None:
+    def __init__(
+        self, words: str, moved: Callable[[Handle, Place, bool], object], writer: PageWriter
+    ) -> None:
         self.held: Viewport | None = None
         self.view: Viewport | None = None
-        self._moved, self._brush = moved, brush
+        self._moved, self._writer = moved, writer
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
@@ -108,7 +110,7 @@ class DraggableDrawing:
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
         """Show a drawing; `words` describes the position of each handle for screen readers."""
         parts = self._said, self._board, self._machine, self._how
-        with self._brush.stroke(*parts, *self._handles):
+        with self._writer.writing(*parts, *self._handles):
             self._put_sheet(sheet, words)
 
     def _put_sheet(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:

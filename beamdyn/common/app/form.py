@@ -9,7 +9,6 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.form_entries import has_rows, in_unit, units_of
 from beamdyn.common.app.input_words import (
@@ -23,6 +22,7 @@ from beamdyn.common.app.input_words import (
     options_of,
     table_of,
 )
+from beamdyn.common.app.page_writer import PageWriter
 from beamdyn.common.app.reading import Reading, is_bare, read_entry, unit_of, usual_unit
 from beamdyn.common.app.screens import Drag
 from beamdyn.common.edge.inputs import Input
@@ -47,7 +47,7 @@ class Form:
         Called with True when a slider is taken hold of, with False when it is let go.
     headings : mapping
         Words above the tables, where those that follow from their names are not good ones.
-    brush : Brush
+    writer : PageWriter
         What writes into the fields while something is held.
 
     Attributes
@@ -65,9 +65,9 @@ class Form:
         drags: Sequence[Drag] = (),
         hold: Callable[[bool], object] = lambda _: None,
         headings: Mapping[str, str] = MappingProxyType({}),
-        brush: Brush | None = None,
+        writer: PageWriter | None = None,
     ) -> None:
-        self._brush = brush or Brush()
+        self._writer = writer or PageWriter()
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
@@ -124,7 +124,7 @@ class Form:
         def follow(at: float, done: bool) -> None:
             if not done:
                 self._be_held(True)
-            with self._brush.stroke(field, made):
+            with self._writer.writing(field, made):
                 write(at)
             if done:
                 self._be_held(False)
@@ -227,7 +227,7 @@ class Form:
     def write(self, texts: Mapping[str, str]) -> None:
         """Write into those fields that the form has, while they are dragged or after."""
         fields = {path: self.fields[path] for path in texts if path in self.fields}
-        with self._brush.stroke(*fields.values()):
+        with self._writer.writing(*fields.values()):
             for path, field in fields.items():
                 field.set_value(texts[path])
 

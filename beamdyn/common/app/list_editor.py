@@ -9,9 +9,9 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.list_rows import ItemRow, Put
 from beamdyn.common.app.lists import Entries, Item, ListGroup, Lists
+from beamdyn.common.app.page_writer import PageWriter
 
 STYLE = """
 .listed { display: flex; gap: 4px; align-items: start; width: 100%; }
@@ -84,14 +84,18 @@ class ListEditor:
         Gives all entries as they are, also those that other fields have written.
     changed : callable
         Called with all entries after a change.
-    brush : Brush
+    writer : PageWriter
         What writes into the fields while something is held.
     """
 
     def __init__(
-        self, lists: Lists, now: Callable[[], Entries], changed: Callable[[Entries], object], brush: Brush
+        self,
+        lists: Lists,
+        now: Callable[[], Entries],
+        changed: Callable[[Entries], object],
+        writer: PageWriter,
     ) -> None:
-        self._lists, self._now, self._changed, self._brush = lists, now, changed, brush
+        self._lists, self._now, self._changed, self._writer = lists, now, changed, writer
         with ui.column().classes("lists w-full gap-1"):
             ui.button("Start from nothing", icon="note_add", on_click=self._empty).props("flat dense no-caps")
             self._said: Any = ui.column().classes("advice gap-1").props('role="status" aria-live="polite"')
@@ -108,7 +112,7 @@ class ListEditor:
 
     def follow(self, entries: Mapping[str, str]) -> None:
         """Make other entries stand in the lists."""
-        with self._brush.stroke(*(field for rows in self._groups for field in rows.texts)):
+        with self._writer.writing(*(field for rows in self._groups for field in rows.texts)):
             for rows, group in zip(self._groups, self._lists.groups(entries), strict=True):
                 rows.show(group.items)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from nicegui import background_tasks, run, ui
 
-from beamdyn.common.app import brush, tasks
+from beamdyn.common.app import page_writer, tasks
 from beamdyn.common.app.browser_memory import BrowserMemory, named_designs, read_typed, refused_name
 from beamdyn.common.app.comparison import OtherDesign
 from beamdyn.common.app.design_link import LinkedDesign
@@ -61,7 +61,7 @@ class Page:
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
         ui.add_css(STYLE)
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
-        ui.add_body_html(_STOPPED.format(name=program.name) + self._memory.script + brush.SCRIPT)
+        ui.add_body_html(_STOPPED.format(name=program.name) + self._memory.script + page_writer.SCRIPT)
         ui.page_title(program.title)
         self.header = Header(program.title, [*self.places], self._turned, self._files(), self)
         self._bar = self.header.tabs

@@ -14,7 +14,6 @@ from nicegui import ui
 
 from beamdyn.common.app import tasks
 from beamdyn.common.app.branch_choice import BranchChoice
-from beamdyn.common.app.brush import Brush
 from beamdyn.common.app.chart_board import ChartBoard
 from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
@@ -27,6 +26,7 @@ from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_
 from beamdyn.common.app.input_words import as_on_form, options_of
 from beamdyn.common.app.list_editor import ListEditor
 from beamdyn.common.app.open_document import Answered, OpenDocument
+from beamdyn.common.app.page_writer import PageWriter
 from beamdyn.common.app.player import Player
 from beamdyn.common.app.processes import Task, TaskTaker
 from beamdyn.common.app.refusals import changed, outcome_of
@@ -65,7 +65,7 @@ class ScreenView:
         self._sentences: tuple[list[str], list[str]] = [], []
         self._way = UnderWay(self._settle, self._fail, self.state)
         self._holds = False  # a slider of the form
-        self._brush = Brush(lambda: self.dragged)
+        self._writer = PageWriter(lambda: self.dragged)
         self._partial = False  # whether the tables shown are those of an answer before
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
@@ -93,9 +93,9 @@ class ScreenView:
                 self._slider()
                 self._branch = BranchChoice(self._redraw)
                 words = f"{self.screen.name}: drawing of the result"
-                self.board = DraggableDrawing(words, self._moved, self._brush)
+                self.board = DraggableDrawing(words, self._moved, self._writer)
                 self._curves = PictureOf("curves")
-                self._charts = ChartBoard(f"{self.screen.name}: charts of the result", self._brush)
+                self._charts = ChartBoard(f"{self.screen.name}: charts of the result", self._writer)
             with ui.column().classes("numbers gap-2"):
                 self.comparison = ComparisonPanel(self.work, self.screen)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full")
@@ -143,7 +143,7 @@ class ScreenView:
             self._lists = self._make_lists()
             self.form = Form(
                 self._fielded, self.screen.sections, self.work.entries, self._changed, self.screen.drags,
-                self._hold, self.work.document.headings, self._brush,
+                self._hold, self.work.document.headings, self._writer,
             )  # fmt: skip
         self._shape = [entry.path for entry in self._fielded]
         self._choices = {entry.path for entry in self._fielded if options_of(entry)}
@@ -154,7 +154,7 @@ class ScreenView:
         lists = self.screen.lists
         if lists is None:
             return None
-        return ListEditor(lists, lambda: self.work.entries, self._listed, self._brush)
+        return ListEditor(lists, lambda: self.work.entries, self._listed, self._writer)
 
     @property
     def _fielded(self) -> list[Input]:
@@ -259,7 +259,7 @@ class ScreenView:
         self.state()
         self._say(mistakes)
         if not self.dragged:
-            self._brush.rest()  # not before: the page would be rendered twice
+            self._writer.synchronize()  # not before: the page would be rendered twice
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -267,7 +267,7 @@ class ScreenView:
         self.work.answered.pop(self.screen.name, None)
         self.work.mistakes[self.screen.name] = {"": [_NOT_SHOWN.format(error)]}
         self.state()
-        self._brush.rest()
+        self._writer.synchronize()
         self._say(self.work.mistakes[self.screen.name])
 
     def _complete(self, outcome: Any) -> Any:
@@ -329,7 +329,7 @@ class ScreenView:
         answered = self.work.answered.get(self.screen.name)
         if answered is None:
             return
-        with self._brush.stroke(self._headline, self._good):
+        with self._writer.writing(self._headline, self._good):
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
         self._draw()

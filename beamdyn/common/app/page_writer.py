@@ -27,7 +27,7 @@ SCRIPT = """<script>
     fill(shown, wanted);
   };
   const parsed = document.createElement("template");
-  window.paint = (changes) => {
+  window.writeChanges = (changes) => {
     for (const [id, changed] of Object.entries(changes)) {
       const shown = getHtmlElement(id);
       if (shown === null) continue;
@@ -50,8 +50,8 @@ SCRIPT = """<script>
 _WRITTEN = ("innerHTML", "text", "value", "style", "class", "data-", "aria-")
 
 
-class Brush:
-    """Writes changes of elements into the page at once while something is held.
+class PageWriter:
+    """Writes changes of elements into the page at once while a point or a slider is held.
 
     The toolkit renders a page as a whole, 10 to 40 ms where its form is long, for each change that it is
     told.  It is told of what has been written when nothing is held any longer.
@@ -59,7 +59,7 @@ class Brush:
     Parameters
     ----------
     held : callable
-        Whether something is.
+        Whether one is.
     """
 
     def __init__(self, held: Callable[[], bool] = lambda: False) -> None:
@@ -68,14 +68,14 @@ class Brush:
         self._unwritten: dict[int, dict[str, Any]] = {}
 
     @property
-    def wet(self) -> bool:
+    def is_ahead(self) -> bool:
         """Whether something is held, or there is what the toolkit has not been told."""
         return self._held() or bool(self._untold)
 
     @contextmanager
-    def stroke(self, *elements: Any) -> Iterator[None]:
+    def writing(self, *elements: Any) -> Iterator[None]:
         """Write the changes within of some elements, those of components but for the text of a field."""
-        if not self.wet:
+        if not self.is_ahead:
             yield
             return
         before = {element: _written(element) for element in elements}
@@ -91,13 +91,13 @@ class Brush:
             now = _written(element).items()
             self.write(element, {name: value for name, value in now if was.get(name) != value})
         if not self._held():
-            self.rest()
+            self.synchronize()
 
     def tell_later(self, element: Any) -> None:
         """Tell the toolkit of an element when nothing is held any longer."""
         self._untold[element.id] = element
 
-    def rest(self) -> None:
+    def synchronize(self) -> None:
         """Tell the toolkit what has been written."""
         untold, self._untold = self._untold, {}
         for element in untold.values():
@@ -112,7 +112,7 @@ class Brush:
 
     def _send(self, client: Any) -> None:
         unwritten, self._unwritten = self._unwritten, {}
-        client.run_javascript(f"paint({json.dumps(unwritten)})")
+        client.run_javascript(f"writeChanges({json.dumps(unwritten)})")
 
 
 def _do_nothing(*_: Any, **__: Any) -> None:
