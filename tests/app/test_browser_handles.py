@@ -172,6 +172,7 @@ def test_dragged_until_the_brake_locks_and_back(page):
     expect(page.locator(".handle:visible")).to_have_count(5)
     page.mouse.up()
     expect(locks).to_have_count(1)
+    at_rest(page, lambda: middle(found))  # the drawing at rest has another frame
     pull(page, found, 93, 92)
     expect(locks).to_have_count(0)
     page.mouse.up()

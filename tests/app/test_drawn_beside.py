@@ -12,6 +12,7 @@ from beamdyn.common.app import tasks
 from beamdyn.common.edge import rendering
 from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
+from tests.app.serving import PATIENCE
 
 DRAWN = {tasks.curves, tasks.further, tasks.drawing_file, tasks.sweep_picture, tasks.sweep_file, tasks.report}
 
@@ -83,7 +84,7 @@ def test_another_tab_is_answered_while_a_report_is_made(simulate, fields, solver
         assert "16." in page.text()  # the stopping distance grows from 13.4 m to some 19
         assert tasks.report not in solver.done
         solver.let_go()
-        found = (await first.download.next()).text
+        found = (await first.download.next(timeout=PATIENCE)).text
         assert "<h2>Vehicle</h2>" in found and "<h2>Internal forces</h2>" in found
 
     simulate(BRAKES, body, solver)
@@ -105,6 +106,6 @@ def test_curves_and_files_are_drawn_beside(simulate, fields, solver):
         press(user, "download Drum brake as PNG")
         await wait_for(lambda: tasks.drawing_file in [task for _, task, _ in solver.held])
         solver.let_go()
-        assert (await user.download.next()).content.startswith(b"\x89PNG")
+        assert (await user.download.next(timeout=PATIENCE)).content.startswith(b"\x89PNG")
 
     simulate(BRAKES, body, solver)
