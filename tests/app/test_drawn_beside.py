@@ -68,7 +68,7 @@ async def wait_for(condition):
 
 
 async def downloaded(*users):
-    """What is downloaded first: the simulation gives it to the client that it served last, not to who asked."""
+    """What is downloaded first; the simulation gives it to the client it served last, not to who asked."""
     await wait_for(lambda: any(user.download.http_responses for user in users))
     return next(found for user in users for found in user.download.http_responses)
 
