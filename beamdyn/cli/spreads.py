@@ -50,7 +50,7 @@ def answer_spread(
         given = parse_spreads(
             inputs,
             spreading.spread,
-            lambda entry: (nominal_value(scene, entry.path, how["speed"]), unit_of(entry.path)),
+            lambda entry: (nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path)),
         )
         result = spread(
             scene,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.spreads import answer_spread
@@ -18,6 +18,7 @@ from beamdyn.cli.values import (
     SceneFile,
     Text,
     load_with,
+    naming_option,
     parse_window,
     speed_or_final,
 )
@@ -49,8 +50,8 @@ def study(
     spreading: SpreadOptions = NO_SPREAD,
     what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     speed: Text | None = None,
-    modes: ModeCount = 3,
-    window: Text = "20:30 s",
+    modes: ModeCount | None = None,
+    window: Text | None = None,
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
     physics: PhysicsOption = None,
@@ -77,10 +78,10 @@ def study(
         Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed of
         crossings. Default: the final speed of the scene's motion, or 0 without one.
     modes
-        Number of modes of frequencies and crossings, from the lowest; amplitudes and peaks take as many as
-        they need.
+        Number of modes of frequencies and crossings, from the lowest; default: 3. Amplitudes and peaks take
+        as many as they need.
     window
-        Beginning and end of the window of time of peaks.
+        Beginning and end of the window of time of peaks; default: 20:30 s.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
@@ -108,23 +109,23 @@ def study(
     known = _inputs(loaded)
     axes = [parse_axis(known, text, OPTION, MOST_DESIGNS) for text in varying.vary]
     check_designs(designs_of(axes, varying.combine), option=OPTION)
-    options = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
+    options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     asked = varying.options | spreading.options | {"what": what, "speed": speed, "window": window} | options
     question = Question.on_file("beamdyn study", scene, **asked, physics=physics)
-    span = parse_window(window)
+    options["window"] = None if window is None else parse_window(window)
+    options["speed"] = _speed_of(loaded, what, speed, axes)
+    as_given = _refused_as_given(axes, speed=speed, window=window)
     if spreading.spread:
-        how = options | {"what": what, "speed": speed_or_final(loaded, speed), "window": span}
-        how |= {"workers": varying.workers, "store": varying.store}
-        answer_spread(loaded, known, spreading, outputs, question, how)
+        how = options | {"what": what, "workers": varying.workers, "store": varying.store}
+        with as_given:
+            answer_spread(loaded, known, spreading, outputs, question, how)
         return
-    with at_work("designs") as progress, of_file({}), _refused_as_given(axes):
+    with at_work("designs") as progress, of_file({}), as_given:
         result = study(
             loaded,
             {axis.input.path: axis.values for axis in axes},
             what,
-            speed=speed_or_final(loaded, speed),
             **options,
-            window=span,
             combine=varying.combine,
             workers=varying.workers,
             store=varying.store,
@@ -138,6 +139,16 @@ def study(
 
 
 # Values as they were given ------------------------------------------------------------------------
+
+
+def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
+    """The speed of the option [rad/s], or that of the scene where one is needed; else None."""
+    from beamdyn.studies.inputs import SPEED
+    from beamdyn.studies.questions import KINDS
+
+    varied = any(axis.input.path == SPEED for axis in axes)
+    needed = "speed" in KINDS[what].options and not varied
+    return speed_or_final(scene, speed) if needed or speed is not None else None
 
 
 def _speeds_of(varying: VaryOptions) -> Iterator[str]:
@@ -164,12 +175,16 @@ def _nearest_given(axis: Axis, found: re.Match[str]) -> str:
 
 
 @contextmanager
-def _refused_as_given(axes: Sequence[Axis]) -> Iterator[None]:
-    """Within it, a refusal of an input shows its value and its bound in the unit in which it was given."""
+def _refused_as_given(axes: Sequence[Axis], **options: str | None) -> Iterator[None]:
+    """Within it, a refusal of an option shows its text, one of an input its value and bound as given."""
     from beamdyn.common.checks import InvalidValue
 
     try:
-        yield
+        with ExitStack() as named:
+            for name, text in options.items():
+                if text is not None:
+                    named.enter_context(naming_option(name, f"--{name}", text))
+            yield
     except InvalidValue as error:
         axis = next((axis for axis in axes if axis.input.path == error.field and axis.unit), None)
         if axis is None or not isinstance(error.value, float):

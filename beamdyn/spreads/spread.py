@@ -33,7 +33,7 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.spreads.derivatives import known_derivatives
 from beamdyn.spreads.nominal_values import nominal_value
 from beamdyn.studies.inputs import SPEED, check_name, scene_of, unit_of
-from beamdyn.studies.questions import KINDS
+from beamdyn.studies.questions import KINDS, check_used
 from beamdyn.studies.result import Study
 from beamdyn.studies.study import speed_of_study, study
 
@@ -50,8 +50,8 @@ def spread(
     samples: int = DEFAULT_SAMPLES,
     seed: int = 0,
     speed: float | None = None,
-    modes: int = 3,
-    window: tuple[float, float] = (20.0, 30.0),
+    modes: int | None = None,
+    window: tuple[float, float] | None = None,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
     workers: int = 1,
@@ -112,9 +112,10 @@ def spread(
     one_of("what", what, tuple(KINDS))
     used, cautions = check_samples(samples)
     at = speed_of_study(scene, what, speed, isinstance(inputs, Mapping) and SPEED in inputs)
+    check_used(what, speed=speed, modes=modes, window=window)
     uncertain = check_tolerances(scene, inputs, at)
     options: dict[str, Any] = {
-        "speed": at,
+        "speed": None if SPEED in inputs else speed,
         "modes": modes,
         "window": window,
         "discretization": discretization,
@@ -124,7 +125,7 @@ def spread(
     answers = _StudyAnswers(scene, what, options | how)
 
     def derivatives() -> KnownDerivatives:
-        return known_derivatives(answers.first.question, uncertain)
+        return known_derivatives(replace(answers.first.question, speed=at), uncertain)
 
     return solve_spread(what, uncertain, used, check_seed(seed), answers, derivatives, cautions)
 

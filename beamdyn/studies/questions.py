@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.crossings import PossibleCrossing
 
 OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
+MODES = 3  # of frequencies and crossings by default
+WINDOW = (20.0, 30.0)  # of peaks by default [s]
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,8 @@ class Kind:
         Its unit.
     has_speed : bool
         Whether it belongs to a speed, which may be varied.
+    options : tuple of str
+        On which of the options "speed", "modes" and "window" it depends.
     needs_motion : bool
         Whether it is one of the scene's motion.
     """
@@ -31,16 +36,33 @@ class Kind:
     word: str
     unit: str
     has_speed: bool
+    options: tuple[str, ...] = ()
     needs_motion: bool = False
 
 
 KINDS = {
-    "frequencies": Kind("frequency", "Hz", True),
+    "frequencies": Kind("frequency", "Hz", True, ("speed", "modes")),
     "critical_speed": Kind("critical speed", "rad/s", False),
-    "crossings": Kind("resonance speed", "rad/s", False),
-    "amplitude": Kind("steady amplitude", "m", True, needs_motion=True),
-    "peak": Kind("peak", "m", True, needs_motion=True),
+    "crossings": Kind("resonance speed", "rad/s", False, ("speed", "modes")),
+    "amplitude": Kind("steady amplitude", "m", True, ("speed",), needs_motion=True),
+    "peak": Kind("peak", "m", True, ("speed", "window"), needs_motion=True),
 }
+
+
+def check_used(what: str, **given: object) -> None:
+    """Refuse options on which an answer does not depend; None is one that is not given.
+
+    Raises
+    ------
+    InvalidValue
+        With the answers that depend on it.
+    """
+    for name, value in given.items():
+        if value is not None and name not in KINDS[what].options:
+            *others, last = (other for other, kind in KINDS.items() if name in kind.options)
+            users = f"{', '.join(others)} and {last} do" if others else f"{last} does"
+            bound = f"{what} does not depend on it, only {users}"
+            raise InvalidValue(name, value, bound, "leave it out, or ask for one that does")
 
 
 @dataclass(frozen=True)
@@ -71,7 +93,7 @@ class StudyQuestion:
     modes: int
     discretization: DiscretizationChoice
     tolerance: float | None
-    window: tuple[float, float] = (20.0, 30.0)
+    window: tuple[float, float] = WINDOW
     resonances: Sequence[PossibleCrossing] = ()
 
     @property

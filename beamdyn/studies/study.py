@@ -39,7 +39,7 @@ from beamdyn.studies.frequencies import SimilarFrequencies
 from beamdyn.studies.inputs import SPEED, check_inputs, scene_of
 from beamdyn.studies.motion_numbers import unit_of_motion_number
 from beamdyn.studies.one_by_one import SingleDesigns
-from beamdyn.studies.questions import KINDS, StudyQuestion
+from beamdyn.studies.questions import KINDS, MODES, WINDOW, StudyQuestion, check_used
 from beamdyn.studies.refinement import Refinement
 from beamdyn.studies.result import Study
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
@@ -63,8 +63,8 @@ def study(
     what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     *,
     speed: float | None = None,
-    modes: int = 3,
-    window: tuple[float, float] = (20.0, 30.0),
+    modes: int | None = None,
+    window: tuple[float, float] | None = None,
     combine: Literal["product", "zip"] = "product",
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
@@ -97,10 +97,10 @@ def study(
     speed : float, optional
         Speed of frequencies, amplitudes and peaks where it is not varied, and top speed of crossings
         [rad/s]; if not given, 0 for frequencies, else the final speed of the motion.
-    modes : int
-        Number of modes of frequencies and crossings.
-    window : tuple of float
-        Beginning and end of the window of peaks [s], whose end is that of each run.
+    modes : int, optional
+        Number of modes of frequencies and crossings; 3 if not given.
+    window : tuple of float, optional
+        Beginning and end of the window of peaks [s], whose end is that of each run; 20 to 30 s if not given.
     combine : {"product", "zip"}
         Combine each value with each of the other inputs, or take the first of all, the second of all, ...
     discretization, tolerance
@@ -121,7 +121,8 @@ def study(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or no design has an answer.
+        If an argument is out of its range or given to an answer that does not depend on it, or no design has
+        an answer.
     StudyInterrupted
         If the executor breaks; finished parts are in the store.
 
@@ -138,11 +139,17 @@ def study(
     check_designs(designs)
     one_of("what", what, tuple(KINDS))
     check_discretization(discretization)
-    modes, tolerance = count("modes", modes), _check_tolerance(tolerance)
     run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
-    at = speed_of_study(scene, what, speed, SPEED in {each.name for each in designs.inputs})
+    varied = SPEED in {each.name for each in designs.inputs}
+    at = speed_of_study(scene, what, speed, varied)
+    check_used(what, speed=speed, modes=modes, window=window)
+    if varied and speed is not None:
+        raise InvalidValue("speed", speed, "the speed is varied, too", "leave one of the two out", "rad/s")
+    modes, tolerance = count("modes", MODES if modes is None else modes), _check_tolerance(tolerance)
     _check_motion_matters(what, designs)
-    question = StudyQuestion(scene, what, at, modes, discretization, tolerance, _check_window(window))
+    question = StudyQuestion(
+        scene, what, at, modes, discretization, tolerance, _check_window(WINDOW if window is None else window)
+    )
     request = _Request(question, designs)
     request.check()
     if what == "crossings":
@@ -322,6 +329,12 @@ class _Request:
             check_speeds(self.own_speeds, SPEED)
         if self.others.inputs:
             _check_scenes(self.question.scene, self.others)
+        question = self.question
+        if question.what == "crossings" and question.tolerance is not None and not self.is_similar:
+            bound = (
+                "crossings of these designs are found one by one, each as exactly as resonance_speeds does"
+            )
+            raise InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def resonances(self):
         """The resonances that may occur; refused where nothing excites the beam."""

@@ -321,12 +321,12 @@ def test_a_speed_past_the_critical_one_refuses_its_peak_alone():
     assert any(said.startswith("at 1 of 2 designs there is no answer") for said in study.warnings)
 
 
-@pytest.mark.parametrize("what", ["amplitude", "peak"])
-def test_warnings_are_counted_by_the_designs_that_they_are_of(what):
+@pytest.mark.parametrize(("what", "options"), [("amplitude", {}), ("peak", {"window": (0.5, 0.6)})])
+def test_warnings_are_counted_by_the_designs_that_they_are_of(what, options):
     critical = bd.critical_speed(SCENE)
     speeds = [20.0, 30.0, (1.5 if what == "amplitude" else 0.95) * critical]
     vary = {"beam.thickness": [2e-4, 2.001e-4], "speed": speeds}
-    study = bd.study(rolling(), vary, what, window=(0.5, 0.6), tolerance=1e-3)
+    study = bd.study(rolling(), vary, what, tolerance=1e-3, **options)
     limited = [said for said in study.warnings if "there are warnings" in said]
     assert len(limited) == 1 and limited[0].startswith("at 2 of 6 designs there are warnings; at beam.th")
 
