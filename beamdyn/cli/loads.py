@@ -98,9 +98,9 @@ def loads(
     angle: Text | None = None,
     window: Text | None = None,
     cycles: LoadQuantity | None = None,
-    quantity: LoadQuantity = "moment",
-    modes: BasisSize = "auto",
-    tolerance: float = 1e-5,
+    quantity: LoadQuantity | None = None,
+    modes: BasisSize | None = None,
+    tolerance: float | None = None,
     discretization: Discretization = "ritz",
     physics: PhysicsOption = None,
     outputs: Outputs = NO_FILES,
@@ -129,11 +129,11 @@ def loads(
     cycles
         In a transient: also count the cycles of this quantity, where it is largest (needs the extra fatigue).
     quantity
-        What --plot draws along the span.
+        What --plot and --report draw along the span; default: moment.
     modes
-        Of a transient and steady response, as for simulate and steady.
+        Of a transient and steady response, as for simulate and steady; default: auto.
     tolerance
-        The same.
+        The same; default: 1e-5.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     physics
@@ -145,14 +145,19 @@ def loads(
     from beamdyn.tables.loads import loads_csv
 
     outputs.check(scene)
+    check_drawn(quantity, outputs)
     _check_together(speed, t_end, speeds, angle, window, cycles)
+    _check_moving(t_end is not None or speeds is not None, modes=modes, tolerance=tolerance)
     question = Question.on_file(
         "beamdyn loads", scene, speed=speed, t_end=t_end, speeds=speeds, **places.options,
         angle=angle, window=window, cycles=cycles, modes=modes, tolerance=tolerance,
         discretization=discretization, physics=physics,
     )  # fmt: skip
     where = places.where
-    basis: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
+    basis: dict[str, Any] = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5}
+    basis |= {
+        name: value for name, value in (("modes", modes), ("tolerance", tolerance)) if value is not None
+    }
     with places.named():
         if t_end is not None:
             result, tables = _in_transient(load_moving(scene, physics), t_end, window, cycles, where, basis)
@@ -162,8 +167,23 @@ def loads(
             loaded = load_with(scene, physics, speed)
             result, tables = _in_equilibrium(loaded, speed, angle, where, discretization)
     span = {} if window is None else dict(zip(("start", "end"), parse_window(window), strict=True))
-    draw = on_axes(lambda ax: result.plot(ax, quantity, **span))
+    draw = on_axes(lambda ax: result.plot(ax, quantity or "moment", **span))
     deliver(result, outputs, question, tables, loads_csv(result), draw, _warnings(result), _refusal(result))
+
+
+def check_drawn(quantity: LoadQuantity | None, outputs: Outputs) -> None:
+    """Refuse a quantity to be drawn if there is no picture."""
+    if quantity is not None and outputs.plot is None and outputs.report is None:
+        remedy = "give --plot or --report, or leave it out"
+        raise ValueError(f"--quantity = {quantity}: it is what a picture shows; {remedy}")
+
+
+def _check_moving(moving: bool, **given: object) -> None:
+    """Refuse options of a transient and of steady response in equilibrium."""
+    for name, value in given.items():
+        if value is not None and not moving:
+            remedy = "give --t-end or --speeds, too, or leave it out"
+            raise ValueError(f"--{name} = {value}: the equilibrium does not depend on it; {remedy}")
 
 
 def _check_together(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from beamdyn.cli.excitations import NO_RANDOM_INPUT, RandomInput
-from beamdyn.cli.loads import EVERYWHERE, LoadQuantity, SpanPlaces
+from beamdyn.cli.loads import EVERYWHERE, LoadQuantity, SpanPlaces, check_drawn
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
@@ -30,7 +30,7 @@ def random_loads(
     random_input: RandomInput = NO_RANDOM_INPUT,
     duration: Text = "1 h",
     places: SpanPlaces = EVERYWHERE,
-    quantity: LoadQuantity = "strain",
+    quantity: LoadQuantity | None = None,
     modes: BasisSize = "auto",
     discretization: Discretization = "ritz",
     physics: PhysicsOption = None,
@@ -49,7 +49,7 @@ def random_loads(
     places
         Stations, and points of the section.
     quantity
-        What --plot draws along the span.
+        What --plot and --report draw along the span; default: strain.
     modes
         Number of modes; auto: the fewest that keep the error below 1e-4 of the largest along the span.
     discretization
@@ -64,6 +64,7 @@ def random_loads(
     from beamdyn.tables.loads import random_loads_csv, random_loads_table
 
     outputs.check(scene, random_input.psd)
+    check_drawn(quantity, outputs)
     drive, spectrum = random_input.drive, random_input.density
     loaded = load_with(scene, physics, random_input.speed)
     question = Question.on_file(
@@ -76,6 +77,6 @@ def random_loads(
             loaded, speed, spectrum, drive, lasting,
             **places.where, modes=modes, discretization=discretization,
         )  # fmt: skip
-    draw = on_axes(lambda ax: result.plot(ax, quantity))
+    draw = on_axes(lambda ax: result.plot(ax, quantity or "strain"))
     tables, rows = [random_loads_table(result)], random_loads_csv(result)
     deliver(result, outputs, question, tables, rows, draw, result.warnings)

@@ -27,6 +27,11 @@ if TYPE_CHECKING:
     from beamdyn.sensitivities.result import Sensitivities
 
 Answer = Literal["frequencies", "critical_speed", "crossings"]
+_OPTIONS = {  # on which each answer depends
+    "frequencies": ("speed", "modes", "tolerance"),
+    "critical_speed": ("tolerance",),
+    "crossings": ("speed", "modes", "order"),
+}
 
 
 @app.command(
@@ -41,8 +46,8 @@ def sensitivities(
     *,
     what: Answer = "frequencies",
     speed: Text | None = None,
-    modes: ModeCount = 3,
-    order: Order = 1,
+    modes: ModeCount | None = None,
+    order: Order | None = None,
     inputs: Annotated[tuple[str, ...], Parameter(negative="", show_default=False)] = (),
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
@@ -62,28 +67,30 @@ def sensitivities(
         Speed of frequencies with its unit, top speed of crossings; default: the final speed of the scene's
         motion, or 0 without one.
     modes
-        Number of modes, from the lowest.
+        Number of modes of frequencies and crossings, from the lowest; default: 3.
     order
-        Of crossings, as of resonances: 1: resonances with the load; more: also combination resonances by the
-        periodic coefficients.
+        Of crossings, as of resonances: 1, the default: resonances with the load; more: also combination
+        resonances by the periodic coefficients.
     inputs
         Numbers by their names in the file, such as beam.thickness, or speed, the option once for each; all if
         not given.
     discretization
         ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
     tolerance
-        Largest relative error of a frequency: the cheapest discretization that meets it is chosen; 1e-11
-        if not given.
+        Largest relative error of a frequency or critical speed: the cheapest discretization that meets it is
+        chosen; 1e-11 if not given.
     physics
         auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
     outputs
         Output files.
     """
+    from beamdyn.common.checks import check_used
     from beamdyn.common.edge.html_report import Question
     from beamdyn.common.edge.wording import of_file
     from beamdyn.tables.sensitivities import sensitivities_csv, sensitivities_table
 
     outputs.check(scene)
+    check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
     asked = {
         "what": what,
         "speed": speed,
@@ -95,7 +102,8 @@ def sensitivities(
     question = Question.on_file("beamdyn sensitivities", scene, **asked, **options)
     loaded = load_moving(scene, physics) if what == "crossings" else load_with(scene, physics)
     with of_file({}):
-        result = _solve(loaded, what, speed, modes, order, inputs or None, discretization, tolerance)
+        number, highest = 3 if modes is None else modes, 1 if order is None else order
+        result = _solve(loaded, what, speed, number, highest, inputs or None, discretization, tolerance)
     tables, rows = [sensitivities_table(result)], sensitivities_csv(result)
     draw, refusal = on_axes(result.plot), _refusal(result)
     deliver(result, outputs, question, tables, rows, draw, result.warnings, refusal)

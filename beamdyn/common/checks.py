@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import NoneType, UnionType
 from typing import Any, get_args
@@ -307,6 +307,31 @@ def one_of(name: str, value: object, choices: Sequence[str]) -> None:
     if not isinstance(value, str) or value not in choices:
         *others, last = map(repr, choices)
         raise InvalidValue(name, value, f"give {', '.join(others)} or {last}")
+
+
+def check_used(what: str, options: Mapping[str, Collection[str]], **given: object) -> None:
+    """Refuse options on which an answer does not depend.
+
+    Parameters
+    ----------
+    what : str
+        Name of the answer.
+    options : mapping of str to collection of str
+        Of each answer that there is, the options on which it depends.
+    **given : object
+        The options; None is one that is not given.
+
+    Raises
+    ------
+    InvalidValue
+        With the answers that depend on it.
+    """
+    for name, value in given.items():
+        if value is not None and name not in options[what]:
+            *others, last = (answer for answer, used in options.items() if name in used)
+            users = f"{', '.join(others)} and {last} do" if others else f"{last} does"
+            bound = f"{what} does not depend on it, only {users}"
+            raise InvalidValue(name, value, bound, "leave it out, or ask for one that does")
 
 
 # Sequences ----------------------------------------------------------------------------------------

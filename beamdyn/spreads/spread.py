@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from beamdyn.common.announced import announced, unannounced
-from beamdyn.common.checks import InvalidValue, kind, one_of
+from beamdyn.common.checks import InvalidValue, check_used, kind, one_of
 from beamdyn.common.parallel.tasks import Progress
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.result import Spread
@@ -33,7 +33,7 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.spreads.derivatives import known_derivatives
 from beamdyn.spreads.nominal_values import nominal_value
 from beamdyn.studies.inputs import SPEED, check_name, scene_of, unit_of
-from beamdyn.studies.questions import KINDS, check_used
+from beamdyn.studies.questions import KINDS, OPTIONS
 from beamdyn.studies.result import Study
 from beamdyn.studies.study import speed_of_study, study
 
@@ -112,7 +112,7 @@ def spread(
     one_of("what", what, tuple(KINDS))
     used, cautions = check_samples(samples)
     at = speed_of_study(scene, what, speed, isinstance(inputs, Mapping) and SPEED in inputs)
-    check_used(what, speed=speed, modes=modes, window=window)
+    check_used(what, OPTIONS, speed=speed, modes=modes, window=window)
     uncertain = check_tolerances(scene, inputs, at)
     options: dict[str, Any] = {
         "speed": None if SPEED in inputs else speed,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beamdyn.common.checks import InvalidValue
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.crossings import PossibleCrossing
@@ -47,22 +46,7 @@ KINDS = {
     "amplitude": Kind("steady amplitude", "m", True, ("speed",), needs_motion=True),
     "peak": Kind("peak", "m", True, ("speed", "window"), needs_motion=True),
 }
-
-
-def check_used(what: str, **given: object) -> None:
-    """Refuse options on which an answer does not depend; None is one that is not given.
-
-    Raises
-    ------
-    InvalidValue
-        With the answers that depend on it.
-    """
-    for name, value in given.items():
-        if value is not None and name not in KINDS[what].options:
-            *others, last = (other for other, kind in KINDS.items() if name in kind.options)
-            users = f"{', '.join(others)} and {last} do" if others else f"{last} does"
-            bound = f"{what} does not depend on it, only {users}"
-            raise InvalidValue(name, value, bound, "leave it out, or ask for one that does")
+OPTIONS = {what: kind.options for what, kind in KINDS.items()}
 
 
 @dataclass(frozen=True)

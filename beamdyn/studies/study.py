@@ -19,6 +19,7 @@ from beamdyn.common.checks import (
     InvalidValue,
     NoModelAnswer,
     as_floats,
+    check_used,
     count,
     one_of,
     positive,
@@ -39,7 +40,7 @@ from beamdyn.studies.frequencies import SimilarFrequencies
 from beamdyn.studies.inputs import SPEED, check_inputs, scene_of
 from beamdyn.studies.motion_numbers import unit_of_motion_number
 from beamdyn.studies.one_by_one import SingleDesigns
-from beamdyn.studies.questions import KINDS, MODES, WINDOW, StudyQuestion, check_used
+from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion
 from beamdyn.studies.refinement import Refinement
 from beamdyn.studies.result import Study
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
@@ -142,7 +143,7 @@ def study(
     run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
     varied = SPEED in {each.name for each in designs.inputs}
     at = speed_of_study(scene, what, speed, varied)
-    check_used(what, speed=speed, modes=modes, window=window)
+    check_used(what, OPTIONS, speed=speed, modes=modes, window=window)
     if varied and speed is not None:
         raise InvalidValue("speed", speed, "the speed is varied, too", "leave one of the two out", "rad/s")
     modes, tolerance = count("modes", MODES if modes is None else modes), _check_tolerance(tolerance)

@@ -14,6 +14,7 @@ from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
 from beamdyn.common.edge.program import NoAnswer, examples
 from beamdyn.common.edge.spread_options import NO_SPREAD, OPTION, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
+from beamdyn.common.edge.varying import OPTION as VARY
 from brakes.cli.program import warn
 
 if TYPE_CHECKING:
@@ -119,6 +120,7 @@ def run_command(
     given = varying.options | spreading.options
     question = Question.of(f"brakes {command}", file, text, **options, **given, what=what)
     spreading.check(varying)
+    _check_of_one(varying, spreading, written)
     if spreading.spread:
         _answer_spread(brake, tables, question, (file, varying, spreading, what), outputs)
         return
@@ -140,6 +142,14 @@ def run_command(
     warn(answer.warnings)
     if answer.refusals:
         raise NoAnswer("; ".join(answer.refusals))
+
+
+def _check_of_one(varying: VaryOptions, spreading: SpreadOptions, files: Mapping[str, Path | None]) -> None:
+    """Refuse files that show one design where there are many."""
+    many = VARY if varying.vary else OPTION if spreading.spread else ""
+    for option, path in files.items():
+        if many and path is not None:
+            raise ValueError(f"--{option} = {path}: it is of one design; leave {many} out")
 
 
 def _answer_many(

@@ -67,6 +67,9 @@ def caliper(
     from brakes.calipers import NAMED
 
     if list_:
+        files = {"plot": outputs.plot, "json": outputs.json, "csv": outputs.csv, "report": outputs.report}
+        files |= {"free-bodies": free_bodies, "animation": animation}
+        _check_alone(mechanism, **files, **varying.options, **spreading.options, what=what)
         show(names_table(name) for name in NAMED)
         return
     further = {
@@ -74,3 +77,14 @@ def caliper(
         "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
     }
     run_command(MECHANISM, "caliper", mechanism, varying, spreading, what, outputs, further)
+
+
+def _check_alone(mechanism: str, **options: object) -> None:
+    """Refuse what is given beside --list."""
+    given = {"MECHANISM": mechanism or None} | {f"--{name}": value for name, value in options.items()}
+    for name, value in given.items():
+        if value is not None:
+            text = ", ".join(map(str, value)) if isinstance(value, tuple) else value
+            raise ValueError(
+                f"{name} = {text}: --list shows the named calipers alone; leave one of the two out"
+            )

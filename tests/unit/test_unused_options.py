@@ -105,3 +105,38 @@ def test_peaks_of_the_command_have_a_window_by_default(tmp_path):
     assert main(arguments) == 0
     assert bd.load(path).question.window == (20.0, 30.0)
     assert np.isfinite(bd.load(path).value).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--what", "critical_speed", "--speed", "5 rad/s"), '--speed = "5 rad/s": critical_speed does not'),
+        (("--what", "critical_speed", "--modes", "3"), "--modes = 3: critical_speed does not depend on it"),
+        (("--what", "critical_speed", "--order", "2"), "--order = 2: critical_speed does not depend on it"),
+        (("--order", "2"), "--order = 2: frequencies does not depend on it, only crossings does"),
+        (("--what", "crossings", "--tolerance", "1e-6"), "only frequencies and critical_speed do"),
+    ],
+)
+def test_sensitivities_refuse_what_their_answer_does_not_use(options, said, refusal):
+    assert said in refusal("sensitivities", ROLLING, *options)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--modes", "3"), "--modes = 3: the equilibrium does not depend on it; give --t-end or --speeds"),
+        (("--tolerance", "1e-3"), "--tolerance = 0.001: the equilibrium does not depend on it; give --t-end"),
+        (
+            ("--quantity", "strain"),
+            "--quantity = strain: it is what a picture shows; give --plot or --report",
+        ),
+    ],
+)
+def test_loads_refuse_what_nothing_uses(options, said, refusal):
+    assert said in refusal("loads", HARVESTER, *options)
+
+
+def test_random_loads_refuse_a_quantity_without_a_picture(refusal):
+    road = str(EXAMPLES / "rough_road.toml")
+    said = refusal("random-loads", road, "--road", "C", "--at", "0 mm", "--quantity", "stress")
+    assert "--quantity = stress: it is what a picture shows; give --plot or --report, or leave it out" in said

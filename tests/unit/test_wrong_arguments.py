@@ -176,12 +176,12 @@ CALLS = {
         bd.study,
         {"scene": SCENE, "vary": {"mount.radius": [0.1]}, "what": "frequencies", "speed": 5.0, "modes": 2}
         | {"combine": "product", "discretization": "ritz", "tolerance": 0.1}
-        | {"workers": 1, "executor": None, "progress": None, "store": None, "window": (0.0, 0.02)},
+        | {"workers": 1, "executor": None, "progress": None, "store": None, "window": None},
     ),
     "spread": (
         bd.spread,
         {"scene": SCENE, "inputs": {"mount.radius": "+-1%"}, "what": "frequencies", "samples": 128}
-        | {"seed": 0, "speed": 5.0, "modes": 2, "window": (0.0, 0.02), "discretization": "ritz"}
+        | {"seed": 0, "speed": 5.0, "modes": 2, "window": None, "discretization": "ritz"}
         | {"tolerance": 0.1, "workers": 1, "executor": None, "progress": None, "store": None},
     ),
     "Uniform": (bd.Uniform, {"low": 1.0, "high": 2.0, "text": "1 to 2"}),
