@@ -16,6 +16,7 @@ import numpy as np
 
 from beamdyn.common.comparison import Comparison
 from beamdyn.common.digits import supported
+from beamdyn.common.one_line import rounded_up
 from beamdyn.published import load
 from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables, sections
 from beamdyn.reproduce.entries import PrintedValue, half_unit
@@ -112,9 +113,16 @@ def of_printed_tables() -> Sections:
 def _row_of_entry(entry: PrintedValue, test: str) -> Row:
     verdict = "agrees" if entry.agrees else "differs"
     if entry.exact:
-        verdict = f"the print errs: {entry.exact}"
+        verdict = f"the print errs: {_as_sure(entry)}"
     ours = supported(entry.ours, entry.error, 12)
-    return Row(f"{entry.where}, mode {entry.mode}", entry.printed, ours, f"{entry.error:.0e}", verdict, test)
+    return Row(
+        f"{entry.where}, mode {entry.mode}", entry.printed, ours, rounded_up(entry.error), verdict, test
+    )
+
+
+def _as_sure(entry: PrintedValue) -> str:
+    """The third value with the digits that our error confirms, of those that it has."""
+    return min(supported(float(entry.exact), entry.error, 12), entry.exact, key=len)
 
 
 def of_reference_tables() -> Sections:
@@ -214,7 +222,12 @@ def _tips(case: dict[str, Any], found: Any) -> Iterator[Row]:
         verdict = "agrees" if close <= found.error + 0.5e-9 else "differs"
         where = f"{case['name']}, tip {name}"
         yield Row(
-            where, printed, f"{ours:.10f}", f"{found.error:.0e}", verdict, "test_elastica.py::test_tips"
+            where,
+            printed,
+            supported(ours, found.error, 10),
+            rounded_up(found.error),
+            verdict,
+            "test_elastica.py::test_tips",
         )
 
 
@@ -235,7 +248,7 @@ def of_lee_and_yoo() -> Sections:
 
 def _row_of_comparison(comparison: Comparison, test: str) -> Row:
     what, source, printed, ours, _, verdict = comparison.cells()
-    error = f"{comparison.error:.0e}" if comparison.error else "-"
+    error = rounded_up(comparison.error) if comparison.error else "-"
     return Row(f"{what} ({source})", printed, ours, error, verdict, test)
 
 
@@ -359,7 +372,7 @@ Errors in print. A printed value that ours contradicts is confirmed by a third c
 
 ## Values of tables
 
-The proof: the power series in 30 digits, and guaranteed bounds that exclude the print.
+The proof: the power series in 30 digits, here rounded to 12, and guaranteed bounds that exclude the print.
 """
 _HEADS_OF_VALUES = (
     "source",

@@ -141,10 +141,10 @@ def error_at_most(error: Any, unit: str = "") -> str:
     largest = float(np.abs(each).max())
     if math.isinf(largest):
         return "error unresolved"
-    return f"error <= {_rounded_up(largest)}{unit and ' ' + unit}"
+    return f"error <= {rounded_up(largest)}{unit and ' ' + unit}"
 
 
-def _rounded_up(value: float) -> str:
+def rounded_up(value: float) -> str:
     """A number that is not negative with one digit, not below it."""
     if not value:
         return "0"

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from beamdyn import published
+from beamdyn.reproduce.entries import PrintedValue, half_unit
 from benchmarks import sources, validation_manual
 from brakes import published as published_brakes
 
@@ -45,6 +48,41 @@ def test_no_value_differs_without_a_reason(part: str) -> None:
     assert len(rows) >= 20
     assert [row for row in rows if "unexpected" in row.verdict] == []
     assert [row for row in rows if not re.search(r"\d", row.ours)] == []
+
+
+def _unsure(row: validation_manual.Row) -> list[str]:
+    """Numbers of ours and of the verdict with more digits than the stated error supports."""
+    numbers = re.findall(r"(?<![\w.])-?\d+\.\d+(?:e[-+]?\d+)?(?![\d.])", f"{row.ours} {row.verdict}")
+    return [text for text in numbers if half_unit(text) < 0.999 * float(row.error)]
+
+
+def test_no_digit_is_beyond_the_stated_error() -> None:
+    """Neither of ours nor of the third computation in a verdict; of the quick parts, and of all errata."""
+    parts = (validation_manual.PARTS[name][1]() for name in ("single_answers", "wider_models"))
+    rows = [row for part in parts for section in part.values() for row in section]
+    entries = [e for each in validation_manual.printed_tables.all_entries("ritz").values() for e in each]
+    rows += [validation_manual._row_of_entry(entry, "") for entry in entries if entry.exact]
+    assert len(rows) > 50
+    assert [(row.where, row.error) for row in rows if not row.error[0].isdigit()] == []
+    assert [(row.where, unsure) for row in rows if (unsure := _unsure(row))] == []
+
+
+def test_a_verdict_has_no_more_digits_than_the_third_computation() -> None:
+    row = validation_manual._row_of_entry(PrintedValue("", 1, "3.51", 3.516015268500, 1e-15, "3.51602"), "")
+    assert row.verdict == "the print errs: 3.51602"
+
+
+def test_a_stated_error_is_not_below_the_error() -> None:
+    """It has one digit, rounded up."""
+    row = validation_manual._row_of_entry(PrintedValue("", 1, "3.516", 3.5160152685, 1.2e-12), "")
+    assert row.error == "2e-12"
+
+
+def test_tips_have_the_digits_that_their_error_supports() -> None:
+    case = {"name": "bent", "tip": ("0.9", "0.4"), "setting_angle_deg": 5.0, "bending_angle_deg": 0.0}
+    found = SimpleNamespace(tip=np.array([0.9000123456789, 0.4000123456789, 0.0]), error=4e-6)
+    rows = validation_manual._tips(case, found)
+    assert [row.ours for row in rows] == ["0.90001", "0.40001"]
 
 
 def test_every_printed_table_says_of_which_beam_it_is() -> None:

@@ -8,6 +8,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.published import load
 from benchmarks.cases import measured, single_answers
+from benchmarks.cases.scenes import BLADE_SPIN_UP
 
 
 @pytest.mark.parametrize(
@@ -40,6 +41,11 @@ def test_growth_where_the_speed_varies() -> None:
     found = [*single_answers.growth_factors()]
     assert len(found) == 4
     assert [c for c in found if not c.agrees] == []
+
+
+def test_the_stated_error_of_a_spin_up_has_what_its_modes_leave_out() -> None:
+    found, more = single_answers.spin_up(), bd.simulate(BLADE_SPIN_UP, 20.0, modes=14)
+    assert abs(found.ours - more.largest) + more.time_error <= found.error
 
 
 def test_branches_of_the_harvester() -> None:
