@@ -1,7 +1,7 @@
 """Build the site into build/site, offline: ``python docs/build.py`` (extra ``docs``); a warning is an error.
 
-With ``-E`` everything is made anew. Then every link and every anchor within the site is followed, and nothing
-may come from a network.
+The validation manual is written anew if what its numbers follow from has changed; with ``-E`` everything is.
+Then every link and every anchor within the site is followed, and nothing may come from a network.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator, Sequence
 from importlib import import_module
 from typing import Any, get_args, get_origin
@@ -79,7 +80,18 @@ def _default(entry: Input, name: str) -> str:
 
 
 def write_tables(app, docname: str, source: list[str]) -> None:
+    if not MARK.search(source[0]):
+        return
     source[0] = MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2])), source[0])
+    for file in _described_in():
+        app.env.note_dependency(file)
+
+
+def _described_in() -> Iterator[str]:
+    """Modules of the packages: keys are described where the objects are that they make."""
+    for name, module in [*sys.modules.items()]:
+        if name.startswith(("beamdyn.", "brakes.")) and (file := getattr(module, "__file__", None)):
+            yield file
 
 
 def setup(app) -> dict[str, bool]:
