@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from cyclopts import Parameter
 
+from beamdyn.cli.cycles import NOT_COUNTED, CycleOptions, LoadQuantity
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,
@@ -36,8 +37,6 @@ if TYPE_CHECKING:
 
     from beamdyn.loads.span_loads import SpanLoads
     from beamdyn.scene.scene import Scene
-
-LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 
 
 @Parameter(name="*")
@@ -97,7 +96,7 @@ def loads(
     places: SpanPlaces = EVERYWHERE,
     angle: Text | None = None,
     window: Text | None = None,
-    cycles: LoadQuantity | None = None,
+    counting: CycleOptions = NOT_COUNTED,
     quantity: LoadQuantity | None = None,
     modes: BasisSize | None = None,
     tolerance: float | None = None,
@@ -126,8 +125,8 @@ def loads(
         In equilibrium: angle of rotation at which gravity acts, with its unit, e.g. "90 deg"; default 0.
     window
         In a transient: the largest loads within this time window: start:end, e.g. "20:30 s".
-    cycles
-        In a transient: also count the cycles of this quantity, where it is largest (needs the extra fatigue).
+    counting
+        Cycles of a transient.
     quantity
         What --plot and --report draw along the span; default: moment.
     modes
@@ -144,13 +143,14 @@ def loads(
     from beamdyn.common.edge.html_report import Question
     from beamdyn.tables.loads import loads_csv
 
-    outputs.check(scene)
+    outputs.check(scene, **{"cycles-file": counting.cycles_file})
     check_drawn(quantity, outputs)
-    _check_together(speed, t_end, speeds, angle, window, cycles)
+    _check_together(speed, t_end, speeds, angle, window)
+    counting.check(in_transient=t_end is not None)
     _check_moving(t_end is not None or speeds is not None, modes=modes, tolerance=tolerance)
     question = Question.on_file(
         "beamdyn loads", scene, speed=speed, t_end=t_end, speeds=speeds, **places.options,
-        angle=angle, window=window, cycles=cycles, modes=modes, tolerance=tolerance,
+        angle=angle, window=window, **counting.options, modes=modes, tolerance=tolerance,
         discretization=discretization, physics=physics,
     )  # fmt: skip
     where = places.where
@@ -160,7 +160,7 @@ def loads(
     }
     with places.named():
         if t_end is not None:
-            result, tables = _in_transient(load_moving(scene, physics), t_end, window, cycles, where, basis)
+            result, tables = _in_transient(load_moving(scene, physics), t_end, window, counting, where, basis)
         elif speeds is not None:
             result, tables = _in_steady_response(load_with(scene, physics, speeds), speeds, where, basis)
         else:
@@ -192,7 +192,6 @@ def _check_together(
     speeds: str | None,
     angle: str | None,
     window: str | None,
-    cycles: str | None,
 ) -> None:
     """Refuse options that belong to different analyses."""
     kinds = [name for name, given in (("--speed", speed), ("--t-end", t_end), ("--speeds", speeds)) if given]
@@ -201,9 +200,8 @@ def _check_together(
             f"{' and '.join(kinds)}: give one of them: --speed for the equilibrium, --t-end for a transient, "
             "--speeds for steady response"
         )
-    for name, value in (("--window", window), ("--cycles", cycles)):
-        if value is not None and t_end is None:
-            raise ValueError(f"{name} belongs to a transient: give --t-end, too")
+    if window is not None and t_end is None:
+        raise ValueError("--window belongs to a transient: give --t-end, too")
     if angle is not None and (t_end is not None or speeds is not None):
         raise ValueError("--angle belongs to the equilibrium at a --speed: elsewhere the beam turns")
 
@@ -224,14 +222,14 @@ def _in_transient(
     scene: Scene,
     t_end: str,
     window: str | None,
-    cycles: LoadQuantity | None,
+    counting: CycleOptions,
     where: dict[str, Any],
     basis: dict[str, Any],
 ) -> tuple[SpanLoads, list[RenderableType]]:
     from beamdyn import count_cycles, simulate, transient_loads
-    from beamdyn.tables.loads import cycles_table, transient_loads_table
+    from beamdyn.tables.loads import transient_loads_table
 
-    if cycles is not None and find_spec("rainflow") is None:
+    if counting.cycles is not None and find_spec("rainflow") is None:
         raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")
     end = parse_positive("--t-end", t_end, "s")
     span = None if window is None else parse_window(window, end)
@@ -239,11 +237,13 @@ def _in_transient(
         run = simulate(scene, end, **basis)
     result = transient_loads(run, **where)
     tables: list[RenderableType] = [transient_loads_table(result, span)]
-    if cycles is not None:
+    if counting.cycles is not None:
         ends = (None, None) if span is None else span
-        place = result.largest(cycles, None, *ends)
+        place = result.largest(counting.cycles, None, *ends)
         station = result.station_of(place)
-        tables.append(cycles_table(count_cycles(result, cycles, station, place.component, *ends)))
+        cycles = count_cycles(result, counting.cycles, station, place.component, *ends)
+        counting.write(cycles)
+        tables += counting.tables(cycles, place.error)
     return result, tables
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from beamdyn.cli.cycles import LoadQuantity
 from beamdyn.cli.excitations import NO_RANDOM_INPUT, RandomInput
-from beamdyn.cli.loads import EVERYWHERE, LoadQuantity, SpanPlaces, check_drawn
+from beamdyn.cli.loads import EVERYWHERE, SpanPlaces, check_drawn
 from beamdyn.cli.program import app, deliver
 from beamdyn.cli.values import (
     BasisSize,

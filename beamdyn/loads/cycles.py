@@ -20,6 +20,8 @@ from beamdyn.scene.scene import Scene
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+TURNING_POINTS = 1e-3  # relative error of turning points by eight samples in each step
+
 
 @dataclass(frozen=True)
 class LoadCycles(Result):

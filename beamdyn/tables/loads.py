@@ -12,6 +12,7 @@ from rich.text import Text
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 from beamdyn.equations.directions import words_of_directions
+from beamdyn.loads.cycles import TURNING_POINTS
 from beamdyn.loads.span_loads import REMEDIES
 
 if TYPE_CHECKING:
@@ -222,18 +223,44 @@ def cycles_table(cycles: LoadCycles) -> Group:
     return table(title, (f"range [{unit}]", "cycles"), rows[::-1], ())
 
 
+def equivalents_table(cycles: LoadCycles, exponents: Sequence[float], number: float, error: float) -> Group:
+    """Ranges of equal cycles that do the damage of these, by the exponent of the Woehler curve.
+
+    Parameters
+    ----------
+    cycles : LoadCycles
+        The cycles.
+    exponents : sequence of float
+        Exponents of the Woehler curve.
+    number : float
+        Number of equal cycles.
+    error : float
+        Absolute error of the quantity [its unit].
+    """
+    scale, unit = _SCALES.get(cycles.quantity, (1.0, "1/m"))
+    rows = []
+    for m in exponents:
+        value = cycles.equivalent_range(m, number)
+        # Each range is off by twice the error of the values at most; Minkowski's inequality adds them up.
+        of_values = 2 * error * (float(cycles.counts.sum()) / number) ** (1 / m)
+        shown = supported(scale * value, scale * (of_values + TURNING_POINTS * value), _MOST_DIGITS)
+        rows.append((f"{m:g}", shown))
+    title = f"Damage-equivalent ranges (number of equal cycles: {number:g})"
+    return table(title, ("Woehler exponent", f"range of {cycles.quantity} [{unit}]"), rows, ())
+
+
 # CSV ----------------------------------------------------------------------------------------------
 
-_CSV_UNITS = {"force": "_N", "moment": "_N_m", "curvature": "_per_m", "strain": "", "stress": "_Pa"}
+CSV_UNITS = {"force": "_N", "moment": "_N_m", "curvature": "_per_m", "strain": "", "stress": "_Pa"}
 
 
 def loads_csv(result: SpanLoads) -> Iterator[Sequence[object]]:
     """A row a case and station: the place, all loads, strains and stresses, and their errors."""
-    heads = [head for name in _CSV_UNITS for head in _csv_heads(result, name)]
+    heads = [head for name in CSV_UNITS for head in _csv_heads(result, name)]
     first = result.case.replace(" [", "_").rstrip("]").replace("/", "_per_")
     yield first, "position_m", "side", *heads, *(f"error_of_{head}" for head in heads)
-    values = np.concatenate([result.values(name) for name in _CSV_UNITS], axis=-1)
-    errors = np.concatenate([result.error_of(name) for name in _CSV_UNITS], axis=-1)
+    values = np.concatenate([result.values(name) for name in CSV_UNITS], axis=-1)
+    errors = np.concatenate([result.error_of(name) for name in CSV_UNITS], axis=-1)
     errors = np.broadcast_to(errors, values.shape)
     for case, of_case, error in zip(result.cases.tolist(), values, errors, strict=True):
         for place, row, more in zip(_csv_places(result), of_case.tolist(), error.tolist(), strict=True):
@@ -248,7 +275,7 @@ def _csv_places(result: SpanLoads) -> list[tuple[float, str]]:
 
 def random_loads_csv(result: RandomLoads) -> Iterator[Sequence[object]]:
     """A row a station: the place, and of each component the largest expected and what it is made of."""
-    heads = [head for name in _CSV_UNITS for head in _csv_heads(result, name)]
+    heads = [head for name in CSV_UNITS for head in _csv_heads(result, name)]
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],
@@ -259,13 +286,13 @@ def random_loads_csv(result: RandomLoads) -> Iterator[Sequence[object]]:
         "crossings_per_s": result.crossings,
     }
     yield "position_m", "side", *(f"{part}_{head}" for part in parts for head in heads)
-    values = [np.concatenate([of(name) for name in _CSV_UNITS], axis=-1) for of in parts.values()]
+    values = [np.concatenate([of(name) for name in CSV_UNITS], axis=-1) for of in parts.values()]
     for place, row in zip(_csv_places(result), np.concatenate(values, axis=-1).tolist(), strict=True):
         yield *place, *row
 
 
 def _csv_heads(result: SpanLoads, quantity: str) -> list[str]:
-    unit = _CSV_UNITS[quantity]
+    unit = CSV_UNITS[quantity]
     if quantity in ("strain", "stress"):
         return [f"{quantity}_{k + 1}{unit}" for k in range(result.points.shape[1])]
     both = result.scene.physics.planes == 2

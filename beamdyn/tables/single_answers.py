@@ -11,6 +11,7 @@ from rich.text import Text
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
+from beamdyn.tables.loads import CSV_UNITS
 
 if TYPE_CHECKING:
     from beamdyn.equations.terms import Terms
@@ -93,6 +94,7 @@ def terms_csv(result: Terms) -> Iterator[Sequence[object]]:
 
 def cycles_csv(result: LoadCycles) -> Iterator[Sequence[object]]:
     """Range, mean and count of each cycle."""
-    yield f"range_of_{result.quantity}", "mean", "cycles"
+    unit = CSV_UNITS[result.quantity]
+    yield f"range_of_{result.quantity}{unit}", f"mean{unit}", "cycles"
     columns = result.ranges, result.means, result.counts
     yield from zip(*(column.tolist() for column in columns), strict=True)

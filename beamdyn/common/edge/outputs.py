@@ -28,6 +28,7 @@ _SUFFIXES = {
     "json": (".json", ".txt", ""),
     "csv": _TABLES,
     "crossings": _TABLES,
+    "cycles-file": (".json", *_TABLES),
     "plot": (".png", ".svg", ".pdf"),
     "report": (".html", ".htm"),
     "shapes": (".vtu", ".vtk"),

@@ -1,0 +1,115 @@
+"""Cycles of `beamdyn loads`: counted as the standard does, in files, with damage-equivalent ranges."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import BAD_INPUT, DONE, main
+from beamdyn.loads.load_path import LoadPath
+
+pytest.importorskip("rainflow", reason="cycle counts are the extra fatigue")
+
+ROLLING = str(Path(__file__).parents[2] / "examples" / "rolling_harvester.toml")
+RUN = ("--t-end", "0.3 s", "--modes", "2", "--window", "0.1:0.3 s", "--at", "0 mm")
+# ASTM E1049-85, section 5.4.4 and Fig. 6: a history, and its ranges with their numbers of cycles.
+HISTORY = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]
+OF_THE_STANDARD = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+ROUNDING = 1e-14  # of a sum of a few powers
+
+
+@pytest.fixture(scope="module")
+def loads() -> bd.TransientLoads:
+    return bd.transient_loads(bd.simulate(bd.load_scene(ROLLING), 0.3, 2), at=[0.0])
+
+
+@pytest.fixture
+def standard(loads, monkeypatch) -> bd.LoadCycles:
+    """Cycles of the standard's history in place of a moment's."""
+    monkeypatch.setattr(LoadPath, "series_of", lambda *_: np.array(HISTORY))
+    return bd.count_cycles(loads, "moment")
+
+
+def test_cycles_are_those_of_the_standard(standard):
+    counted = {float(r): float(standard.counts[standard.ranges == r].sum()) for r in {*standard.ranges}}
+    assert counted == OF_THE_STANDARD
+
+
+@pytest.mark.parametrize(("exponent", "by_hand"), [(1.0, 23.0), (2.0, 151.0**0.5), (3.0, 1094.0 ** (1 / 3))])
+def test_equivalent_ranges_are_those_by_hand(standard, exponent, by_hand):
+    """(sum of n range^m)^(1/m): 23 = 1.5 + 6 + 3 + 8 + 4.5, 151 = 4.5 + 24 + 18 + 64 + 40.5, ..."""
+    assert standard.equivalent_range(exponent) == pytest.approx(by_hand, rel=ROUNDING)
+    assert standard.equivalent_range(exponent, 2.0**exponent) == pytest.approx(by_hand / 2, rel=ROUNDING)
+
+
+@pytest.fixture
+def run(capsys):
+    def called(*arguments):
+        code = main(["loads", ROLLING, *RUN, *map(str, arguments)])
+        out, err = capsys.readouterr()
+        return code, out, " ".join(err.split())
+
+    return called
+
+
+def test_cycles_are_written(run, loads, tmp_path):
+    wanted = bd.count_cycles(loads, "moment", start=0.1, end=0.3)
+    assert run("--cycles", "moment", "--cycles-file", tmp_path / "c.csv")[0] == DONE
+    head, *rows = csv.reader((tmp_path / "c.csv").read_text().splitlines())
+    assert head == ["range_of_moment_N_m", "mean_N_m", "cycles"]
+    columns = np.array(rows, dtype=float).T
+    assert np.array_equal(columns, [wanted.ranges, wanted.means, wanted.counts])
+    assert run("--cycles", "moment", "--cycles-file", tmp_path / "c.json")[0] == DONE
+    back = bd.load(tmp_path / "c.json")
+    assert np.array_equal(back.ranges, wanted.ranges) and (back.start, back.end) == (0.1, 0.3)
+
+
+def test_equivalent_ranges_of_several_exponents_are_printed(run, loads):
+    cycles = bd.count_cycles(loads, "strain", start=0.1, end=0.3)
+    code, out, _ = run(
+        "--cycles", "strain", "--woehler", "3, 5.5", "--equivalent-cycles", "100"
+    )  # fmt: skip
+    assert code == DONE
+    assert "Damage-equivalent ranges (number of equal cycles: 100)" in out
+    rows = [line.split() for line in out.splitlines() if line.split()[:1] in (["3"], ["5.5"])]
+    printed = {float(m): float(value) for m, value in rows}
+    wanted = {m: 1e6 * cycles.equivalent_range(m, 100.0) for m in (3.0, 5.5)}
+    assert printed == pytest.approx(wanted, rel=5e-3)
+
+
+def test_no_digit_of_an_equivalent_range_is_beyond_its_error(run):
+    """Turning points are within 1e-3: of a number that begins with 4 there are no more than three digits."""
+    _, out, _ = run("--cycles", "strain", "--woehler", "5")
+    (value,) = (line.split()[1] for line in out.splitlines() if line.split()[:1] == ["5"])
+    assert 1 <= len(value.replace(".", "").lstrip("0")) <= 3
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (
+            ("--woehler", "5"),
+            '--woehler = "5": it is of counted cycles; give --cycles, too',
+        ),
+        (("--cycles-file", "c.csv"), "--cycles-file = c.csv: it is of counted cycles; give --cycles, too"),
+        (("--cycles", "strain", "--equivalent-cycles", "5"), "give --woehler, too"),
+        (("--cycles", "strain", "--woehler", "five"), 'give numbers, such as "3, 5, 10"'),
+        (
+            ("--cycles", "strain", "--woehler", "3, -5"),
+            '--woehler = "3, -5": it must be gr',
+        ),
+        (
+            ("--cycles", "strain", "--woehler", "3", "--equivalent-cycles", "0"),
+            "--equivalent-cycles = 0: it must be greater than 0",
+        ),
+        (("--cycles", "strain", "--cycles-file", "c.png"), "--cycles-file = c.png: unknown suffix '.png'"),
+    ],
+)
+def test_options_of_cycles_are_refused_in_a_sentence(options, said, run, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    code, _, err = run(*options)
+    assert code == BAD_INPUT and said in err
