@@ -17,7 +17,7 @@ from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
-from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed, poles_of
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene
@@ -85,6 +85,29 @@ class Matrices(Result):
         """What it says in one line; see `Result.headline`."""
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
+
+    @property
+    def poles(self) -> np.ndarray:
+        """Poles of the equations: the eigenvalues of the state matrix at this speed.
+
+        An imaginary part is a natural frequency [rad/s], a real part the rate of growth, negative where free
+        motion decays; without damping they come in pairs +-i lambda, within rounding.
+
+        Returns
+        -------
+        ndarray of complex, shape (2 n,)
+            Poles [1/s] in ascending order of their magnitude.  Those of coordinates without mass, as of shear
+            without rotary inertia, are not finite or only as large as rounding leaves them.
+
+        Examples
+        --------
+        >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+        >>> found = bd.matrices(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=3)
+        >>> (np.abs(found.poles[::2].imag) / (2 * np.pi)).round(2)  # Hz
+        array([  61.96,  406.33, 1142.13])
+        """
+        found = poles_of(self.mass, self.damping + self.gyroscopic, self.stiffness)
+        return found[np.argsort(np.abs(found))]
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
         """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).

@@ -68,6 +68,19 @@ class Row:
     acceleration: np.ndarray
 
 
+def poles_of(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Eigenvalues of M q'' + C q' + K q = 0 [1/s], shape (2 n,); those without mass are not finite."""
+    eye, zero = np.eye(len(M)), np.zeros_like(M)
+    A = np.block([[zero, eye], [-K, -C]])
+    E = np.block([[eye, zero], [zero, M]])
+    try:
+        return np.asarray(scipy.linalg.eigvals(A, E))
+    except np.linalg.LinAlgError:  # QZ, which allows for a singular E, need not converge
+        inverse = np.linalg.eigvals(np.linalg.solve(A, E))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return 1 / inverse
+
+
 @dataclass(frozen=True)
 class ModelAtSpeed(FieldsOnly):
     """Linear equations M q'' + C q' + K q = f of a scene at one steady speed.
@@ -135,16 +148,7 @@ class ModelAtSpeed(FieldsOnly):
     @cached_property
     def poles(self) -> np.ndarray:
         """Eigenvalues of free motion [1/s]; those of coordinates without mass are not finite."""
-        n, zero = self.equations.size, np.zeros((self.equations.size, self.equations.size))
-        eye = np.eye(n)
-        A = np.block([[zero, eye], [-self.K, -self.C]])
-        E = np.block([[eye, zero], [zero, self.M]])
-        try:
-            return np.asarray(scipy.linalg.eigvals(A, E))
-        except np.linalg.LinAlgError:  # QZ, which allows for a singular E, need not converge
-            inverse = np.linalg.eigvals(np.linalg.solve(A, E))
-            with np.errstate(divide="ignore", invalid="ignore"):
-                return 1 / inverse
+        return poles_of(self.M, self.C, self.K)
 
     # Inputs -----------------------------------------------------------------------------------------
 
