@@ -101,3 +101,34 @@ def test_doubtful_units_are_a_warning_of_the_program(run, tmp_path):
     assert code == DONE
     assert err.startswith("beamdyn: warning: youngs_modulus = 70000 Pa with density = 2700 kg/m3")
     assert err.count("\n") == 1
+
+
+def test_a_unit_that_the_shell_has_parted_from_its_number_is_said_to_need_quotes(refused):
+    said = refused("modes", TYRE, "--speed", "50", "rad/s")
+    assert (
+        'One word too many: rad/s; leave it out, or put a value with spaces into quotes as in --speed "50 '
+        in said
+    )
+    assert said.endswith("See beamdyn modes --help.\n")
+
+
+def test_a_second_file_is_one_word_too_many(refused):
+    said = refused("modes", TYRE, "other.toml")
+    assert "One word too many: other.toml; leave it out" in said and "as in" not in said
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--tolerance", "abc"), '--tolerance: "abc" is not a number.'),
+        (("--force=maybe",), '--force: "maybe" is no value of a switch.'),
+        (("--pl", "x"), "Did you mean --plot?"),
+    ],
+)
+def test_values_that_an_option_does_not_take_are_refused_in_plain_words(refused, options, words):
+    said = refused("modes", TYRE, *options)
+    assert words in said and "See beamdyn modes --help." in said
+
+
+def test_help_on_an_unknown_command_is_that_of_the_program(refused):
+    assert refused("mode", TYRE).endswith("See beamdyn --help.\n")

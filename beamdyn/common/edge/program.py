@@ -7,17 +7,16 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from typing import Any, Literal, get_args, get_origin
+from typing import Any
 
-from cyclopts import App, CycloptsError, UnknownOptionError
+from cyclopts import App, CycloptsError
 
 from beamdyn.common.announced import OutsideLinearTheory
 from beamdyn.common.edge.option_words import TYPED, as_typed
 from beamdyn.common.edge.progress import at_work, quiet
+from beamdyn.common.edge.usage_words import say_mistake
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-
-_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # under which options are looked for
 
 EXIT_CODES = (
     "Exit codes: 0 done; 1 the model has no answer (the message says why and where); "
@@ -75,10 +74,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
         return _complain(name, f"interrupted: {error}", INTERRUPTED)
     except KeyboardInterrupt as error:
         return _complain(name, f"interrupted: {error}".removesuffix(": "), INTERRUPTED)
-    except UnknownOptionError as error:
-        return _complain(name, f"{_with_meant_option(error, given)} See {name} --help.", BAD_INPUT)
     except CycloptsError as error:
-        return _complain(name, f"{error} See {name} --help.", BAD_INPUT)
+        return _complain(name, say_mistake(app, error, given), BAD_INPUT)
     except (ValueError, OSError) as error:
         return _refused(name, error)
     return DONE
@@ -90,19 +87,6 @@ def _call(app: App, arguments: Sequence[str]) -> None:
     if isinstance(sys.stdout, TextIOWrapper):
         spell_output(sys.stdout)
     app(arguments, console=Terminal(), exit_on_error=False, print_error=False, result_action="return_value")
-
-
-def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """The message, with the option that is meant: under another name, or as it takes the word given."""
-    option = (error.token.keyword or error.token.value).partition("=")[0]
-    if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
-        return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
-    words = [word for text in given for word in text.split("=", 1)]
-    value = "".join(words[words.index(option) + 1 :][:1]) if option in words else ""
-    for argument in error.argument_collection:
-        if get_origin(argument.hint) is Literal and value in get_args(argument.hint):
-            return f"Unknown option: {option}. Did you mean {argument.name}?"
-    return f"{error}"
 
 
 @contextmanager

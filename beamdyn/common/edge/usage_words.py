@@ -1,0 +1,59 @@
+"""What is wrong with a command line that cannot be understood, in a sentence."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Literal, get_args, get_origin
+
+from cyclopts import App, CycloptsError, UnknownOptionError, UnusedCliTokensError
+
+_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # under which options are looked for
+_KINDS = {"float": "is not a number", "int": "is not a whole number", "bool": "is no value of a switch"}
+_CONVERSION = re.compile(r'unable to convert (".*") into (\w+)')
+
+
+def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
+    """A sentence on what cannot be understood, and where help is.
+
+    Parameters
+    ----------
+    app : App
+        The program.
+    error : CycloptsError
+        Why its command line cannot be understood.
+    given : sequence of str
+        The words after the program's name.
+    """
+    command = [word for word in given[:1] if word in set(app.resolved_commands())]
+    return f"{_say(error, given)} See {' '.join([app.name[0], *command])} --help."
+
+
+def _say(error: CycloptsError, given: Sequence[str]) -> str:
+    if isinstance(error, UnknownOptionError):
+        return _with_meant_option(error, given)
+    if isinstance(error, UnusedCliTokensError) and error.unused_tokens:
+        return _say_too_many(error.unused_tokens, given)
+    return _CONVERSION.sub(lambda found: f"{found[1]} {_KINDS.get(found[2], 'is none')}", f"{error}")
+
+
+def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
+    """Words that belong to nothing, most often a unit that the shell has parted from its number."""
+    first = next((i for i, word in enumerate(given) if word == words[0]), 0)
+    option, value = given[first - 2 : first] if first > 1 else ("", "")
+    example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
+    said = " ".join(words)
+    return f"One word too many: {said}; leave it out, or put a value with spaces into quotes{example}."
+
+
+def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
+    """The message, with the option that is meant: under another name, or as it takes the word given."""
+    option = (error.token.keyword or error.token.value).partition("=")[0]
+    if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
+        return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
+    words = [word for text in given for word in text.split("=", 1)]
+    value = "".join(words[words.index(option) + 1 :][:1]) if option in words else ""
+    for argument in error.argument_collection:
+        if get_origin(argument.hint) is Literal and value in get_args(argument.hint):
+            return f"Unknown option: {option}. Did you mean {argument.name}?"
+    return f"{error}"
