@@ -19,7 +19,7 @@ from beamdyn.cli.values import (
     parse_positive,
     parse_quantity,
 )
-from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
@@ -101,8 +101,6 @@ def campbell(
         Output files.
     """
     from beamdyn import campbell
-    from beamdyn.common.edge.rendering import csv_text
-    from beamdyn.common.files import write_text
     from beamdyn.tables.campbell import campbell_csv, campbell_tables, crossings_of_lines_csv
 
     outputs.check(*scenes, crossings=crossings)
@@ -121,7 +119,7 @@ def campbell(
             bounds=bounds, **options,
         )  # fmt: skip
     if crossings is not None:
-        write_text(crossings, csv_text(crossings_of_lines_csv(result)))
+        write_table(crossings, crossings_of_lines_csv(result))
     ignored = (warning for given in inputs for warning in given.warnings)
     warnings = *ignored, *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
     deliver(

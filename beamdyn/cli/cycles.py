@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Literal
 from cyclopts import Parameter
 
 from beamdyn.cli.values import Text, naming_option
+from beamdyn.common.edge.outputs import write_table
+from beamdyn.common.files import write_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -105,13 +107,14 @@ class CycleOptions:
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""
-        from beamdyn.common.edge.rendering import csv_text
-        from beamdyn.common.files import write_text
         from beamdyn.tables.single_answers import cycles_csv
 
-        if self.cycles_file is not None:
-            as_json = self.cycles_file.suffix.lower() == ".json"
-            write_text(self.cycles_file, cycles.to_json() if as_json else csv_text(cycles_csv(cycles)))
+        if self.cycles_file is None:
+            return
+        if self.cycles_file.suffix.lower() == ".json":
+            write_text(self.cycles_file, cycles.to_json())
+        else:
+            write_table(self.cycles_file, cycles_csv(cycles))
 
 
 NOT_COUNTED = CycleOptions()

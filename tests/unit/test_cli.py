@@ -318,3 +318,11 @@ def test_the_last_digit_printed_is_supported(value, relative):
         unit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
         assert unit / 2 >= value * relative * (1 - 1e-9)
         assert abs(float(text) - value) <= unit / 2 * (1 + 1e-9) + 1e-15 * value
+
+
+def test_a_table_named_tsv_is_separated_by_tabs(run, tmp_path):
+    for name in ("m.csv", "m.tsv"):
+        assert run("modes", SCENE, "--csv", tmp_path / name)[0] == DONE
+    commas, tabs = ((tmp_path / name).read_text() for name in ("m.csv", "m.tsv"))
+    assert tabs.startswith("mode\tspeed_rad_per_s\t") and "," not in tabs
+    assert [*csv.reader(tabs.splitlines(), delimiter="\t")] == [*csv.reader(commas.splitlines())]

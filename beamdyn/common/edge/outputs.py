@@ -105,15 +105,20 @@ def write(
     if outputs.json is not None:
         write_text(outputs.json, result.to_json())
     if outputs.csv is not None:
-        from beamdyn.common.edge.rendering import csv_text
-
-        write_text(outputs.csv, csv_text(rows))
+        write_table(outputs.csv, rows)
     if outputs.report is not None and report is not None:
         write_text(outputs.report, report.page(draw))
     if outputs.plot is not None and draw is not None:
         from beamdyn.common.pictures import save_figure
 
         save_figure(draw(), outputs.plot, outputs.force)
+
+
+def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
+    """Write rows as text, separated by commas, in a file named .tsv by tabs."""
+    from beamdyn.common.edge.rendering import csv_text
+
+    write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
 
 
 def check_folder(option: str, folder: Path) -> None:

@@ -131,10 +131,10 @@ def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
     return f"<tr>{''.join(made)}</tr>"
 
 
-def csv_text(rows: Iterable[Sequence[object]]) -> str:
+def csv_text(rows: Iterable[Sequence[object]], delimiter: str = ",") -> str:
     """Rows as the text of a CSV file."""
     file = io.StringIO()
-    csv.writer(file, lineterminator="\n").writerows(rows)
+    csv.writer(file, delimiter=delimiter, lineterminator="\n").writerows(rows)
     return file.getvalue()
 
 
