@@ -132,3 +132,23 @@ def test_values_that_an_option_does_not_take_are_refused_in_plain_words(refused,
 
 def test_help_on_an_unknown_command_is_that_of_the_program(refused):
     assert refused("mode", TYRE).endswith("See beamdyn --help.\n")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("speed=+-2%", '--spread = "speed=+-2%": the value is 0'),
+        ("thickness=2 %", '--spread = "beam.thickness=2 %": it is no tolerance'),
+        ("thickness=+-1 kg", '--spread = "beam.thickness=+-1 kg": '),
+    ],
+)
+def test_a_wrong_tolerance_names_its_option(refused, given, said):
+    assert said in refused("study", TYRE, "--spread", given)
+
+
+def test_a_key_that_is_given_twice_is_said_to_be(refused, tmp_path):
+    """Not to need quotes."""
+    file = tmp_path / "twice.toml"
+    file.write_text('[beam]\nlength = "50 mm"\nlength = "60 mm"\n')
+    said = refused("modes", file)
+    assert "(at line 3" in said and said.rstrip().endswith("give each key and each [table] once")

@@ -111,6 +111,8 @@ def parse(text: str, source: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         remedy = 'a quantity stands in quotes: length = "50 mm"'
+        if re.match("Cannot (overwrite|declare|mutate)", f"{error}"):
+            remedy = "give each key and each [table] once"
         raise ConfigError(source, [f"not valid TOML: {error}; {remedy}"]) from None
 
 

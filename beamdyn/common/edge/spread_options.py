@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter, Token
@@ -123,9 +123,8 @@ def _parse_spread(entry: Input, tolerance: str, value: float, unit: str) -> Spre
     try:
         given = parse_tolerance(entry.path, tolerance, value, unit, _in_si(unit))
     except InvalidValue as error:
-        named = error if error.field else replace(error, field=entry.path, value=tolerance)
-        attributes = (named.field, named.value, named.bound, named.remedy, named.unit, named.limit)
-        raise InvalidInput(*attributes) from None
+        given = f"{entry.path}={tolerance}"
+        raise InvalidInput(OPTION, given, error.bound, error.remedy, error.unit, error.limit) from None
     return SpreadInput(entry.path, unit, value, given)
 
 
