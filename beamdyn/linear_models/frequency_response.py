@@ -21,6 +21,7 @@ from beamdyn.linear_models.observations import Observation, as_observation
 from beamdyn.linear_models.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear_models.transfer import check_stable, transfer
 from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
@@ -226,6 +227,7 @@ def frequency_response(
 
 def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: Refined) -> Iterator[str]:
     yield from warn_of_left_out(scene)
+    yield from warn_of_rotation(refined.model.model, refined.model.speed)
     if not scene.is_damped:
         yield "there is no damping: near natural frequencies the response is that of no real beam"
     largest = np.abs(refined.value).max()

@@ -27,6 +27,7 @@ from beamdyn.linear_models.random_input import highest_frequency, random_input, 
 from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
 from beamdyn.linear_models.transfer import check_stable
 from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
@@ -211,7 +212,11 @@ def random_response(
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
         unit=seen.unit,
-        warnings=(*_warnings(scene, seen, rms, parametric), *warn_of_band(spectrum, drive, model)),
+        warnings=(
+            *_warnings(scene, seen, rms, parametric),
+            *warn_of_rotation(model.model, speed),
+            *warn_of_band(spectrum, drive, model),
+        ),
         provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
         scene=scene,
     )

@@ -41,6 +41,7 @@ from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections
 from beamdyn.loads.span_loads import UNITS, SpanLoads, placed, with_unit
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
 from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_elastic_limit, warn_of_left_out
@@ -346,6 +347,7 @@ def random_loads(
         warnings=(
             *sections.notes,
             *warn_of_left_out(scene),
+            *warn_of_rotation(refined.model.model, speed),
             *parametric.warnings(),
             *warn_of_band(spectrum, drive, refined.model),
             *_warn_of_few(found, duration),

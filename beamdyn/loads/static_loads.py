@@ -20,6 +20,7 @@ from beamdyn.loads.stations import Positions, SpanStations, stations_at
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.equilibrium import NoEquilibrium
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import static_load
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
@@ -30,7 +31,6 @@ from beamdyn.scene.validity import (
     warn_of_static_deflection,
     warn_of_strain,
 )
-from beamdyn.spectrum.modes import static_load
 
 _MODES = 3  # of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0

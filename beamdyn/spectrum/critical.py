@@ -27,6 +27,7 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import static_load
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
 from beamdyn.scene.mount import exact_cos_sin
@@ -35,7 +36,6 @@ from beamdyn.scene.validity import LARGE_STRAIN
 from beamdyn.spectrum.bounds import bound_critical_speed
 from beamdyn.spectrum.buckling import Buckling, decide_buckling
 from beamdyn.spectrum.critical_physics import find_with_chosen_physics
-from beamdyn.spectrum.modes import static_load
 from beamdyn.spectrum.planes import separate_planes
 
 _BENT = (

@@ -22,6 +22,7 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
+from beamdyn.modal.static_load import static_load
 from beamdyn.modal.tracking import track
 from beamdyn.model_error.choice import choose_physics
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -38,7 +39,6 @@ from beamdyn.spectrum.modes import (
     drawn_order,
     frequency_of,
     provenance_of,
-    static_load,
     status_of,
     warn_of_modes,
 )

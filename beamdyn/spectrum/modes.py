@@ -16,7 +16,6 @@ from beamdyn.common.announced import OUTSIDE, announced
 from beamdyn.common.checks import count, real, within
 from beamdyn.common.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results import Provenance
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import (
     TOLERANCES,
@@ -27,8 +26,8 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
+from beamdyn.modal.static_load import static_load
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
@@ -286,35 +285,6 @@ def frequency_of(s: np.ndarray) -> np.ndarray:
     """Frequencies [Hz] of modes by their eigenvalues [1/s], of one shape; nan of others than stable ones."""
     vibrates = (np.real(s) <= 0) & ((np.imag(s) != 0) | (s == 0))
     return np.where(vibrates, np.imag(s) / (2 * np.pi), np.nan)
-
-
-def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the static tip deflection and axial strain by rotation.
-
-    Parameters
-    ----------
-    model : Model
-        A discretized scene.
-    speeds : ndarray, shape (S,)
-        Speeds [rad/s].
-
-    Returns
-    -------
-    deflection : ndarray, shape (S,)
-        Static tip deflection [m], its magnitude in two planes; nan from the critical speed on.
-    strain : ndarray, shape (S,)
-        Largest static axial strain; nan if the axial stiffness is not given.
-    """
-    beam, mount = model.scene.beam, model.scene.mount
-    tips = model.static_tips(speeds)
-    deflection = tips[:, 0] if tips.shape[1] == 1 else np.linalg.norm(tips, axis=1)
-    if beam.axial_stiffness is None:
-        return deflection, np.full(len(speeds), np.nan)
-    n_a, n_b = axial_tension(beam)
-    xi = np.linspace(0, 1, 101)
-    cosine, _ = exact_cos_sin(mount.precone)
-    force = cosine**2 * n_b(xi) - cosine * np.cos(mount.setting_angle) * mount.radius * n_a(xi)
-    return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
 
 
 def warn_of_modes(

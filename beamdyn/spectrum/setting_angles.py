@@ -22,10 +22,10 @@ from beamdyn.modal.choice import (
 )
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import static_load
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
-from beamdyn.spectrum.modes import static_load
 
 _ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
 
