@@ -177,6 +177,8 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> PowerSpectrum:
         return PowerSpectrum(columns["f"].values, columns["psd"].values, axes)
     except InvalidValue as refusal:
         refusal.remedy = refusal.remedy.replace('interpolation = "linear"', "--psd-axes linear")
+        units = {"psd.values": unit, "psd.frequencies": "Hz"}
+        refusal.unit = refusal.unit or units.get(refusal.field, "")
         raise
 
 

@@ -7,10 +7,11 @@ from pathlib import Path
 from beamdyn.cli.program import app
 from beamdyn.common.edge.outputs import Flag, check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
+from beamdyn.common.edge.varying import SomeFolder
 
 
 @app.command(help_epilogue=examples("beamdyn reproduce --output pictures"))
-def reproduce(*, output: Path = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
+def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
     """Published numbers beside ours, with deviations and verdicts; draws the paper's figures.
 
     Parameters

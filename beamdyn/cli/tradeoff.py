@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from beamdyn.cli.program import app, deliver
-from beamdyn.cli.values import ModeCount, SceneFile, Text, parse_positive, parse_speed
+from beamdyn.cli.values import ModeCount, SceneFile, Text, naming_option, parse_positive, parse_speed
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.program import examples
 
@@ -56,7 +56,7 @@ def tradeoff(
     question = Question.on_file(
         "beamdyn tradeoff", scene, speed=speed, modes=modes, t_end=t_end, budget=budget
     )
-    with at_work("measuring") as progress:
+    with at_work("measuring") as progress, naming_option("t_end", "--t-end", t_end or ""):
         result = tradeoff(loaded, given, modes, end, limit, progress)
     tables, rows, draw = (
         [diagram_table(diagram) for diagram in result.diagrams],

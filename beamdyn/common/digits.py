@@ -55,7 +55,7 @@ def _with_error(value: float, error: float) -> str:
     """A number with the digits up to the first of its error, and that error with one digit."""
     last = math.floor(math.log10(error))
     digits = max(math.floor(math.log10(abs(value))) - last, 0) + 1
-    return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ")
+    return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ").replace(".e", "e")
 
 
 def percent(value: float, sign: str = "") -> str:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from beamdyn.common.edge.outputs import check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
+from beamdyn.common.edge.varying import SomeFolder
 from brakes.cli.program import app
 
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
-def reproduce(*, output: Path = Path("brakes-reproduce")) -> None:
+def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
     """Published numbers of brakes beside ours, what the papers' errors cost, and the pictures.
 
     Parameters

@@ -152,3 +152,19 @@ def test_a_key_that_is_given_twice_is_said_to_be(refused, tmp_path):
     file.write_text('[beam]\nlength = "50 mm"\nlength = "60 mm"\n')
     said = refused("modes", file)
     assert "(at line 3" in said and said.rstrip().endswith("give each key and each [table] once")
+
+
+def test_a_folder_without_a_name_is_no_place_for_pictures(refused, tmp_path, monkeypatch):
+    """It would be the current folder."""
+    monkeypatch.chdir(tmp_path)
+    assert "--output: the name is empty; give a folder" in refused("reproduce", "--output", "")
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_refused_density_has_its_unit(refused, tmp_path):
+    (tmp_path / "p.csv").write_text("f [Hz], psd [m2/s4/Hz]\n10, -0.1\n20, 0.1\n")
+    assert "--psd, values = -0.1 m2/s4/Hz: " in refused("random", TYRE, "--psd", tmp_path / "p.csv")
+
+
+def test_a_refused_end_of_transients_is_shown_as_it_was_given(refused):
+    assert '--t-end = "1 s": the scene has no motion' in refused("tradeoff", TYRE, "--t-end", "1 s")

@@ -18,14 +18,15 @@ OPTION = "--vary"
 _MOST_WORKERS = 128
 
 
-def _folder(_: object, tokens: Sequence[Token]) -> Path:
+def folder(_: object, tokens: Sequence[Token]) -> Path:
     """The name of a folder; an empty one would be the current folder."""
     if not tokens[0].value.strip():
         raise ValueError("the name is empty; give a folder, or leave the option out.")
     return Path(tokens[0].value)
 
 
-Folder = Annotated[Path | None, Parameter(converter=_folder)]
+Folder = Annotated[Path | None, Parameter(converter=folder)]
+SomeFolder = Annotated[Path, Parameter(converter=folder)]  # of an option that has one by default
 
 
 def _check_workers(_: object, value: object) -> None:
