@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
@@ -33,7 +34,7 @@ from brakes.answers.planar_tables import (
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import open_and_closed, with_lock, with_points
-from brakes.drawings.mechanism_stroke import StrokeChart, chart_figure, mechanism_figure
+from brakes.drawings.mechanism_stroke import LoadsOverStroke, mechanism_figure
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
 from brakes.planar.diagnosis import join_names
 
@@ -237,16 +238,16 @@ class MechanismAnswer(PlanarAnswer):
         As drawn, as the table of forces has it; or at a part of the stroke from 0 to 1.
         """
         index = self._index_at(0.0 if place is None else place)
-        return mechanism_figure(self._drawing(index), self._chart(index))
+        return mechanism_figure(self._drawing(index), self._over_stroke(index))
 
     def drawings(self, place: float) -> Rows:
         """The mechanism as drawn and at a part of its stroke, from 0 to 1."""
         return ((self._drawing(self._index_at(place)),),)
 
-    def curves(self, place: float) -> Figure | None:
+    def charts(self, place: float) -> Sequence[Chart]:
         """What the loads do over the stroke, if there is one."""
-        chart = self._chart(self._index_at(place))
-        return None if chart is None else chart_figure(chart)
+        loads = self._over_stroke(self._index_at(place))
+        return () if loads is None else loads.charts()
 
     def _index_at(self, place: float) -> int:
         return 0 if self.motion is None else _index(self.motion, place)
@@ -271,7 +272,7 @@ class MechanismAnswer(PlanarAnswer):
         moved = f"{factor * self.motion.values[index]:.3g} {unit} of {driver}{way}; grey: as drawn"
         return f"{self.design.title}: {moved if index else f'as drawn{way}'}"
 
-    def _chart(self, index: int) -> StrokeChart | None:
+    def _over_stroke(self, index: int) -> LoadsOverStroke | None:
         """Forces and moments over the stroke, if there is one."""
         if self.motion is None or self.over is None:
             return None
@@ -286,9 +287,10 @@ class MechanismAnswer(PlanarAnswer):
             for couples in (False, True)
         }
         travel = factor * self.motion.values
-        label = f"travel of {self.motion.driver} [{unit}]"
         locked = self.friction.locked() if self.friction else {}
-        return StrokeChart(travel, label, sizes[False], sizes[True], float(travel[index]), locked)
+        return LoadsOverStroke(
+            travel, self.motion.driver, unit, sizes[False], sizes[True], float(travel[index]), locked
+        )
 
     def _equilibrium_at(self, index: int) -> Equilibrium:
         """Forces of the branch that is drawn."""
