@@ -182,19 +182,27 @@ class MechanismAnswer(PlanarAnswer):
 
     def tables(self) -> list[RenderableType]:
         """Forces as drawn, with friction, the stroke, and the diagnosis."""
-        words = f"{self.design.title}: forces as drawn{', without friction' if self.friction else ''}"
-        strokes = [self._stroke_table(self.motion)] if self.motion else []
         return [
-            reactions_table(self.equilibrium, words),
+            reactions_table(self.equilibrium, self._forces_title("as drawn")),
             *([self.friction.table()] if self.friction else []),
-            *strokes,
+            *(self._stroke_tables(self.motion) if self.motion else []),
             describe_statics(self.equilibrium, self.message, float(np.max(self.last.virtual_work))),
         ]
 
-    def _stroke_table(self, motion: Stroke) -> RenderableType:
+    def _forces_title(self, where: str) -> str:
+        """Title of a table of forces."""
+        return f"{self.design.title}: forces {where}{', without friction' if self.friction else ''}"
+
+    def _stroke_tables(self, motion: Stroke) -> list[RenderableType]:
+        """Loads over the stroke, and all forces at its end."""
         columns = self._columns()
         rows = [[format_force(v[k], 6) for v in columns.values()] for k in select_rows(len(motion.values))]
-        return table(f"Stroke of {motion.driver}", [*columns], rows)
+        end = motion.position[len(motion.values) - 1]
+        where = f"at {self._travelled(len(motion.values) - 1)}"
+        return [
+            table(f"Stroke of {motion.driver}", [*columns], rows),
+            reactions_table(solve(end.mechanism, end), self._forces_title(where)),
+        ]
 
     def _columns(self) -> dict[str, np.ndarray]:
         """Travels and sizes of the loads over the stroke, by name and unit."""
@@ -267,10 +275,15 @@ class MechanismAnswer(PlanarAnswer):
         way = f", {self.branch}" if self.friction else ""
         if self.motion is None:
             return f"{self.design.title}{way}"
-        driver = self.motion.driver
-        factor, unit, _ = units_of(self._mechanism.load(driver))
-        moved = f"{factor * self.motion.values[index]:.3g} {unit} of {driver}{way}; grey: as drawn"
+        moved = f"{self._travelled(index)}{way}; grey: as drawn"
         return f"{self.design.title}: {moved if index else f'as drawn{way}'}"
+
+    def _travelled(self, index: int) -> str:
+        """Travel of the driver at one of the positions."""
+        if self.motion is None:
+            return ""
+        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
+        return f"{factor * self.motion.values[index]:.3g} {unit} of {self.motion.driver}"
 
     def _over_stroke(self, index: int) -> LoadsOverStroke | None:
         """Forces and moments over the stroke, if there is one."""

@@ -11,7 +11,7 @@ from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import Drawing
 from brakes.calipers import Caliper, CaliperStroke
 from brakes.drawings.mechanism import open_and_closed
-from brakes.drawings.mechanism_stroke import merged, named_curves
+from brakes.drawings.mechanism_stroke import merged, named_curves, travel_axis
 from brakes.planar import Equilibrium, Position
 
 if TYPE_CHECKING:
@@ -98,16 +98,17 @@ def stroke_charts(caliper: Caliper, run: CaliperStroke, cable: float) -> list[Ch
         {name: size for kind, name, size in sizes if kind is is_couple} for is_couple in (False, True)
     )
     shown = (
-        ("Pads over finger, force", ChartAxis("pad force / finger force"), _sides(run.advantage)),
+        ("Mechanical advantage of each pad", ChartAxis("pad force / finger force"), _sides(run.advantage)),
         (
-            "Pads over cable, velocity",
+            "Velocity ratio of each pad",
             ChartAxis("pad travel / cable travel"),
             _sides(run.pad_ratio),
         ),
         ("Forces of the joints", ChartAxis("force of the joint", "N"), merged(forces)),
         ("Couples of the joints", ChartAxis("couple of the joint", "N m"), merged(couples)),
     )
-    x, travel = 1e3 * run.cable, ChartAxis("cable travel", "mm")
+    x = 1e3 * run.cable
+    travel = travel_axis("cable travel", "mm", x)
     return [
         Chart(title, travel, axis, named_curves(x, curves), cursor=1e3 * cable)
         for title, axis, curves in shown

@@ -45,7 +45,7 @@ class LoadsOverStroke(NamedTuple):
     def _chart(self, title: str, what: str, unit: str, loads: Mapping[str, np.ndarray]) -> Chart:
         return Chart(
             f"{title} of the loads over the stroke",
-            ChartAxis(f"travel of {self.driver}", self.unit),
+            travel_axis(f"travel of {self.driver}", self.unit, self.travel),
             ChartAxis(f"{what} of the load", unit),
             named_curves(self.travel, loads),
             [*self._locked(loads)],
@@ -81,6 +81,11 @@ def mechanism_figure(drawing: Drawing, loads: LoadsOverStroke | None) -> Figure:
         charts = loads.charts()
         plot_charts_of_one_x(figure, charts, 7.0 / width, [1.0] * len(charts))
     return figure
+
+
+def travel_axis(name: str, unit: str, travel: np.ndarray) -> ChartAxis:
+    """The axis of a stroke, from end to end."""
+    return ChartAxis(name, unit, low=float(travel.min()), high=float(travel.max()))
 
 
 def named_curves(x: np.ndarray, curves: Mapping[str, np.ndarray]) -> list[ChartCurve]:

@@ -74,3 +74,13 @@ def test_curves_follow_while_a_point_is_held(name):
         scale = np.abs(full[key].y).max()
         there = np.interp(curve.x, full[key].x, full[key].y)
         np.testing.assert_allclose(curve.y, there, rtol=0, atol=2e-3 * scale)  # chords of the finer one
+
+
+def test_the_position_that_is_drawn_has_its_table():
+    _, screen = SCREENS["Mechanism"]
+    answer = screen.solve(tables("Mechanism"))
+    titles = [table.title for table in screen.tables(answer) if hasattr(table, "title")]
+    for place, where in ((0.0, "as drawn"), (1.0, "14 mm of hand")):
+        (drawing,) = screen.drawings(answer, place)[0]
+        assert where in drawing.title
+        assert any("forces" in title and where in title for title in titles)

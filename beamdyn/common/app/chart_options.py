@@ -13,6 +13,7 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.style import INKS, PAPER
 
 _DIGITS = 5  # of numbers on the page; of places on an axis, over its length
+_MOST_DIGITS = 10  # of a curve that varies little
 _WIDE = 0.15  # of the axis: a narrower band has no room for its text
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  # roles of curves, in turn
 # Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
@@ -346,8 +347,16 @@ def _pairs(x: np.ndarray, y: np.ndarray) -> Iterator[list[float | None]]:
     """Points of a line, as exact as they are seen."""
     span = float(np.ptp(x)) if len(x) else 0.0
     decimals = _DIGITS - math.floor(math.log10(span)) if span > 0 else 12
+    digits = _digits(y[np.isfinite(y)])
     for a, b in zip(x.tolist(), y.tolist(), strict=True):
-        yield [round(a, decimals), _short(b) if math.isfinite(b) else None]
+        yield [round(a, decimals), _short(b, digits) if math.isfinite(b) else None]
+
+
+def _digits(y: np.ndarray) -> int:
+    """Digits of the heights of a line: as many more as these differ less; noise of rounding is not shown."""
+    span, largest = (float(np.ptp(y)), float(np.abs(y).max())) if len(y) else (0.0, 0.0)
+    more = math.ceil(math.log10(largest / span)) - 1 if span > 0 else 0
+    return min(_DIGITS + max(more, 0), _MOST_DIGITS)
 
 
 def _is_number(*values: float) -> bool:
@@ -359,6 +368,6 @@ def _place(value: float) -> float:
     return float(f"{value:.{2 * _DIGITS}g}")
 
 
-def _short(value: float) -> float:
+def _short(value: float, digits: int = _DIGITS) -> float:
     """A number with the digits that are shown."""
-    return float(f"{value:.{_DIGITS}g}")
+    return float(f"{value:.{digits}g}")
