@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rich.console import Group
 
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
@@ -79,7 +80,7 @@ def test_curves_follow_while_a_point_is_held(name):
 def test_the_position_that_is_drawn_has_its_table():
     _, screen = SCREENS["Mechanism"]
     answer = screen.solve(tables("Mechanism"))
-    titles = [table.title for table in screen.tables(answer) if hasattr(table, "title")]
+    titles = [str(part.renderables[0]) for part in screen.tables(answer) if isinstance(part, Group)]
     for place, where in ((0.0, "as drawn"), (1.0, "14 mm of hand")):
         (drawing,) = screen.drawings(answer, place)[0]
         assert where in drawing.title

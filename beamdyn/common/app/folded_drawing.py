@@ -23,10 +23,6 @@ class PictureOf:
         """Show the picture that this starts to draw; of several the newest."""
         self._way.want(start)
 
-    def grey(self, stale: bool) -> None:
-        """Grey it, or no longer."""
-        self._frame.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
-
     def close(self) -> None:
         """End what is being drawn."""
         self._way.cancel()
