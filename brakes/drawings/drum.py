@@ -16,7 +16,7 @@ from brakes.drawings.arrows import ForceArrows
 from brakes.drum import BrakeResult, DrumBrake, Shoe, ShoeResult, brake_torque
 
 _FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
-_ANGLES, _FRICTIONS = 101, 201  # points of the curves
+_ANGLES, _FRICTIONS = 61, 121  # points of the curves
 
 
 def brake_figure(result: BrakeResult) -> Figure:
