@@ -20,6 +20,7 @@ from beamdyn.studies.listed_numbers import POINTS
 
 _TOUCHING = 1e-6  # distance over the length at which a point stands beside another
 _STEP = 0.01  # of a value, or of the size of its kind
+_NEAR = 0.8  # similarity of a mistyped name: all begin alike
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneN
             bound = "a critical or resonance speed is an answer, and no input"
             raise InvalidValue("inputs", name, bound, "leave it out")
         if name not in found:
-            near = difflib.get_close_matches(str(name), found, n=1)
+            near = difflib.get_close_matches(str(name), found, n=1, cutoff=_NEAR)
             remedy = f"give {near[0] if near else ', '.join(found)}"
             raise InvalidValue("inputs", name, "it is no number of this scene", remedy)
     return tuple(found[name] for name in names)

@@ -20,6 +20,9 @@ from brakes.planar.points import Point as Coordinates
 # Kinds of values ----------------------------------------------------------------------------------
 
 
+_FARTHEST = 1e6  # coordinates of a mechanism [m]: far beyond any, and far from overflow
+
+
 class PointQuantity(Quantity):
     """A point: two lengths."""
 
@@ -27,7 +30,11 @@ class PointQuantity(Quantity):
         """Its coordinates [m]."""
         if isinstance(given, str):
             raise InvalidInput("", given, "no such point in [points]", 'name one, or give ["1 mm", "2 mm"]')
-        return tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
+        point = tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
+        if max(map(abs, point)) > _FARTHEST:
+            bound = f"give coordinates of at most {_FARTHEST:g} m either way"
+            raise InvalidInput("", given, bound, "check their units")
+        return point
 
 
 class DirectionQuantity(Quantity):

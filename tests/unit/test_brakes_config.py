@@ -23,6 +23,7 @@ from brakes import drum, forklift
 from brakes.answers.drum import BRAKE
 from brakes.answers.forklift import FORKLIFT as TYPE
 from brakes.answers.forklift import solve_stages
+from brakes.cli import main
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
 from brakes.config.sweeps import numeric_inputs, with_arrays
@@ -397,3 +398,12 @@ def test_any_value_anywhere_is_answered_or_refused(place, value: Any) -> None:
         brake.solve(brake.read(given_, "any"))
     except ValueError as error:
         assert str(error)
+
+
+def test_a_point_beyond_every_mechanism_is_refused_by_name(tmp_path, capsys) -> None:
+    """It overflowed on the way: "the numbers are out of range"."""
+    text = (EXAMPLES / "calipers" / "own-caliper.toml").read_text(encoding="utf-8")
+    (tmp_path / "far.toml").write_text(text.replace('["6 mm", "0 mm"]', '["1e40 mm", "0 mm"]'))
+    assert main(["caliper", str(tmp_path / "far.toml")]) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert "points.right_bolt" in said and "give coordinates of at most 1e+06 m either way" in said

@@ -168,3 +168,10 @@ def test_a_refused_density_has_its_unit(refused, tmp_path):
 
 def test_a_refused_end_of_transients_is_shown_as_it_was_given(refused):
     assert '--t-end = "1 s": the scene has no motion' in refused("tradeoff", TYRE, "--t-end", "1 s")
+
+
+def test_a_name_like_none_lists_all_that_there_are(refused):
+    """All begin with beam: that alone makes none the one that is meant."""
+    said = refused("sensitivities", TYRE, "--inputs", "beam.nosuch")
+    assert "beam.length, " in said and "beam.thickness" in said
+    assert refused("sensitivities", TYRE, "--inputs", "beam.thicknes").endswith("give beam.thickness\n")
