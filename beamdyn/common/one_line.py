@@ -144,12 +144,15 @@ def error_at_most(error: Any, unit: str = "") -> str:
     return f"error <= {rounded_up(largest)}{unit and ' ' + unit}"
 
 
+_ROUNDED = 1 - 1e-12  # 5e-8 with an error in its last bit is no 6e-8
+
+
 def rounded_up(value: float) -> str:
-    """A number that is not negative with one digit, not below it."""
+    """A number that is not negative with one digit, not below it but for rounding."""
     if not value:
         return "0"
     place = math.floor(math.log10(value))
-    return next(f"{top:.0e}" for k in range(1, 12) if (top := float(f"{k}e{place}")) >= value)
+    return next(f"{top:.0e}" for k in range(1, 12) if (top := float(f"{k}e{place}")) >= value * _ROUNDED)
 
 
 def states(status: Iterable[Any], usual: Sequence[str]) -> str:
