@@ -321,7 +321,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         ValueError
             If the numbers are out of range.
         """
-        with in_range():
+        with in_range(design):
             return _answer_to(design)
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:

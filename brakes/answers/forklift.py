@@ -276,7 +276,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
             raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
     given = design.forces and design.forces.torque
     from_stop = "forces" in shown and given is None and "vehicle" in design.stages
-    with in_range():
+    with in_range(design):
         stop = _stop(design) if from_stop or "vehicle" in shown else None
         motion = design.brake.motion if design.brake and shown != ("vehicle",) else None
         torque = stop.torque_per_brake if from_stop and stop is not None else given

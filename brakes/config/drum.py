@@ -170,5 +170,5 @@ class DrumInput(CoreSection):
             As for `brakes.drum.brake_torque`.
         """
         reverse = self.brake.direction == "reverse"
-        with in_range(), of_file(_Shoe.key_of):
+        with in_range(self), of_file(_Shoe.key_of):
             return brake_torque(self.core, friction=self.brake.friction, **self.load.given, reverse=reverse)

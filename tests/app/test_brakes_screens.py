@@ -222,6 +222,36 @@ def test_extreme_entries_give_an_answer_or_a_sentence(path, given):
                 assert all(said for said in work.mistakes[screen.name].values())
 
 
+@pytest.mark.parametrize(
+    "path, given",
+    [
+        ("stop.speed", "1e300 km/h"),
+        ("stop.rise_time", "1e300 s"),
+        ("stop.gravity", "1e300 m/s2"),
+        ("brake.drum_radius", "1e300 mm"),
+        ("forces.piston_force", "1e-300 N"),
+    ],
+)
+def test_numbers_beyond_all_range_are_named_as_they_stand_there(path, given):
+    """They were "overflow encountered in scalar multiply", or "(34, 'Numerical result out of range')"."""
+    said = [
+        sentence
+        for document, screen in PLACES
+        for sentence in _refusals(OpenDocument(document), screen, path, given)
+    ]
+    assert any(f"{path} = " in s and "the results leave the range of numbers" in s for s in said), said
+    assert all(word not in sentence for word in ("encountered", "(34") for sentence in said)
+
+
+def _refusals(work, screen, path, given):
+    if path not in work.entries or path.partition(".")[0] not in screen.needs:
+        return []
+    work.put(path, given)
+    if work.solve(screen):
+        return []
+    return [sentence for said in work.mistakes[screen.name].values() for sentence in said]
+
+
 # Entries ------------------------------------------------------------------------------------------------
 
 
