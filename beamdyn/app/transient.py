@@ -78,7 +78,8 @@ def solve(tables: Mapping[str, Any]) -> Playable:
     given, scene = read_aside(tables, "run"), read_scene(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
-    period = 2 * np.pi / first_frequency(scene)
+    first = first_frequency(scene)
+    period = 2 * np.pi / first if first else np.inf
     if given.end > _MOST_PERIODS * period:
         bound = f"it must be at most {{limit}}, {_MOST_PERIODS} periods of the first mode"
         raise InvalidValue("run.end", given.end, bound, unit="s", limit=_MOST_PERIODS * period)

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from pydantic import BaseModel
 
-from beamdyn.common.checks import InvalidValue, RefusedCases
+from beamdyn.common.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
 from beamdyn.common.edge.inputs import describe
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -21,10 +21,6 @@ _AMOUNT = re.compile(
 _SUSPECT = 12.0  # powers of ten by which a number is far from 1
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
-_OUT_OF_RANGE = (
-    "the results leave the range of numbers: something is divided by zero, or past 1e308; check the size and "
-    "the unit of each value"
-)
 _SMALLER = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}
 
 
@@ -61,7 +57,7 @@ def in_range(design: BaseModel) -> Iterator[None]:
     except (OverflowError, FloatingPointError, ZeroDivisionError):
         path, number = max(_numbers(dict(design)), key=lambda found: _decades(found[1]), default=("", 1.0))
         if _decades(number) < _SUSPECT:
-            raise ValueError(_OUT_OF_RANGE) from None
+            raise ValueError(OUT_OF_RANGE) from None
         units = {entry.path: entry.quantity.unit for entry in describe(type(design))}
         raise InvalidValue(path, number, _FAR, _CHECK, units.get(path, "")) from None
 
