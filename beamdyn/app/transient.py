@@ -25,6 +25,7 @@ from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.views import rows_of
+from beamdyn.common.edge.wording import of_file
 from beamdyn.common.one_line import number
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.output.notes import note_below
@@ -84,7 +85,8 @@ def solve(tables: Mapping[str, Any]) -> Playable:
         bound = f"it must be at most {{limit}}, {_MOST_PERIODS} periods of the first mode"
         raise InvalidValue("run.end", given.end, bound, unit="s", limit=_MOST_PERIODS * period)
     window = _window(given)
-    run = simulate(scene, given.end, tolerance=_TOLERANCE)
+    with of_file({"t_end": "run.end"}):
+        run = simulate(scene, given.end, tolerance=_TOLERANCE)
     return Playable(
         run,
         window,

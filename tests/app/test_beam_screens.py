@@ -46,6 +46,7 @@ def solved(screen, **more):
         (TRANSIENT, "model.gravity", "1e300 m/s2", 'model.gravity = "1e300 m/s2": give at most'),
         (STEADY_STATE, "damping.stiffness_factor", "1e300 s", "damping.stiffness_factor = "),
         (STEADY_STATE, "motion.road.velocity_amplitude", "1e20 m/s", "excitation is too strong"),
+        (TRANSIENT, "motion.rolling_radius", "1e9 m", 'run.end = "12 s": it takes about'),
         (FREQUENCIES, "damping.mass_factor", "1e300 1/s", "damping.mass_factor = "),
     ],
 )

@@ -243,6 +243,24 @@ def test_numbers_beyond_all_range_are_named_as_they_stand_there(path, given):
     assert all(word not in sentence for word in ("encountered", "(34") for sentence in said)
 
 
+@pytest.mark.parametrize(
+    "path, given, words",
+    [
+        ("shoe.drum_radius", "7 mm", "from the centre = 111.803 mm: more than two drum radii; give mm"),
+        ("brake.drum_radius", "7 mm", "distance of tip from the centre = 119.38 mm"),
+        ("second_shoe.pivot_offset", "500 mm", "second_shoe: distance of the pivot from the centre = 511."),
+        ("dimensions.pivot_radius", "0 mm", "give the radius of the pivot"),
+    ],
+)
+def test_refused_lengths_are_in_mm(path, given, words):
+    said = " ".join(
+        sentence
+        for document, screen in PLACES
+        for sentence in _refusals(OpenDocument(document), screen, path, given)
+    )
+    assert words in said and not said.endswith(" m")
+
+
 def _refusals(work, screen, path, given):
     if path not in work.entries or path.partition(".")[0] not in screen.needs:
         return []

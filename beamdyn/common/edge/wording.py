@@ -89,6 +89,14 @@ def in_degrees(error: InvalidValue) -> InvalidValue:
     return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
 
 
+def in_millimetres(error: InvalidValue) -> InvalidValue:
+    """The same about a length below a metre in mm; any other as it is."""
+    if error.unit != "m" or not isinstance(error.value, float) or abs(error.value) >= 1:
+        return error
+    limit = None if error.limit is None else 1e3 * error.limit
+    return replace(error, value=1e3 * error.value, limit=limit, unit="mm", cases=None)
+
+
 def in_small_units(sentence: str) -> str:
     """A sentence of the core with its lengths and angles in mm and degrees, as drawings have them."""
 
