@@ -103,6 +103,19 @@ def test_stale_is_what_follows_from_a_change():
     assert not work.stale(FORCES)
 
 
+def test_slope_and_speed_stand_in_the_units_chosen_and_in_files_with_their_own():
+    """The title said deg and km/h beside a form in % and m/s."""
+    work = OpenDocument(FORKLIFT)
+    work.put("stop.slope", "30 %")
+    work.put("stop.speed", "5 m/s")
+    assert work.solve(VEHICLE)
+    answer = work.answered[VEHICLE.name].answer
+    ((truck,),) = VEHICLE.drawings(answer, 1.0)
+    assert truck.title.startswith("stops within") and "deg" not in truck.title
+    for figure in (VEHICLE.draw(answer, 1.0), answer.figure()):
+        assert figure.axes[0].get_title().startswith("16.7 deg, 18 km/h: stops within")
+
+
 @pytest.mark.parametrize("name", NAMED)
 def test_every_named_caliper_has_a_form(name):
     work = OpenDocument(CALIPER)
