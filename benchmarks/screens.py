@@ -14,7 +14,7 @@ from typing import Any
 
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app import tasks
-from beamdyn.common.app.chart import options_of
+from beamdyn.common.app.chart_options import options_of
 from beamdyn.common.app.document_report import drawn
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import draw_sheet

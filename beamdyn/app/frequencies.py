@@ -18,8 +18,8 @@ from beamdyn.app.speed_charts import Meeting, describe_margin, frequency_chart
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.campbell_diagram.margins import Margin, margins_at_rated
 from beamdyn.cautions import critical_label, describe_choice, notes_of, warnings_of
-from beamdyn.common.app.chart import Chart
 from beamdyn.common.app.screens import Screen
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import rows_of
 from beamdyn.model_error.choice import plain_physics

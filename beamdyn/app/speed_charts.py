@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from beamdyn.campbell_diagram.margins import Margin
-from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.display_units import DisplayUnits
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.scene.motion import Line
 from beamdyn.spectrum.locus import Locus
 

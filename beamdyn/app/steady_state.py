@@ -16,8 +16,8 @@ from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
-from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.common.app.screens import Screen
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.views import rows_of
 from beamdyn.output.notes import note_below

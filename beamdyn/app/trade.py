@@ -18,8 +18,8 @@ from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_aside, read_at_
 from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
 from beamdyn.cautions import notes_of, warnings_of
-from beamdyn.common.app.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.app.screens import Drag, Screen
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table
 from beamdyn.model_error.choice import plain_physics
 from beamdyn.model_error.left_out_effects import say_size

@@ -17,10 +17,10 @@ from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, first_frequency, rea
 from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
 from beamdyn.cautions import describe_choice, notes_of, warnings_of
-from beamdyn.common.app.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.app.courses import Onward
 from beamdyn.common.app.screens import KeyResult, Screen, Slider
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue

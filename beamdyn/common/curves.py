@@ -29,7 +29,7 @@ def sweep_figure(swept: Any) -> Figure:
     -------
     Figure
     """
-    groups = _groups(swept)
+    groups = panels_of(swept)
     figure = Figure(figsize=(7.5, max(4.5, 2.7 * len(groups))), layout="constrained")
     panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
     for ax, (heading, labels, values) in zip(panels, groups, strict=True):
@@ -38,12 +38,18 @@ def sweep_figure(swept: Any) -> Figure:
         ax.set_ylabel(heading)
         if mark_missing(ax, "no answer") or len(labels) > 1:
             ax.legend(title=_second(swept), fontsize=9, title_fontsize=9)
-    panels[-1].set_xlabel(_input(swept, 0))
+    panels[-1].set_xlabel(input_words(swept, 0))
     return figure
 
 
-def _groups(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
-    """Panels: heading, names of the curves, the curves. Results of one unit share a panel."""
+def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
+    """Panels of a sweep: heading, names of the curves, the curves (m, n). Results of one unit share a panel.
+
+    Parameters
+    ----------
+    swept : InputSweep
+        See `sweep_figure`.
+    """
     results = [*zip(swept.results, swept.result_units, swept.found, strict=True)]
     if _has_curves(swept):
         names = [f"{value:.4g}" for value in swept.values[1]]
@@ -72,12 +78,20 @@ def _second(swept: Any) -> str | None:
     """Heading of the legend: the second input, and further ones at their first value."""
     if not _has_curves(swept):
         return None
-    further = [f"{_input(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
-    return "\n".join([_input(swept, 1), *further])
+    further = [f"{input_words(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
+    return "\n".join([input_words(swept, 1), *further])
 
 
-def _input(swept: Any, place: int) -> str:
-    """An input, without its table."""
+def input_words(swept: Any, place: int) -> str:
+    """An input in words, without its table.
+
+    Parameters
+    ----------
+    swept : InputSweep
+        The sweep.
+    place : int
+        Which of its inputs.
+    """
     path = swept.inputs[place]
     return _named((path.partition(".")[2] or path).replace(".", " "), swept.units[place])
 

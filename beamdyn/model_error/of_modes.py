@@ -15,7 +15,7 @@ from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
 from beamdyn.model_error.known_modes import Simple, find_alike
 from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
-from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalue
+from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalues
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
@@ -153,9 +153,9 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 def _change_of_frequencies(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) by equations with an effect."""
-    pencil, known = equations.steady(), vibrate(s)
-    pairs = zip(s.tolist(), v.T, known, strict=True)
-    shifted = np.array([shift_eigenvalue(pencil, speed, r, x) if ok else np.nan for r, x, ok in pairs])
+    known = vibrate(s)
+    shifted = np.full(len(s), np.nan, dtype=complex)
+    shifted[known] = shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
     if lost.any():  # a step of inverse iteration may lead to a neighbour
         shifted[lost] = find_alike(equations, speed, v[:, lost], _AMONG * len(s))

@@ -8,8 +8,11 @@ no new eigenproblem is solved, and no modes are matched.  Further steps serve la
 
 from __future__ import annotations
 
+import cmath
+
 import numpy as np
 import scipy.linalg
+from scipy.linalg.lapack import zgetrf, zgetrs
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 
@@ -19,8 +22,8 @@ _CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the ei
 KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
 
 
-def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> complex:
-    """Estimate the eigenvalue of a pencil next to one of simpler equations.
+def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Estimate the eigenvalues of a pencil next to some of simpler equations.
 
     Parameters
     ----------
@@ -28,41 +31,47 @@ def shift_eigenvalue(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarr
         The equations with the effect.
     speed : float
         Speed [rad/s].
-    s : complex
-        Eigenvalue without the effect [1/s], not 0.
-    v : ndarray, shape (n,)
-        Its mode, 0 in the coordinates that the effect adds.
+    s : ndarray of complex, shape (m,)
+        Eigenvalues without the effect [1/s], not 0.
+    v : ndarray, shape (n, m)
+        Their modes, 0 in the coordinates that the effect adds.
 
     Returns
     -------
-    complex
-        The eigenvalue [1/s]; nan if the equations give none.
+    ndarray of complex, shape (m,)
+        The eigenvalues [1/s]; nan where the equations give none.
     """
     M, C, K = pencil.M, pencil.C + speed * pencil.G, pencil.K0 + speed**2 * pencil.K2
     scale = _scale(M, K)  # functions of high order have large entries
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
-    x = v / scale
+    modes = (v / scale[:, None]).T
+    with np.errstate(divide="ignore", invalid="ignore"):  # of singular equations, which give none
+        each = [_shift(M, C, K, at, x) for at, x in zip(s.tolist(), modes, strict=True)]
+    return np.array(each, dtype=complex)
+
+
+def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarray) -> complex:
+    """The eigenvalue next to s, of mode x without the effect."""
     y, z, at = x.conj(), x, s
     for _ in range(_STEPS):
-        try:
-            y, z = _improve(M, C, K, at * (1 + _APART), y, z)
-        except (ValueError, np.linalg.LinAlgError):
-            return complex(np.nan)
+        y, z = _improve(M, C, K, at * (1 + _APART), y, z)
         before, at = at, _root_near(s, *(complex(y @ A @ z) for A in (M, C, K)))
         if abs(at - before) <= _CONVERGED * abs(at - s) + _ROUNDING * abs(s):
             break
-    kept = abs(x.conj() @ M @ z) ** 2 / ((x.conj() @ M @ x) * (z.conj() @ M @ z)).real
+        if not cmath.isfinite(at):
+            return complex(np.nan)
+    kept = abs(x.conj() @ M @ z) ** 2 / abs((x.conj() @ M @ x) * (z.conj() @ M @ z))
     return at if kept > KEPT else complex(np.nan)
 
 
 def _improve(
     M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, y: np.ndarray, z: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """One step of inverse iteration of the left and the right vector at s."""
+    """One step of inverse iteration of the left and the right vector at s; not finite where D is singular."""
     derivative = 2 * s * M + C
-    factors = scipy.linalg.lu_factor(s * s * M + s * C + K, check_finite=False)
-    z = scipy.linalg.lu_solve(factors, derivative @ z)
-    y = scipy.linalg.lu_solve(factors, derivative.T @ y, trans=1)
+    factors, pivots, _ = zgetrf(s * s * M + s * C + K, overwrite_a=True)
+    z, _ = zgetrs(factors, pivots, derivative @ z)
+    y, _ = zgetrs(factors, pivots, derivative.T @ y, trans=1)
     return y / np.linalg.norm(y), z / np.linalg.norm(z)
 
 
@@ -74,9 +83,9 @@ def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
 
 def _root_near(s: complex, a: complex, b: complex, c: complex) -> complex:
     """The root of a r^2 + b r + c nearest to s; nan if there is none."""
-    if not np.isfinite([a, b, c]).all() or a == 0:
+    if not (cmath.isfinite(a) and cmath.isfinite(b) and cmath.isfinite(c)) or a == 0:
         return complex(np.nan)
-    root = np.sqrt(b * b - 4 * a * c + 0j)
+    root = cmath.sqrt(b * b - 4 * a * c)
     return min((-b + root) / (2 * a), (-b - root) / (2 * a), key=lambda r: abs(r - s))
 
 

@@ -18,6 +18,7 @@ from beamdyn._version import __version__
 from beamdyn.common.app.screens import Handle, KeyResult, Slider
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import parse, read, validated
 from beamdyn.common.edge.input_sweep import (
@@ -123,9 +124,9 @@ class Answer(Result, ABC):
         """Drawings of the machine, row by row, with the slider at a place; none if it is not drawn."""
         return ()
 
-    def curves(self, place: float) -> Figure | None:
+    def charts(self, place: float) -> Sequence[Chart]:
         """What the figure shows beside its drawings, with the slider at a place."""
-        return None
+        return ()
 
     def branches(self) -> Mapping[str, Answer]:
         """The same answer with each of several solutions drawn, by their names; none where there is one."""
@@ -191,7 +192,7 @@ class BrakeType(ABC, Generic[FileModel]):
        `section_of` makes the table of the file, or `Quantity` in a `Section` where there is no such class.
        ``brakes/config/name.py`` has the `Section` with a field for each table.  The form, the inputs that
        can be swept and the messages about mistakes follow from it; `keep_checked` checks the core's fields.
-    3. ``brakes/drawings/name.py`` draws the result: the machine as a `Drawing`, curves by matplotlib.
+    3. ``brakes/drawings/name.py`` draws the result: the machine as a `Drawing`, curves as a `Chart`.
     4. ``brakes/answers/name.py`` derives from `Answer` and from `BrakeType`, sets the attributes below and
        writes `solve` and `outputs`; the answer's `values` go into JSON, with inputs, `error` and provenance.
        Where the mechanics takes arrays derive from `ArrayBrakeType`, which sweeps all cases at once, else

@@ -15,6 +15,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Slider
 from beamdyn.common.described import descriptions
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
 from beamdyn.common.edge.input_sweep import Output, numbers
@@ -39,7 +40,7 @@ from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFrictio
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, idle_inputs, inputs_of_tables, named_text
-from brakes.drawings.caliper import caliper_drawing, caliper_figure, curves_figure, title_of
+from brakes.drawings.caliper import caliper_drawing, caliper_figure, stroke_charts, title_of
 from brakes.drawings.caliper_sketches import caliper_sketch, mechanism_sketch
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.diagnosis import OppositeTravelError, join_names
@@ -249,17 +250,20 @@ class CaliperAnswer(PlanarAnswer):
         title = "\n".join(filter(None, (title_of(self.caliper, self.run, cable), self._caption(cable))))
         return ((caliper_drawing(self.caliper, closed, title),),)
 
-    def curves(self, place: float) -> Figure:
-        """Advantage, ratio of the pads and reactions over the stroke."""
-        return curves_figure(self.caliper, self.run, self._closed_at(place)[0])
+    def charts(self, place: float) -> Sequence[Chart]:
+        """Advantage, velocity of the pads and reactions over the stroke."""
+        return stroke_charts(self.caliper, self.run, self._cable_at(place))
 
     def _closed_at(self, place: float) -> tuple[float, Equilibrium]:
         """Travel of the cable [m] at a part of the stroke from 0 to 1, and the equilibrium there."""
-        run = self.run
+        cable = self._cable_at(place)
         if place >= 1:
-            return float(run.cable[-1]), self.equilibrium
-        cable = float(np.interp(place, (0.0, 1.0), run.cable[[0, -1]]))
-        return cable, self.caliper.equilibrium(cable, run.finger_force)
+            return cable, self.equilibrium
+        return cable, self.caliper.equilibrium(cable, self.run.finger_force)
+
+    def _cable_at(self, place: float) -> float:
+        """Travel of the cable [m] at a part of the stroke from 0 to 1."""
+        return float(np.interp(place, (0.0, 1.0), self.run.cable[[0, -1]]))
 
     def _caption(self, cable: float) -> str:
         """What friction does at the end of the stroke."""
@@ -381,10 +385,10 @@ class CaliperType(MechanismType):
     slider = Slider("stroke", ("open", "closed"), step=0.1)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Both ends of the stroke, of which the drawing asks no more; neither friction nor worn pads."""
-        run = {key: value for key, value in dict(tables.get("run", {})).items() if key != "wear"}
-        friction = {"friction": 0.0} if "friction" in run else {}
-        return {**tables, "run": {**run, "points": 2, **friction}}
+        """Fewer positions of the stroke; neither friction nor worn pads."""
+        coarse = super().coarser(tables)
+        friction = {"friction": 0.0} if "friction" in coarse["run"] else {}
+        return {**coarse, "run": {**coarse["run"], **friction}}
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """The caliper that is chosen, with the names of its dimensions."""

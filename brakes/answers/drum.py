@@ -11,13 +11,14 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.app.screens import Handle
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput
-from brakes.drawings.drum import brake_figure, curves_figure, drawing_of
+from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult
 
@@ -113,9 +114,9 @@ class DrumAnswer(Answer):
         """Free bodies; of a locked brake its parts."""
         return ((drawing_of(self.result),),)
 
-    def curves(self, place: float) -> Figure:
+    def charts(self, place: float) -> Sequence[Chart]:
         """Pressures and factors."""
-        return curves_figure(self.result)
+        return charts_of(self.result)
 
     def handles(self, place: float) -> Sequence[Handle]:
         """Lining, pin, force and drum of the first shoe."""

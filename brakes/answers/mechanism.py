@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
@@ -33,7 +34,7 @@ from brakes.answers.planar_tables import (
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import open_and_closed, with_lock, with_points
-from brakes.drawings.mechanism_stroke import StrokeChart, chart_figure, mechanism_figure
+from brakes.drawings.mechanism_stroke import LoadsOverStroke, mechanism_figure
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
 from brakes.planar.diagnosis import join_names
 
@@ -181,19 +182,27 @@ class MechanismAnswer(PlanarAnswer):
 
     def tables(self) -> list[RenderableType]:
         """Forces as drawn, with friction, the stroke, and the diagnosis."""
-        words = f"{self.design.title}: forces as drawn{', without friction' if self.friction else ''}"
-        strokes = [self._stroke_table(self.motion)] if self.motion else []
         return [
-            reactions_table(self.equilibrium, words),
+            reactions_table(self.equilibrium, self._forces_title("as drawn")),
             *([self.friction.table()] if self.friction else []),
-            *strokes,
+            *(self._stroke_tables(self.motion) if self.motion else []),
             describe_statics(self.equilibrium, self.message, float(np.max(self.last.virtual_work))),
         ]
 
-    def _stroke_table(self, motion: Stroke) -> RenderableType:
+    def _forces_title(self, where: str) -> str:
+        """Title of a table of forces."""
+        return f"{self.design.title}: forces {where}{', without friction' if self.friction else ''}"
+
+    def _stroke_tables(self, motion: Stroke) -> list[RenderableType]:
+        """Loads over the stroke, and all forces at its end."""
         columns = self._columns()
         rows = [[format_force(v[k], 6) for v in columns.values()] for k in select_rows(len(motion.values))]
-        return table(f"Stroke of {motion.driver}", [*columns], rows)
+        end = motion.position[len(motion.values) - 1]
+        where = f"at {self._travelled(len(motion.values) - 1)}"
+        return [
+            table(f"Stroke of {motion.driver}", [*columns], rows),
+            reactions_table(solve(end.mechanism, end), self._forces_title(where)),
+        ]
 
     def _columns(self) -> dict[str, np.ndarray]:
         """Travels and sizes of the loads over the stroke, by name and unit."""
@@ -237,16 +246,16 @@ class MechanismAnswer(PlanarAnswer):
         As drawn, as the table of forces has it; or at a part of the stroke from 0 to 1.
         """
         index = self._index_at(0.0 if place is None else place)
-        return mechanism_figure(self._drawing(index), self._chart(index))
+        return mechanism_figure(self._drawing(index), self._over_stroke(index))
 
     def drawings(self, place: float) -> Rows:
         """The mechanism as drawn and at a part of its stroke, from 0 to 1."""
         return ((self._drawing(self._index_at(place)),),)
 
-    def curves(self, place: float) -> Figure | None:
+    def charts(self, place: float) -> Sequence[Chart]:
         """What the loads do over the stroke, if there is one."""
-        chart = self._chart(self._index_at(place))
-        return None if chart is None else chart_figure(chart)
+        loads = self._over_stroke(self._index_at(place))
+        return () if loads is None else loads.charts()
 
     def _index_at(self, place: float) -> int:
         return 0 if self.motion is None else _index(self.motion, place)
@@ -266,12 +275,17 @@ class MechanismAnswer(PlanarAnswer):
         way = f", {self.branch}" if self.friction else ""
         if self.motion is None:
             return f"{self.design.title}{way}"
-        driver = self.motion.driver
-        factor, unit, _ = units_of(self._mechanism.load(driver))
-        moved = f"{factor * self.motion.values[index]:.3g} {unit} of {driver}{way}; grey: as drawn"
+        moved = f"{self._travelled(index)}{way}; grey: as drawn"
         return f"{self.design.title}: {moved if index else f'as drawn{way}'}"
 
-    def _chart(self, index: int) -> StrokeChart | None:
+    def _travelled(self, index: int) -> str:
+        """Travel of the driver at one of the positions."""
+        if self.motion is None:
+            return ""
+        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
+        return f"{factor * self.motion.values[index]:.3g} {unit} of {self.motion.driver}"
+
+    def _over_stroke(self, index: int) -> LoadsOverStroke | None:
         """Forces and moments over the stroke, if there is one."""
         if self.motion is None or self.over is None:
             return None
@@ -286,9 +300,10 @@ class MechanismAnswer(PlanarAnswer):
             for couples in (False, True)
         }
         travel = factor * self.motion.values
-        label = f"travel of {self.motion.driver} [{unit}]"
         locked = self.friction.locked() if self.friction else {}
-        return StrokeChart(travel, label, sizes[False], sizes[True], float(travel[index]), locked)
+        return LoadsOverStroke(
+            travel, self.motion.driver, unit, sizes[False], sizes[True], float(travel[index]), locked
+        )
 
     def _equilibrium_at(self, index: int) -> Equilibrium:
         """Forces of the branch that is drawn."""

@@ -83,7 +83,7 @@ def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]
         more=(*brake.more, *more),
         handles=lambda answer, place: answer.handles(place),
         drawings=lambda answer, place: answer.drawings(place),
-        curves=lambda answer, place: answer.curves(place),
+        charts=lambda answer, place: answer.charts(place),
         coarser=brake.coarser,
         headline=lambda answer: [*brake.headline(answer)],
         sketch=brake.sketch,

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.drawing.chart import Chart, ChartAxis
+from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import Drawing
 from brakes.calipers import Caliper, CaliperStroke
 from brakes.drawings.mechanism import open_and_closed
-from brakes.drawings.mechanism_stroke import (
-    merged,
-    plot_advantage,
-    plot_couples,
-    plot_pad_ratio,
-    plot_reactions,
-)
+from brakes.drawings.mechanism_stroke import merged, named_curves, travel_axis
 from brakes.planar import Equilibrium, Position
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+_HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # of the charts over the stroke, relative to one another
 
 
 def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> Drawing:
@@ -78,37 +76,45 @@ def caliper_figure(
     place = float(run.cable[-1] if cable is None else cable)
     title = "\n".join(filter(None, (title_of(caliper, run, place), caption)))
     draw_in(figure, (0.005, 0.01, 0.545, 0.985), caliper_drawing(caliper, closed, title))
-    plot_stroke(figure, caliper, run, place, left=0.605)
+    charts = stroke_charts(caliper, run, place)
+    plot_charts_of_one_x(figure, charts, 0.605, _HEIGHTS[: len(charts)])
     return figure
 
 
-def curves_figure(caliper: Caliper, run: CaliperStroke, cable: float) -> Figure:
-    """Draw advantage, pad ratio and reactions over the stroke, marked at a travel of the cable [m]."""
-    from matplotlib.figure import Figure
+def stroke_charts(caliper: Caliper, run: CaliperStroke, cable: float) -> list[Chart]:
+    """Advantage, velocity of the pads and reactions over the stroke, marked at a travel of the cable [m].
 
-    figure = Figure(figsize=(7.0, 7.6))
-    plot_stroke(figure, caliper, run, cable, left=0.1)
-    return figure
-
-
-def plot_stroke(figure: Any, caliper: Caliper, run: CaliperStroke, cable: float, left: float) -> None:
-    """Plot the curves over the stroke below one another, from a part of the figure's width on."""
+    Parameters
+    ----------
+    caliper : Caliper
+        The caliper.
+    run : CaliperStroke
+        Its stroke.
+    cable : float
+        Where the cursor is [m].
+    """
     sizes = [(joint.is_couple, joint.name, run.magnitudes[joint.name]) for joint in caliper.mechanism.joints]
     forces, couples = (
         {name: size for kind, name, size in sizes if kind is is_couple} for is_couple in (False, True)
     )
-    heights = (1, 1, 1.6, 0.8) if merged(couples) else (1, 1, 1.6)
-    cells = figure.add_gridspec(
-        len(heights), 1, height_ratios=heights, hspace=0.08, left=left, right=0.985, bottom=0.075, top=0.965
+    shown = (
+        ("Mechanical advantage of each pad", ChartAxis("pad force / finger force"), _sides(run.advantage)),
+        (
+            "Velocity ratio of each pad",
+            ChartAxis("pad travel / cable travel"),
+            _sides(run.pad_ratio),
+        ),
+        ("Forces of the joints", ChartAxis("force of the joint", "N"), merged(forces)),
+        ("Couples of the joints", ChartAxis("couple of the joint", "N m"), merged(couples)),
     )
-    curves = [figure.add_subplot(cells[row, 0]) for row in range(len(heights))]
-    plot_advantage(run.cable, run.advantage, curves[0])
-    plot_pad_ratio(run.cable, run.pad_ratio, curves[1])
-    plot_reactions(run.cable, forces, curves[2])
-    if len(curves) > 3:
-        plot_couples(run.cable, couples, curves[3])
-    for axes in curves:
-        axes.axvline(1e3 * cable, color="0.4", linewidth=1, linestyle=":")
-    for axes in curves[:-1]:
-        axes.set_xlabel("")
-        axes.tick_params(labelbottom=False)
+    x = 1e3 * run.cable
+    travel = travel_axis("cable travel", "mm", x)
+    return [
+        Chart(title, travel, axis, named_curves(x, curves), cursor=1e3 * cable)
+        for title, axis, curves in shown
+        if curves
+    ]
+
+
+def _sides(pair: np.ndarray) -> dict[str, np.ndarray]:
+    return {"right pad": pair[:, 0], "left pad": pair[:, 1]}

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from beamdyn.common.array_checks import Numbers
-from beamdyn.common.curves import grid
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
+from beamdyn.common.drawing.chart_on_axes import plot_chart
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
-from beamdyn.common.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
 from brakes.drum import BrakeResult, DrumBrake, Shoe, ShoeResult, brake_torque
 
 _FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
+_ANGLES, _FRICTIONS = 61, 121  # points of the curves
 
 
 def brake_figure(result: BrakeResult) -> Figure:
@@ -28,24 +31,22 @@ def brake_figure(result: BrakeResult) -> Figure:
 
     figure = Figure(figsize=(11.5, 7.0))
     draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing_of(result))
-    _plot_curves(figure, result, left=0.62)
+    _plot_charts(figure, charts_of(result), left=0.62)
     return figure
 
 
-def curves_figure(result: BrakeResult) -> Figure:
-    """Draw pressure and shoe factors; of a locked brake the factors alone."""
-    figure = Figure(figsize=(7.0, 4.8 if result.locked else 7.0))
-    _plot_curves(figure, result, left=0.1)
-    return figure
+def charts_of(result: BrakeResult) -> list[Chart]:
+    """Pressure, if there is any, and shoe factors of a result of one case."""
+    factors_over_friction = factor_chart(result.brake, float(result.friction), result.reverse)
+    return [factors_over_friction] if result.locked else [pressure_chart(result), factors_over_friction]
 
 
-def _plot_curves(figure: Figure, result: BrakeResult, left: float) -> None:
-    """Plot pressure, if there is any, and shoe factors below it, from a part of the figure's width on."""
-    rows = 1 if result.locked else 2
+def _plot_charts(figure: Figure, charts: Sequence[Chart], left: float) -> None:
+    """Plot charts below one another, from a part of the figure's width on."""
+    rows = len(charts)
     cells = figure.add_gridspec(rows, 1, left=left, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
-    if not result.locked:
-        pressures(figure.add_subplot(cells[0, 0]), result)
-    factors(figure.add_subplot(cells[-1, 0]), result.brake, float(result.friction), result.reverse)
+    for row, chart in enumerate(charts):
+        plot_chart(figure.add_subplot(cells[row, 0]), chart)
 
 
 def drawing_of(result: BrakeResult) -> Drawing:
@@ -156,30 +157,50 @@ def _draw_drum(arrows: ForceArrows, r: float, reverse: bool) -> None:
 
 def pressures(ax: Axes, result: BrakeResult) -> Axes:
     """Draw the pressure over the linings; of one case."""
-    for i, shoe in enumerate(result.shoes):
-        a1, a2 = (float(a) for a in shoe.shoe.lining)
-        alpha = np.linspace(a1, a2, 200)
-        p = 1e-6 * shoe.pressure(alpha)
-        word = "leading" if shoe.leading else "trailing"
-        alpha, p = np.r_[a1, alpha, a2], np.r_[0.0, p, 0.0]
-        ax.plot(np.degrees(alpha), p, color=COLOURS[i], linestyle=("-", "--")[i % 2], linewidth=1.8,
-                label=f"{i + 1}: {word}")  # fmt: skip
-    grid(ax)
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("angle from straight down [deg]")
-    ax.set_ylabel("pressure [MPa]")
-    ax.legend(fontsize=9)
-    ax.set_title("Pressure on the linings", fontsize=11)
-    return ax
+    return plot_chart(ax, pressure_chart(result))
+
+
+def pressure_chart(result: BrakeResult) -> Chart:
+    """The pressure over the linings, of one case."""
+    return Chart(
+        "Pressure on the linings",
+        ChartAxis("angle from straight down", "deg"),
+        ChartAxis("pressure", "MPa", low=0.0),
+        [_pressure(i, shoe) for i, shoe in enumerate(result.shoes)],
+    )
+
+
+def _pressure(i: int, shoe: ShoeResult) -> ChartCurve:
+    """The pressure over a lining, down to zero at its ends."""
+    a1, a2 = (float(a) for a in shoe.shoe.lining)
+    alpha = np.linspace(a1, a2, _ANGLES)
+    p = 1e-6 * shoe.pressure(alpha)
+    alpha, p = np.r_[a1, alpha, a2], np.r_[0.0, p, 0.0]
+    return ChartCurve(_name(i, shoe), np.degrees(alpha), p, dashed=bool(i % 2))
+
+
+def _name(i: int, shoe: ShoeResult) -> str:
+    return f"{i + 1}: {'leading' if shoe.leading else 'trailing'}"
 
 
 def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Axes:
-    """Draw C* of each shoe and of the brake over friction, with the friction at which it locks.
+    """Draw the chart of `factor_chart`.
 
     Parameters
     ----------
     ax : Axes
         Where to draw.
+    brake, friction, reverse
+        See `factor_chart`.
+    """
+    return plot_chart(ax, factor_chart(brake, friction, reverse))
+
+
+def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Chart:
+    """C* of each shoe and of the brake over friction, with the friction at which it locks.
+
+    Parameters
+    ----------
     brake : DrumBrake
         The brake.
     friction : float, optional
@@ -187,44 +208,29 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
     reverse : bool
         Whether the drum turns backward.
     """
-    limits = [
-        float(np.min(shoe.locking_friction))
-        for shoe in brake_torque(brake, friction=0.1, force=1.0, reverse=reverse).shoes
-    ]
+    shoes = brake_torque(brake, friction=0.1, force=1.0, reverse=reverse).shoes
+    limits = [float(np.min(shoe.locking_friction)) for shoe in shoes]
     limit, first = min(limits), int(np.argmin(limits))
     top = 0.995 * limit if limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * (friction or 0))
-    mu = np.linspace(1e-3, top, 400)
+    mu = np.linspace(1e-3, top, _FRICTIONS)
     result = brake_torque(brake, friction=mu, force=1.0, reverse=reverse)
-    lines = [("brake", result.c_star, COLOURS[6], "-")] if len(result.shoes) > 1 else []
-    for i, shoe in enumerate(result.shoes):
-        word = "leading" if shoe.leading else "trailing"
-        lines.append((f"{i + 1}: {word}", shoe.c_star, COLOURS[i], ("-", "--")[i % 2]))
-    for label, values, colour, style in lines:
-        ax.plot(mu, values, color=colour, linestyle=style, linewidth=1.8, label=label)
-    ceiling = _ceiling(result.c_star, mu, friction)
-    ax.set_ylim(0, ceiling)
-    _mark_friction(ax, limit, COLOURS[first], friction, ceiling)
-    grid(ax)
-    ax.set_xlim(left=0)
-    ax.set_xlabel("friction of the linings")
-    ax.set_ylabel("C* = torque / (force radius)")
-    ax.legend(fontsize=9, loc="upper left")
-    ax.set_title("Shoe factors", fontsize=11)
-    return ax
+    of_shoes = [
+        ChartCurve(_name(i, shoe), mu, shoe.c_star, dashed=bool(i % 2)) for i, shoe in enumerate(result.shoes)
+    ]
+    whole = [ChartCurve("brake", mu, result.c_star)] if len(of_shoes) > 1 else []
+    marks = [ChartMark(friction, f"{friction:g}", at_foot=True)] if friction else []
+    if limit < _LIMIT_SHOWN:
+        marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=of_shoes[first].name))
+    return Chart(
+        "Shoe factors",
+        ChartAxis("friction of the linings", low=0.0),
+        ChartAxis("C* = torque / (force radius)", low=0.0, high=_ceiling(result.c_star, mu, friction)),
+        [*of_shoes, *whole],
+        marks=marks,
+    )
 
 
 def _ceiling(c_star: Numbers, mu: np.ndarray, friction: float | None) -> float:
     """Upper limit of the C* axis, as C* grows without bound towards locking."""
     near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, c_star))
     return max(2.5 * near, 1.0)
-
-
-def _mark_friction(ax: Axes, limit: float, colour: str, friction: float | None, ceiling: float) -> None:
-    """Mark the friction of the case, and that at which the shoe drawn in this colour locks."""
-    if friction:
-        ax.axvline(friction, color="0.5", linewidth=1, linestyle=":")
-        ax.text(friction, 0.02 * ceiling, f" {friction:g}", color="0.35", fontsize=9, va="bottom")
-    if limit < _LIMIT_SHOWN:
-        ax.axvline(limit, color=colour, linewidth=1.4, linestyle="-.")
-        ax.text(limit, 0.5 * ceiling, f"locks at {limit:.3g} ", color=colour, fontsize=9, ha="right",
-                rotation=90, va="center")  # fmt: skip

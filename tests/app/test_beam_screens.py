@@ -14,7 +14,7 @@ from beamdyn.app.rotor import ROTOR
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
-from beamdyn.common.app.chart import options_of
+from beamdyn.common.app.chart_options import options_of
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.handles import draw_sheet
 from beamdyn.common.app.input_words import as_on_form

@@ -108,10 +108,11 @@ def test_a_branch_that_locks_is_marked_in_drawing_and_curves():
     assert [len(marks(branch)) for branch in branches.values()] == [0, 0, 1]
     (words,) = [label.text for label in drawing(branches["releasing"]).labels if label.role == "inside"]
     assert words == "locks: push has to act the other way"
-    (axes,) = SCREEN.curves(branches["squeezing"], 1.0).axes
-    named = [line.get_label() for line in axes.lines]
-    assert "push, releasing: locks" in named and "push, squeezing: locks" not in named
-    marked = axes.lines[named.index("push, releasing: locks")]
+    (chart,) = SCREEN.charts(branches["squeezing"], 1.0)
+    assert [points.name for points in chart.points] == ["push, releasing: locks"]
+    assert len(chart.points[0].at) == 11
+    (axes,) = branches["squeezing"].figure().axes[1:]  # the same in the file
+    marked = next(line for line in axes.lines if line.get_label() == "push, releasing: locks")
     assert len(marked.get_xdata()) == 11
 
 

@@ -6,17 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from beamdyn.common.app.chart import (
-    Chart,
-    ChartAxis,
-    ChartBand,
-    ChartCurve,
-    ChartMark,
-    ChartPoints,
-    chart_colours,
-    options_of,
-    thinned,
-)
+from beamdyn.common.app.chart_options import chart_colours, options_of, thinned
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.style import INKS
 
 X = ChartAxis("speed", "rad/s", low=0.0, high=10.0)
@@ -57,6 +48,14 @@ def test_close_up_far_from_zero_keeps_its_places_apart():
     x = 1000.0 + np.linspace(0, 0.01, 101)
     data = series(made(ChartCurve("tip", x, np.sin(x))), "tip")["data"]
     assert np.allclose([p[0] for p in data], x, rtol=0, atol=0.01 * 1e-4)  # 1e-4 of the axis is not seen
+
+
+def test_a_curve_that_varies_little_is_no_staircase_and_rounding_is_not_drawn():
+    x = np.linspace(0.0, 1.0, 101)
+    data = series(made(ChartCurve("advantage", x, 4.257 + 1e-5 * x)), "advantage")["data"]
+    assert len({y for _, y in data}) == 101
+    noise = 1e-15 * np.cos(40 * x)
+    assert {y for _, y in series(made(ChartCurve("hand", x, 100.0 + noise)), "hand")["data"]} == {100.0}
 
 
 def test_long_curve_is_light_and_keeps_its_ends_and_peaks():

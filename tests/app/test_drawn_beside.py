@@ -14,7 +14,7 @@ from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
 from tests.app.serving import PATIENCE
 
-DRAWN = {tasks.curves, tasks.further, tasks.drawing_file, tasks.sweep_picture, tasks.sweep_file, tasks.report}
+DRAWN = {tasks.further, tasks.drawing_file, tasks.sweep_picture, tasks.sweep_file, tasks.report}
 
 
 class Holding:
@@ -96,19 +96,12 @@ def test_another_tab_is_answered_while_a_report_is_made(simulate, fields, solver
     simulate(BRAKES, body, solver)
 
 
-def test_curves_and_files_are_drawn_beside(simulate, fields, solver):
-    def curves(user):
-        written = [str(e.props.get("innerHTML", "")) for e in user.client.elements.values()]
-        return [text for text in written if 'alt="Drum brake: curves"' in text]
-
+def test_files_are_drawn_beside(simulate, fields, solver):
     async def body(another):
         user = await another()
         page = fields(user)
         page.go("Drum brake")
         await wait_for(lambda: "Up to date." in page.text())
-        assert tasks.curves in [task for _, task, _ in solver.held] and not curves(user)
-        solver.let_go()
-        await wait_for(lambda: curves(user))
         press(user, "download Drum brake as PNG")
         await wait_for(lambda: tasks.drawing_file in [task for _, task, _ in solver.held])
         solver.let_go()

@@ -15,6 +15,7 @@ from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Program
+from beamdyn.common.app.sweep_charts import sweep_charts
 from beamdyn.common.app.sweep_panel import around
 from beamdyn.common.edge.input_sweep import numbers, sweep_csv
 from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
@@ -201,6 +202,17 @@ def test_values_to_begin_with_are_around_what_is_given(document):
     assert around(entries[path], work.entries) == values
 
 
+def test_charts_of_a_sweep_have_its_results_and_mark_designs_without_an_answer():
+    document = next(document for document in BRAKES.documents if document.name == "drum")
+    found = swept(document, document.screens[0], "brake.friction=0.9:1.1:5", "torque,c_star")
+    torque, factor = sweep_charts(found)
+    assert torque.title == "torque [N m] over friction" and factor.title == "c star over friction"
+    for chart, values in zip((torque, factor), found.found, strict=True):
+        np.testing.assert_array_equal(chart.curves[0].y, values)
+        (lacking,) = chart.points
+        assert [x for x, _, _ in lacking.at] == found.values[0][np.isnan(values)].tolist() != []
+
+
 # On the page --------------------------------------------------------------------------------------------
 
 
@@ -252,12 +264,9 @@ def test_sweep_of_another_design_is_greyed_and_offers_are_those_of_the_design(si
             e for e in user.client.elements.values() if isinstance(e, ui.button) and e.text == "Sweep"
         ]
         UserInteraction(user, {button}, None).click()
-        for _ in range(10 * PATIENCE):
-            await asyncio.sleep(0.1)
-            if any(
-                "finger_travel over" in str(e.props.get("innerHTML")) for e in user.client.elements.values()
-            ):
-                break
+        async with asyncio.timeout(PATIENCE):
+            while "finger travel [mm] over" not in page.text():
+                await asyncio.sleep(0.1)
         assert page.greyed() == 0
         page.enter("run.finger", "50 N")
         assert page.greyed() == 1

@@ -17,13 +17,16 @@ from beamdyn.cli.program import main
 from beamdyn.common.digits import count_sure
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.model_error.left_out_effects import LeftOutEffects, say_change
+from beamdyn.model_error.pencils import shift_eigenvalues
 from beamdyn.tables.results import locus_table, modes_table
 from beamdyn.tables.rows import locus_csv
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
 OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)
 SCENE = bd.Scene(STRIP, OUTWARD)
+NONE = np.zeros((2, 2))
 NEVER = ("torsion", "offsets of sections", "warping and Poisson contraction", "contact")
 
 FILE = """
@@ -357,3 +360,20 @@ def test_an_effect_left_out_of_a_blade_whose_axial_stiffness_jumps() -> None:
     changes = with_it.frequency / without.frequency - 1
     stated = without.left_out["rotary inertia of sections"]
     np.testing.assert_allclose(stated, changes, rtol=0.1)  # to the first order of changes of 3 % and less
+
+
+def test_shifted_eigenvalues_are_those_of_the_changed_equations() -> None:
+    """K = diag(1, 4) becomes [[1.1, 0.05], [0.05, 4.2]], whose eigenvalues a quadratic equation gives."""
+    K = np.array([[1.1, 0.05], [0.05, 4.2]])
+    pencil = SteadyPencil(np.eye(2), NONE, NONE, K, NONE, np.zeros(2))
+    shifted = shift_eigenvalues(pencil, 0.0, np.array([1j, 2j]), np.eye(2))
+    middle, half = (1.1 + 4.2) / 2, math.hypot((4.2 - 1.1) / 2, 0.05)
+    expected = 1j * np.sqrt([middle - half, middle + half])
+    np.testing.assert_allclose(shifted, expected, rtol=1e-6)  # a step that ends at 1 % of the change, squared
+
+
+@pytest.mark.parametrize("entry", [0.0, np.nan])
+def test_equations_that_have_no_eigenvalue_give_none(entry: float) -> None:
+    M = np.full((2, 2), entry)
+    pencil = SteadyPencil(M, NONE, NONE, M, NONE, np.zeros(2))
+    assert np.isnan(shift_eigenvalues(pencil, 0.0, np.array([1j]), np.eye(2)[:, :1])).all()

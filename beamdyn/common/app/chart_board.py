@@ -10,8 +10,9 @@ from zlib import crc32
 
 from nicegui import ui
 
-from beamdyn.common.app.chart import Chart, chart_colours, marks_of, options_of
+from beamdyn.common.app.chart_options import chart_colours, marks_of, options_of
 from beamdyn.common.app.page_writer import PageWriter
+from beamdyn.common.drawing.chart import Chart
 
 STYLE = (
     chart_colours(":root")

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
-from beamdyn.common.app.chart import Chart, ChartCurve
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.history import differing
 from beamdyn.common.app.input_words import given_or_default, label
 from beamdyn.common.app.screens import KeyResult
+from beamdyn.common.drawing.chart import Chart, ChartCurve
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.inputs import Input

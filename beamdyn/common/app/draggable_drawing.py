@@ -21,7 +21,6 @@ STYLE = (
 .board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
 .board .machine { display: block; width: 100%; height: auto; user-select: none; }
 .waits { opacity: 0.4; }
-.curves .drawing { max-width: 720px; min-width: 0; }
 .handle { position: absolute; width: 16px; height: 16px; margin: -8px; border-radius: 50%; cursor: grab;
   border: 2px solid #0072B2; background: rgb(255 255 255 / 0.35); box-shadow: 0 0 0 1px white;
   touch-action: none; }

@@ -13,25 +13,15 @@ from beamdyn.common.edge.rendering import picture
 
 
 class PictureOf:
-    """A picture that is drawn beside the page's process: the last one stays until the next one has come.
+    """A picture that is drawn beside the page's process: the last one stays until the next one has come."""
 
-    Parameters
-    ----------
-    kind : str
-        Class of its frame.
-    """
-
-    def __init__(self, kind: str = "") -> None:
+    def __init__(self) -> None:
         self._way = UnderWay(self._settle, self._fail)
-        self._frame: Any = ui.html("", sanitize=False).classes(f"w-full drawing-frame {kind}")
+        self._frame: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
 
     def want(self, start: Callable[[], asyncio.Future[str]]) -> None:
         """Show the picture that this starts to draw; of several the newest."""
         self._way.want(start)
-
-    def grey(self, stale: bool) -> None:
-        """Grey it, or no longer."""
-        self._frame.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
 
     def close(self) -> None:
         """End what is being drawn."""

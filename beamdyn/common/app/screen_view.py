@@ -19,7 +19,7 @@ from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
 from beamdyn.common.app.downloads import download
 from beamdyn.common.app.draggable_drawing import DraggableDrawing
-from beamdyn.common.app.folded_drawing import FoldedDrawing, PictureOf
+from beamdyn.common.app.folded_drawing import FoldedDrawing
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
@@ -91,10 +91,9 @@ class ScreenView:
         with self._good:
             with ui.column().classes("pictures gap-2"):
                 self._slider()
-                self._branch = BranchChoice(self._redraw)
+                self._branch = BranchChoice(self._draw)
                 words = f"{self.screen.name}: drawing of the result"
                 self.board = DraggableDrawing(words, self._moved, self._writer)
-                self._curves = PictureOf("curves")
                 self._charts = ChartBoard(f"{self.screen.name}: charts of the result", self._writer)
             with ui.column().classes("numbers gap-2"):
                 self.comparison = ComparisonPanel(self.work, self.screen)
@@ -121,7 +120,7 @@ class ScreenView:
             self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
                 "slider"
             )
-            self._player = Player(self._at, slider.label, slider.course(last, slider.seconds), self._plot)
+            self._player = Player(self._at, slider.label, slider.course(last, slider.seconds))
 
     def _exports(self) -> None:
         with ui.row().classes("gap-2"):
@@ -239,8 +238,8 @@ class ScreenView:
 
     def close(self) -> None:
         """End what is under way: the page is gone."""
-        for way in (self._curves, *self._more):
-            way.close()
+        for more in self._more:
+            more.close()
         self._way.cancel()
         if self._sweep is not None:
             self._sweep.close()
@@ -338,7 +337,6 @@ class ScreenView:
         self._draw()
         self._tables.classes(add="waits" if self.dragged else "", remove="" if self.dragged else "waits")
         if not self.dragged:  # while a point is moved, its drawing alone follows
-            self._plot()
             self._tables.set_content(self._as_on_form(html(answered.tables)))
             self.comparison.show(answered)
             for more in self._more:
@@ -358,16 +356,9 @@ class ScreenView:
         if self.work.answered.get(self.screen.name):
             self._show()
 
-    def _redraw(self) -> None:
-        """Draw another of the answer's branches."""
-        self._draw()
-        self._plot()
-
     def _turn(self) -> None:
-        """Draw at the slider's new place, to the same scale; curves follow when it rests."""
+        """Draw at the slider's new place, to the same scale."""
         self._draw(self.board.view)
-        if self._player is None or not self._player.plays:
-            self._plot()
 
     def _draw(self, view: Viewport | None = None) -> None:
         answered = self.work.answered.get(self.screen.name)
@@ -400,14 +391,6 @@ class ScreenView:
         if there is not None and self.work.other is not None:
             charts = with_other_curves(charts, self.screen.charts(there, self.progress), self.work.other.name)
         self._charts.show(charts)
-
-    def _plot(self) -> None:
-        """Show the curves that belong to the drawings, if there are any."""
-        answered = self.work.answered.get(self.screen.name)
-        if answered is None or self.screen.curves is None:
-            return
-        answer, progress = self._drawn_answer(answered), self.progress
-        self._curves.want(lambda: self._make(tasks.curves, answer, progress))
 
     def _make(self, task: Task, *given: Any) -> asyncio.Future[Any]:
         """Have something made for this screen."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from beamdyn.common.app.chart import Chart
 from beamdyn.common.app.courses import BackAndForth, Course
 from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.app.lists import Lists
 from beamdyn.common.curves import sweep_figure
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketcher
 from beamdyn.common.edge.config import parse
@@ -178,8 +178,6 @@ class Screen:
     coarser : callable
         Tables in, those of a question out whose drawing is the same and that is answered sooner: solved while
         a point is moved.
-    curves : callable, optional
-        Answer and place of the slider in; the figure below the drawings out, or None.
     lists : Lists, optional
         Lists of named things that stand above its form.
     headline : callable
@@ -212,7 +210,6 @@ class Screen:
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
     drawings: Callable[[Any, float], Rows] = lambda *_: ()
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
-    curves: Callable[[Any, float], Figure | None] | None = None
     lists: Lists | None = None
     headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
     effort: str = ""

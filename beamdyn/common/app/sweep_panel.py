@@ -1,4 +1,4 @@
-"""The panel of a screen that sweeps an input: picture and CSV of the results."""
+"""The panel of a screen that sweeps an input: charts, picture and CSV of the results."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app import tasks
+from beamdyn.common.app.chart_board import ChartBoard
 from beamdyn.common.app.downloads import download
-from beamdyn.common.app.folded_drawing import PictureOf
 from beamdyn.common.app.form_entries import Entries, in_unit, tables_of
 from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.app.page_writer import PageWriter
 from beamdyn.common.app.processes import TakesTooLong, TaskTaker
 from beamdyn.common.app.screens import Screen, Sweeps
+from beamdyn.common.app.sweep_charts import sweep_charts
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
 from beamdyn.common.edge.inputs import Input
@@ -63,7 +65,9 @@ class SweepPanel:
                     ).props("flat no-caps")
             self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
             self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
-            self._picture = PictureOf()
+            self._good: Any = ui.element("div").classes("w-full")
+            with self._good:
+                self._charts = ChartBoard(f"{screen.name}: charts of the sweep", PageWriter())
 
     def state(self) -> None:
         """While it is open: update the inputs and results offered, and grey a stale sweep."""
@@ -71,7 +75,7 @@ class SweepPanel:
             self._offer()
             stale = self._shown not in (None, self.work.needed(self.screen))
             self._late.set_visibility(stale)
-            self._picture.grey(stale)
+            self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
 
     def _offer(self) -> None:
         paths = [*self._inputs()]
@@ -140,14 +144,9 @@ class SweepPanel:
     async def show(self) -> None:
         """Show the sweep."""
         if swept := await self._run():
-            words = f"{', '.join(swept.results)} over {swept.inputs[0]}"
-            self._picture.want(lambda: self._drawn(swept, words))
+            self._charts.show(sweep_charts(swept))
             self._shown = self._found[0][0] if self._found else None
             self.state()
-
-    def _drawn(self, swept: InputSweep, words: str) -> asyncio.Future[str]:
-        """Have the picture of a sweep drawn, as HTML."""
-        return self._solver.submit(tasks.sweep_picture, self.work.document, self.screen, swept, words)
 
     def report(self) -> tuple[str, InputSweep] | None:
         """Title and result of the sweep that is shown; None while there is none, or it is stale."""

@@ -42,12 +42,6 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
 # Pictures by matplotlib, which take long -----------------------------------------------------------------
 
 
-def curves(document: Document, screen: Screen, answer: Any, place: float) -> str:
-    """The curves below the drawings of an answer in HTML; empty where there are none."""
-    figure = None if screen.curves is None else screen.curves(answer, place)
-    return "" if figure is None else picture(drawing(lambda: figure), f"{screen.name}: curves")
-
-
 def further(document: Document, screen: Screen, answer: Any, number: int) -> str:
     """One of the further drawings of an answer in HTML."""
     title, draw = screen.more[number]

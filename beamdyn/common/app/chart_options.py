@@ -1,19 +1,19 @@
-"""Curves as data, and as options of the chart component of the page: hover, zoom, saving as a picture."""
+"""Charts as options of the chart component of the page: hover, zoom, saving as a picture."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import count
 from typing import Any
 
 import numpy as np
 
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.style import INKS, PAPER
 
-_MOST_POINTS = 400  # of a curve: more are not seen, and take time to send
 _DIGITS = 5  # of numbers on the page; of places on an axis, over its length
+_MOST_DIGITS = 10  # of a curve that varies little
 _WIDE = 0.15  # of the axis: a narrower band has no room for its text
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  # roles of curves, in turn
 # Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
@@ -27,139 +27,6 @@ _NAMED, _PALE = 12, 11  # sizes of letters [px]
 _WIDE_CHART = 700  # from which on a chart is wide [px]
 _LETTERS, _LETTERS_WIDE = 52, 100  # in a row of the legend of a narrow chart, and of a wide one
 _DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # of curves that are compared with, in turn
-
-
-@dataclass(frozen=True)
-class ChartAxis:
-    """An axis of a chart.
-
-    Parameters
-    ----------
-    name : str
-        What it shows.
-    unit : str
-        Unit of its numbers; "" for none.
-    logarithmic : bool
-        Whether it has decades.
-    low, high : float, optional
-        Its ends; by the curves if not given.
-    """
-
-    name: str
-    unit: str = ""
-    logarithmic: bool = False
-    low: float | None = None
-    high: float | None = None
-
-    @property
-    def title(self) -> str:
-        """Name and unit."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
-
-
-@dataclass(frozen=True, eq=False)
-class ChartCurve:
-    """A curve.
-
-    Parameters
-    ----------
-    name : str
-        In the legend and when pointed at.
-    x, y : ndarray, shape (n,)
-        Its points, in the units of the axes; a gap where y is not finite.
-    dashed : bool
-        Whether it is dashed.
-    pale : bool
-        Whether it is grey and thin, as what is only compared with.
-    points : bool
-        Whether its points are marked, too.
-    most : int
-        How many points are drawn: least and largest of parts, where there are more.
-    """
-
-    name: str
-    x: Any
-    y: Any
-    dashed: bool = False
-    pale: bool = False
-    points: bool = False
-    most: int = _MOST_POINTS
-
-
-@dataclass(frozen=True)
-class ChartPoints:
-    """Points with a word each.
-
-    Parameters
-    ----------
-    name : str
-        In the legend.
-    at : sequence of (x, y, words)
-        Where they are, and what is said when one is pointed at.
-    role : str
-        Its colour: a name in `beamdyn.common.drawing.style`.
-    """
-
-    name: str
-    at: Sequence[tuple[float, float, str]]
-    role: str = "mark"
-
-
-@dataclass(frozen=True)
-class ChartMark:
-    """An upright line with a text, at its head, or at its foot where curves pass the head."""
-
-    at: float
-    text: str
-    at_foot: bool = False
-
-
-@dataclass(frozen=True)
-class ChartBand:
-    """A stretch of x, greyed, with a text."""
-
-    low: float
-    high: float
-    text: str
-
-
-@dataclass(frozen=True, eq=False)
-class Chart:
-    """Curves over a common x.
-
-    Parameters
-    ----------
-    title : str
-        What it shows.
-    x, y : ChartAxis
-        Its axes.
-    curves : sequence of ChartCurve
-        Curves.
-    points : sequence of ChartPoints
-        Single points.
-    marks : sequence of ChartMark
-        Upright lines.
-    bands : sequence of ChartBand
-        Greyed stretches.
-    cursor : float, optional
-        Where a player is.
-    """
-
-    title: str
-    x: ChartAxis
-    y: ChartAxis
-    curves: Sequence[ChartCurve]
-    points: Sequence[ChartPoints] = ()
-    marks: Sequence[ChartMark] = ()
-    bands: Sequence[ChartBand] = ()
-    cursor: float | None = None
-
-    @property
-    def words(self) -> str:
-        """What it shows, for those who do not see it."""
-        names = ", ".join(each.name for each in (*self.curves, *self.points))
-        marks = "; ".join(mark.text.replace("\n", " ") for mark in self.marks)
-        return f"{self.title}: {self.y.title} over {self.x.title}; {names}" + (f"; {marks}" if marks else "")
 
 
 def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
@@ -342,13 +209,17 @@ def _toolbox(chart: Chart) -> dict[str, Any]:
 def _series(chart: Chart) -> Iterator[dict[str, Any]]:
     """Marks and bands first, in a series of their own, which a moving cursor alone replaces."""
     yield marks_of(chart)
-    roles, dashes = count(), count()
-    for i, curve in enumerate(chart.curves):
-        role = "ground" if curve.pale else _COLOURS[next(roles) % len(_COLOURS)]
+    dashes = count()
+    for i, (curve, role) in enumerate(zip(chart.curves, _roles(chart), strict=True)):
         dashed = curve.dashed or i >= len(_COLOURS)
         kind = _DASHES[next(dashes) % len(_DASHES) if curve.pale else 0] if dashed else "solid"
         yield _line(i, curve, role, kind)
     yield from map(_points, chart.points)
+
+
+def _roles(chart: Chart) -> list[str]:
+    """The colour of each curve."""
+    return ["ground" if n is None else _COLOURS[n % len(_COLOURS)] for n in chart.colour_numbers]
 
 
 def marks_of(chart: Chart) -> dict[str, Any]:
@@ -415,15 +286,8 @@ def _points(points: ChartPoints) -> dict[str, Any]:
 
 def _marks(chart: Chart) -> dict[str, Any]:
     """Upright lines, their texts at different heights where they are near one another."""
-    each = [
-        {
-            "xAxis": _place(mark.at),
-            "name": mark.text,
-            "label": {"formatter": "{b}"} | ({"position": "insideStartTop"} if mark.at_foot else {}),
-        }
-        for mark in chart.marks
-        if math.isfinite(mark.at)
-    ]
+    role_of = {curve.name: role for curve, role in zip(chart.curves, _roles(chart), strict=True)}
+    each = [_mark(mark, role_of.get(mark.curve)) for mark in chart.marks if math.isfinite(mark.at)]
     if chart.cursor is not None and math.isfinite(chart.cursor):
         now = {"color": _paint("friction"), "width": 2, "type": "solid"}
         each.append({"xAxis": _place(chart.cursor), "lineStyle": now, "label": {"show": False}})
@@ -440,6 +304,15 @@ def _marks(chart: Chart) -> dict[str, Any]:
         },
         "data": each,
     }
+
+
+def _mark(mark: ChartMark, role: str | None) -> dict[str, Any]:
+    """An upright line, in the colour of a curve if it is about one."""
+    place = {"position": "insideStartTop"} if mark.at_foot else {}
+    colour = {"color": _paint(role)} if role else {}
+    line = {"lineStyle": colour} if role else {}
+    label = {"formatter": "{b}"} | place | colour
+    return {"xAxis": _place(mark.at), "name": mark.text, "label": label} | line
 
 
 def _bands(chart: Chart) -> dict[str, Any]:
@@ -474,8 +347,16 @@ def _pairs(x: np.ndarray, y: np.ndarray) -> Iterator[list[float | None]]:
     """Points of a line, as exact as they are seen."""
     span = float(np.ptp(x)) if len(x) else 0.0
     decimals = _DIGITS - math.floor(math.log10(span)) if span > 0 else 12
+    digits = _digits(y[np.isfinite(y)])
     for a, b in zip(x.tolist(), y.tolist(), strict=True):
-        yield [round(a, decimals), _short(b) if math.isfinite(b) else None]
+        yield [round(a, decimals), _short(b, digits) if math.isfinite(b) else None]
+
+
+def _digits(y: np.ndarray) -> int:
+    """Digits of the heights of a line: as many more as these differ less; noise of rounding is not shown."""
+    span, largest = (float(np.ptp(y)), float(np.abs(y).max())) if len(y) else (0.0, 0.0)
+    more = math.ceil(math.log10(largest / span)) - 1 if span > 0 else 0
+    return min(_DIGITS + max(more, 0), _MOST_DIGITS)
 
 
 def _is_number(*values: float) -> bool:
@@ -487,6 +368,6 @@ def _place(value: float) -> float:
     return float(f"{value:.{2 * _DIGITS}g}")
 
 
-def _short(value: float) -> float:
+def _short(value: float, digits: int = _DIGITS) -> float:
     """A number with the digits that are shown."""
-    return float(f"{value:.{_DIGITS}g}")
+    return float(f"{value:.{digits}g}")

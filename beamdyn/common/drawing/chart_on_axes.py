@@ -1,0 +1,116 @@
+"""Charts on matplotlib's axes, for files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartMark
+from beamdyn.common.drawing.style import ink
+from beamdyn.common.pictures import COLOURS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LETTERS, _TITLE = 9, 11  # sizes of letters [pt]
+_PALE, _GRID, _CURSOR = "0.6", "0.9", "0.4"
+_GAP = 0.01  # between a line and its text, as a part of the axes
+_BEHIND_LEGEND = 0.92  # height of texts at the head of marks
+
+
+def plot_chart(ax: Axes, chart: Chart) -> Axes:
+    """Plot a chart, with its title.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw.
+    chart : Chart
+        The chart.
+
+    Returns
+    -------
+    Axes
+        The same.
+    """
+    for curve, colour in zip(chart.curves, _colours(chart), strict=True):
+        style, width = "--" if curve.dashed else "-", 1.0 if curve.pale else 1.8
+        ax.plot(curve.x, curve.y, style, color=colour, linewidth=width, label=curve.name)
+    for points in chart.points:
+        x, y = ([at[k] for at in points.at] for k in (0, 1))
+        ax.plot(x, y, "o", color=ink(points.role).line, markerfacecolor="white", label=points.name)
+    _plot_marks(ax, chart)
+    for band in chart.bands:
+        ax.axvspan(band.low, band.high, color=_PALE, alpha=0.16, linewidth=0, label=band.text)
+    _label(ax, chart)
+    return ax
+
+
+def plot_charts_of_one_x(
+    figure: Figure, charts: Sequence[Chart], left: float, heights: Sequence[float]
+) -> None:
+    """Plot charts of the same x below one another, without titles, from a part of the figure's width on.
+
+    Parameters
+    ----------
+    figure : Figure
+        Without a layout engine, which would move the axes.
+    charts : sequence of Chart
+        The charts.
+    left : float
+        Where their axes begin, as a part of the figure's width.
+    heights : sequence of float
+        Their heights, relative to one another.
+    """
+    cells = figure.add_gridspec(
+        len(charts), 1, height_ratios=heights, hspace=0.08, left=left, right=0.985, bottom=0.09, top=0.96
+    )
+    for row, chart in enumerate(charts):
+        ax = plot_chart(figure.add_subplot(cells[row, 0]), chart)
+        ax.set_title("")
+        if row < len(charts) - 1:
+            ax.set_xlabel("")
+            ax.tick_params(labelbottom=False)
+
+
+def _colours(chart: Chart) -> list[str]:
+    return [_PALE if n is None else COLOURS[n % len(COLOURS)] for n in chart.colour_numbers]
+
+
+def _plot_marks(ax: Axes, chart: Chart) -> None:
+    """Plot upright lines with their texts, and the cursor."""
+    colour_of = {curve.name: colour for curve, colour in zip(chart.curves, _colours(chart), strict=True)}
+    for mark in chart.marks:
+        _plot_mark(ax, mark, colour_of.get(mark.curve, _CURSOR))
+    if chart.cursor is not None:
+        ax.axvline(chart.cursor, color=_CURSOR, linewidth=1, linestyle=":")
+
+
+def _plot_mark(ax: Axes, mark: ChartMark, colour: str) -> None:
+    """Plot an upright line; its text along it at the head, or beside it at the foot."""
+    ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
+    text = f" {mark.text} "
+    across = ax.get_xaxis_transform()
+    if mark.at_foot:
+        ax.text(mark.at, _GAP, text, color=colour, fontsize=_LETTERS, va="bottom", transform=across)
+    else:
+        ax.text(mark.at, _BEHIND_LEGEND, text, color=colour, fontsize=_LETTERS, ha="right", va="top",
+                rotation=90, transform=across)  # fmt: skip
+
+
+def _label(ax: Axes, chart: Chart) -> None:
+    """Set titles, ends and scales of the axes, and the legend."""
+    for axis, direction in ((chart.x, "x"), (chart.y, "y")):
+        _set_axis(ax, axis, direction)
+    ax.set_title(chart.title, fontsize=_TITLE)
+    ax.grid(color=_GRID, linewidth=0.8)
+    ax.set_axisbelow(True)
+    ax.legend(fontsize=_LETTERS)
+
+
+def _set_axis(ax: Axes, axis: ChartAxis, direction: str) -> None:
+    scale = {"scale": "log"} if axis.logarithmic else {}
+    ends = {"lim": (axis.low, axis.high)} if (axis.low, axis.high) != (None, None) else {}
+    given = {"label": axis.title} | scale | ends
+    ax.set(**{f"{direction}{name}": value for name, value in given.items()})
