@@ -25,6 +25,7 @@ from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.views import rows_of
+from beamdyn.common.edge.wording import of_file
 from beamdyn.common.one_line import number
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.output.notes import note_below
@@ -78,12 +79,14 @@ def solve(tables: Mapping[str, Any]) -> Playable:
     given, scene = read_aside(tables, "run"), read_scene(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
-    period = 2 * np.pi / first_frequency(scene)
+    first = first_frequency(scene)
+    period = 2 * np.pi / first if first else np.inf
     if given.end > _MOST_PERIODS * period:
         bound = f"it must be at most {{limit}}, {_MOST_PERIODS} periods of the first mode"
         raise InvalidValue("run.end", given.end, bound, unit="s", limit=_MOST_PERIODS * period)
     window = _window(given)
-    run = simulate(scene, given.end, tolerance=_TOLERANCE)
+    with of_file({"t_end": "run.end"}):
+        run = simulate(scene, given.end, tolerance=_TOLERANCE)
     return Playable(
         run,
         window,

@@ -109,6 +109,18 @@ class InvalidValue(ValueError):
         return text.replace("{limit}", limit).replace("{unit}", self.unit).replace("{other}", self.other)
 
 
+OUT_OF_RANGE = (
+    "the results leave the range of numbers: something is divided by zero, or past 1e308; check the size and "
+    "the unit of each value"
+)
+
+
+def reason_of(error: Exception) -> str:
+    """What an error says; Python's and numpy's own words of a number out of range in a user's."""
+    beyond = isinstance(error, ZeroDivisionError | OverflowError | FloatingPointError)
+    return OUT_OF_RANGE if beyond else str(error)
+
+
 class NoModelAnswer(ValueError):
     """Good arguments to which the model has no answer, such as a speed past the critical speed."""
 

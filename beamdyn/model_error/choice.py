@@ -16,7 +16,7 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import InvalidValue, reason_of
 from beamdyn.equations.left_out import list_left_out
 from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modal.error_estimate import EstimatedModes
@@ -321,7 +321,7 @@ def choose_by(
         try:
             best = min(best, _bent(start, judge, tolerance), key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
-            best = best.without(LARGE_DEFLECTION, str(error))
+            best = best.without(LARGE_DEFLECTION, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
 
 
@@ -335,7 +335,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
         try:
             candidate = candidate.add(largest, judge)
         except (InvalidValue, ArithmeticError) as error:
-            candidate = candidate.without(largest, str(error))
+            candidate = candidate.without(largest, reason_of(error))
 
 
 def _bent(start: _Candidate, judge: Judge, tolerance: float) -> _Candidate:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from beamdyn.common.assignment import assign
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import InvalidValue, reason_of
 from beamdyn.modal.model import Model
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
@@ -91,7 +91,7 @@ def _change_at(straight: Model, bent: Model, speed: float, eigenvalue: np.ndarra
     try:
         within = bent.solver.solve(speeds, count).eigenvalue[0]
     except ArithmeticError as error:
-        return np.full(len(eigenvalue), np.nan), str(error)
+        return np.full(len(eigenvalue), np.nan), reason_of(error)
     except np.linalg.LinAlgError:  # a hinge, on which the beam has no single equilibrium at rest
         return np.full(len(eigenvalue), np.nan), _NOT_FOUND
     with np.errstate(divide="ignore", invalid="ignore"):

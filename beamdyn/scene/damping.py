@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from beamdyn.common.checks import InvalidValue, real_array, refuse, set_fields
+from beamdyn.common.checks import InvalidValue, amount, real_array, refuse, set_fields
 from beamdyn.common.described import Described, descriptions
 
 _RATIO: Any = {"least": 0, "below": 1, "remedy": "1 % is 0.01"}
@@ -64,8 +64,8 @@ class Damping:
         refuse((ratios < 0) | (ratios >= 1), "damping.ratios", ratios, "", bound, _RATIO["remedy"])
         set_fields(self, ratios=tuple(ratios.tolist()))
         for name in ("mass_factor", "stiffness_factor", "tip_damper"):
-            described = descriptions(Damping)[name]
-            set_fields(self, **{name: described.check(f"damping.{name}", getattr(self, name))})
+            described, of = descriptions(Damping)[name], f"damping.{name}"
+            set_fields(self, **{name: amount(of, described.check(of, getattr(self, name)), described.unit)})
 
     @property
     def damps(self) -> bool:

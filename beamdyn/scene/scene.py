@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
-from beamdyn.common.checks import InvalidValue, kind, not_negative, real, refuse, set_fields
+from beamdyn.common.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.one_line import OneLine, given_fields, number
 from beamdyn.scene.beam import Beam
@@ -101,7 +101,7 @@ class Scene(OneLine):
         ratio = not_negative("damping_ratio", self.damping_ratio)
         remedy = "1 % is damping_ratio = 0.01"
         refuse(ratio >= 1, "damping_ratio", ratio, "", "it must be below 1", remedy)
-        set_fields(self, damping_ratio=ratio, gravity=real("gravity", self.gravity, "m/s2"))
+        set_fields(self, damping_ratio=ratio, gravity=moderate("gravity", self.gravity, "m/s2"))
         kind("label", self.label, str, 'it is text, such as "0.2 mm"')
         set_fields(self, units=DisplayUnits.of(self.units))
         kind("damping", self.damping, Damping, "Damping(tip_damper=0.1) sets a damper at the tip")

@@ -26,6 +26,7 @@ import numpy as np
 import scipy.sparse
 from scipy.sparse.linalg import ArpackError, eigs
 
+from beamdyn.common.checks import NoModelAnswer
 from beamdyn.steady.harmonic_balance import convolution_matrix
 from beamdyn.steady.mean_modes import MeanModes
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
@@ -38,6 +39,10 @@ _MOST_OUTSIDE = 0.1  # share of an eigenvector in the outermost harmonics
 _SAME_RATE = 0.05  # difference between copies of one growth rate, over what the resonance adds to it
 _NEAREST = 8  # eigenvalues that are followed from one number of interactions to the next
 _OFF = 1e-4  # distance from the eigenvalue, at which the matrix is singular, over the largest
+_SINGULAR = (
+    "the equations with periodic coefficients are singular: the excitation is too strong beside "
+    "the beam's stiffness; check the size and the unit of each value"
+)
 _STILL = 1e-9  # rate of a harmonic that stands still, over those of the phases
 _MOST_STEPS = 6  # interactions that make a harmonic that stands still
 _PHASES = 8  # between commensurate rates, of which the fastest growth is taken
@@ -372,3 +377,5 @@ def _nearest_eigenvalues(
     except ArpackError:
         s, z = np.linalg.eig(hill.toarray())
         return s, z
+    except RuntimeError:  # of the factorization
+        raise NoModelAnswer(_SINGULAR) from None

@@ -10,6 +10,7 @@ from typing import Any
 
 from numpy.linalg import LinAlgError
 
+from beamdyn.common.checks import reason_of
 from beamdyn.tradeoffs.measurements import Measurement
 
 RUNS = 7  # of a setting; the shortest counts, because other programs can only add time
@@ -105,7 +106,7 @@ def _measure_family(
         except TimeoutError as stop:
             return measurements, f"{setting.name} given up after {rest:.2g} s {stop}, and the rest left out"
         except (ArithmeticError, LinAlgError) as failure:
-            return measurements, f"{setting.name} failed ({failure}), and the rest left out"
+            return measurements, f"{setting.name} failed ({reason_of(failure)}), and the rest left out"
         relative_error = error(result)
         bounded = inf if isnan(relative_error) else max(relative_error, resolved)
         measurements.append(Measurement(family.name, setting.name, setting.size, bounded, last))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.common.checks import reason_of
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.equations_of_motion import Equations
@@ -122,7 +123,7 @@ def _solve(request: SweepRequest, speed: float) -> CaseResult:
     try:
         path, error, _ = integrate(system, np.zeros(2 * system.size), request.t_end, request.tolerance)
     except (ArithmeticError, np.linalg.LinAlgError) as reason:
-        return _failed(request, str(reason))
+        return _failed(request, reason_of(reason))
     tip, outputs = path.projected(system.tips), np.eye(len(system.tips))
     windows = [request.window, (tip.start, tip.end)]
     peak, largest = largest_in_each(lambda q: magnitude(q, outputs), tip, windows)
@@ -143,7 +144,7 @@ def _solve_transient(request: SweepRequest, speed: float) -> CaseResult:
         run = request.transient_request(speed).run()
         peak = run.peak(*request.window)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return _failed(request, str(error))
+        return _failed(request, reason_of(error))
     if not np.isfinite(peak):
         return _failed(request, "not finite")
     by_direction = [run.peak(*request.window, i) for i in range(request.directions)]

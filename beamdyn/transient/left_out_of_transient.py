@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import InvalidValue, reason_of
 from beamdyn.modal.choice import ensure_size
 from beamdyn.modal.finite_amplitude import SMALL, FreeVibration
 from beamdyn.modal.modal_basis import find_speed_range
@@ -108,7 +108,7 @@ def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> Answ
         k = FreeVibration.of(bent, speed, 1).coefficient(SMALL)
         static = float(np.abs(bent.static_tips(np.array([speed]))).max())
     except (ArithmeticError, InvalidValue) as error:
-        return Answer(np.array(np.nan), str(error))
+        return Answer(np.array(np.nan), reason_of(error))
     linear = float(np.abs(straight.static_tips(np.array([speed]))).max())
     varying = max(largest - linear, 0.0)
     amplitude = largest if linear < varying else varying
@@ -130,4 +130,4 @@ def _run_again(request: Any, scene: Scene, window: tuple[float, float] | None) -
     try:
         return Answer(np.array(_peak(again.run(), window)))
     except (ArithmeticError, InvalidValue, np.linalg.LinAlgError) as error:
-        return Answer(np.array(np.nan), str(error))
+        return Answer(np.array(np.nan), reason_of(error))

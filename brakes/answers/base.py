@@ -287,6 +287,10 @@ class BrakeType(ABC, Generic[FileModel]):
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
         """Inputs of the form, for tables as far as they are filled in."""
 
+    def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
+        """Paths of the form's inputs that mean nothing beside these entries; see `Document`."""
+        return ()
+
     @abstractmethod
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
         """Numbers of a design that can be swept."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -40,7 +40,7 @@ from brakes.answers.planar_tables import (
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput, mechanism_from_dict
-from brakes.config.mechanism_inputs import PARTS, inputs_of_tables, named_text
+from brakes.config.mechanism_inputs import PARTS, idle_inputs, inputs_of_tables, named_text
 from brakes.drawings.caliper import caliper_drawing, caliper_figure, stroke_charts, title_of
 from brakes.drawings.caliper_sketches import caliper_sketch, mechanism_sketch
 from brakes.drawings.mechanism import free_body_drawings
@@ -327,7 +327,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         ValueError
             If the numbers are out of range.
         """
-        with in_range():
+        with in_range(design):
             return _answer_to(design)
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
@@ -358,6 +358,10 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
         """Inputs of the named caliper, or of a mechanism with the points that there are."""
         return inputs_of_tables(tables)
+
+    def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
+        """Hand, pads and vehicle, where nothing says which loads are cable and pads."""
+        return idle_inputs(entries)
 
     def sweep_inputs(self, design: CaliperInput | MechanismInput, tables: Mapping[str, Any]) -> list[Input]:
         """Numbers, and x and y of points."""

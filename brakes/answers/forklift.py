@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from typing import Any
@@ -26,7 +26,7 @@ from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.drawings.duo_servo import duo_servo
-from brakes.drawings.forklift import answer_drawings
+from brakes.drawings.forklift import answer_drawings, outcome
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
@@ -178,15 +178,19 @@ class ForkliftAnswer(Answer):
 
     def figure(self, place: float | None = None) -> Figure:
         """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
-        return figure_of(self.drawings(place) if place is not None else self._all_drawings())
+        return figure_of(self._drawn(place))
 
     def drawings(self, place: float) -> Rows:
-        """The same; of the kinematics alone the brake at a place of its two stages, from 0 to 2."""
-        if self.stages == ("kinematics",) and self.motion is not None:
-            return ((_motion_drawing(self.motion, place),),)
-        return self._all_drawings()
+        """The same without slope and speed, which stand in the form beside it in the units chosen there."""
+        if self.stop is None:
+            return self._drawn(place)
+        (first, *others), *below = self._drawn(place)
+        return ((replace(first, title=outcome(self.stop)), *others), *below)
 
-    def _all_drawings(self) -> Rows:
+    def _drawn(self, place: float | None) -> Rows:
+        """All drawings; of the kinematics alone the brake at a place of its two stages, from 0 to 2."""
+        if place is not None and self.stages == ("kinematics",) and self.motion is not None:
+            return ((_motion_drawing(self.motion, place),),)
         shown = None if self.stages == ("forces",) else self.kinematics
         return answer_drawings(self.stop, shown, self.forces, self.kinematics)
 
@@ -276,7 +280,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
             raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
     given = design.forces and design.forces.torque
     from_stop = "forces" in shown and given is None and "vehicle" in design.stages
-    with in_range():
+    with in_range(design):
         stop = _stop(design) if from_stop or "vehicle" in shown else None
         motion = design.brake.motion if design.brake and shown != ("vehicle",) else None
         torque = stop.torque_per_brake if from_stop and stop is not None else given

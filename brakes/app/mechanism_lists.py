@@ -6,7 +6,7 @@ Pure functions from entries to entries; the entries are those of the TOML file.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from beamdyn.common.app.form_entries import Entries, entries_of, tables_of, toml_value
@@ -302,18 +302,37 @@ def _first(entry: Input, kind: str, tables: Mapping[str, Any]) -> Any:
 
 
 def remove(entries: Mapping[str, str], item: Item) -> Entries:
-    """The entries without a body, point, joint or load."""
+    """The entries without a body, point, joint or load, and without joints and loads that name it."""
     tables = _tables(entries)
     if item.path == "bodies":
-        return _entries({**tables, "bodies": [body for body in _bodies(tables) if body != item.name]})
+        left = [body for body in _bodies(tables) if body != item.name]
+        return _entries(_without_users({**tables, "bodies": left}, _BODIES, item.name))
     if item.path.startswith("points."):
-        return _entries({**tables, "points": _without(_points(tables), item.name)})
-    left = [part for i, part in enumerate(tables[item.path]) if i != item.number]
-    gone = tables[item.path][item.number or 0].get("name")
-    run = tables.get("run", {})
-    if run.get("driver") == gone:
-        run = {key: value for key, value in run.items() if key not in ("driver", "travel")}
-    return _entries({**tables, item.path: left, "run": run})
+        left = _without(_points(tables), item.name)
+        return _entries(_without_users({**tables, "points": left}, _POINTS, item.name))
+    return _entries(_without_parts(tables, {(item.path, item.number or 0)}))
+
+
+def _without_users(tables: dict[str, Any], keys: Sequence[str], name: str) -> dict[str, Any]:
+    """Tables without the joints and loads that name a body or point."""
+
+    def uses(part: Mapping[str, Any]) -> bool:
+        given = (part.get(key) for key in keys)
+        return any(name in value if isinstance(value, list) else name == value for value in given)
+
+    return _without_parts(tables, {(key, number) for key, number, part in _parts(tables) if uses(part)})
+
+
+def _without_parts(tables: dict[str, Any], gone: Collection[tuple[str, int]]) -> dict[str, Any]:
+    """Tables without the joints and loads of these kinds and numbers; a driver that goes ends the stroke."""
+    left: dict[str, Any] = {
+        key: [part for number, part in enumerate(tables[key]) if (key, number) not in gone] for key, _ in gone
+    }
+    names = {part.get("name") for key, number, part in _parts(tables) if (key, number) in gone}
+    run = tables.get("run")
+    if isinstance(run, dict) and run.get("driver") in names:
+        left["run"] = {key: value for key, value in run.items() if key not in ("driver", "travel")}
+    return tables | left
 
 
 def empty(entries: Mapping[str, str]) -> Entries:

@@ -49,6 +49,7 @@ def make_document(
         check or accept,
         screens or (make_screen(brake),),
         headings=HEADINGS,
+        idle=brake.idle,
     )
 
 

@@ -159,7 +159,8 @@ class DrumInput(CoreSection):
         try:
             return _Shoe.model_construct(**dict(self.shoe) | given).core
         except InvalidValue as error:
-            raise replace(error, field=f"second_shoe.{error.field}") from None
+            between = ": " if " " in error.field else "."  # which is no key
+            raise replace(error, field=f"second_shoe{between}{error.field}") from None
 
     def solve(self) -> BrakeResult:
         """Compute the forces in the brake.
@@ -170,5 +171,5 @@ class DrumInput(CoreSection):
             As for `brakes.drum.brake_torque`.
         """
         reverse = self.brake.direction == "reverse"
-        with in_range(), of_file(_Shoe.key_of):
+        with in_range(self), of_file(_Shoe.key_of):
             return brake_torque(self.core, friction=self.brake.friction, **self.load.given, reverse=reverse)

@@ -64,6 +64,15 @@ def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
     return mechanism_inputs(points if isinstance(points, dict) else ())
 
 
+def idle_inputs(entries: Mapping[str, str]) -> list[str]:
+    """Paths of inputs of a caliper alone, where the entries of a form, by path, are of a plain mechanism."""
+    if any(text.strip() for path, text in entries.items() if _table(path) == "caliper"):
+        return []
+    stops = [path for path in entries if _table(path) == "stop"]
+    stops = [] if any(entries[path].strip() for path in stops) else stops
+    return ["run.finger", "run.wear", *stops]
+
+
 def named_text(name: str) -> str:
     """TOML text of a named caliper with all its dimensions."""
     given = named(name)

@@ -94,9 +94,13 @@ def _mark_moving_on(arrows: ForceArrows, at: np.ndarray, length: float, turn: np
 
 def _title(stop: Stop) -> str:
     slope, speed = np.degrees(float(stop.conditions.slope)), 3.6 * float(stop.conditions.speed)
-    where = f"{slope:.3g} deg, {speed:.3g} km/h"
+    return f"{slope:.3g} deg, {speed:.3g} km/h: {outcome(stop)}"
+
+
+def outcome(stop: Stop) -> str:
+    """Where the truck stops, or why it does not, and the torque of a brake; of one case."""
     how = f"stops within {float(stop.distance):.4g} m" if stop.stops else str(stop.status)
-    return f"{where}: {how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
+    return f"{how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
 
 
 def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:

@@ -101,7 +101,7 @@ class Shoe:
         refuse(np.asarray(y) >= 0, "pivot[1]", y, "m", "the pin lies below the centre", "give (b, -c), c > 0")
         far = np.hypot(b, y)
         name, bound = "distance of the pivot from the centre", "more than two drum radii"
-        refuse(far > 2 * np.asarray(self.drum_radius), name, far, "m", bound, "give m")
+        refuse(far > 2 * np.asarray(self.drum_radius), name, far, "m", bound, "give {unit}")
         arm = self.force_arm - np.asarray(y)
         refuse(arm <= 0, "force_arm", self.force_arm, "m", "the force must act above the pin (at -c)")
 

@@ -129,7 +129,8 @@ def _motion(system: System, names: list[str], twist: np.ndarray) -> str:
     vx, vy, rate = left[:, 0]
     if abs(rate) < 1e-7:
         vx, vy = np.array((vx, vy)) * np.sign(vx if abs(vx) > 1e-9 else vy)
-        return f"{'slides' if one else 'slide'}{together} along ({vx:.3g}, {vy:.3g})"
+        x, y = (round(float(v), 9) + 0.0 for v in (vx, vy))
+        return f"{'slides' if one else 'slide'}{together} along ({x:.3g}, {y:.3g})"
     centre = system.origin + system.length * (1j * (vx + 1j * vy) / rate)
     x, y = (0.0 if abs(v) < 1e-9 * system.length else v for v in (centre.real, centre.imag))
     return f"{'turns' if one else 'turn'}{together} about ({x:.6g}, {y:.6g}) m"

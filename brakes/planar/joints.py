@@ -61,7 +61,7 @@ class Pin(Joint):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.friction and not self.radius:
-            raise ValueError(f"{self.title} has friction but no radius: give the radius of the pivot in m")
+            raise ValueError(f"{self.title} has friction but no radius: give the radius of the pivot")
 
     @property
     def _ends(self) -> tuple[End, End]:

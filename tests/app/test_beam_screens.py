@@ -39,6 +39,24 @@ def solved(screen, **more):
     return work.answered[screen.name].answer
 
 
+@pytest.mark.parametrize(
+    "screen, path, text, said",
+    [
+        (TRANSIENT, "mount.root_stiffness", "0 N m/rad", "past the critical speed"),
+        (TRANSIENT, "model.gravity", "1e300 m/s2", 'model.gravity = "1e300 m/s2": give at most'),
+        (STEADY_STATE, "damping.stiffness_factor", "1e300 s", "damping.stiffness_factor = "),
+        (STEADY_STATE, "motion.road.velocity_amplitude", "1e20 m/s", "excitation is too strong"),
+        (TRANSIENT, "motion.rolling_radius", "1e9 m", 'run.end = "12 s": it takes about'),
+        (FREQUENCIES, "damping.mass_factor", "1e300 1/s", "damping.mass_factor = "),
+    ],
+)
+def test_numbers_out_of_range_are_refused_in_the_words_of_a_user(screen, path, text, said):
+    """Of a hinge it was "float division by zero", of gravity "negative dimensions are not allowed"."""
+    work = opened(**{path: text})
+    assert not work.solve(screen)
+    assert said in str(work.mistakes[screen.name])
+
+
 @pytest.mark.parametrize("screen", [s for s in SCENE.screens if s.charts], ids=lambda s: s.name)
 def test_charts_are_data_that_a_page_can_be_sent(screen):
     for chart in screen.charts(solved(screen, **SHORT), screen.last):

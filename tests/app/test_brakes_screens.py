@@ -105,6 +105,19 @@ def test_stale_is_what_follows_from_a_change():
     assert not work.stale(FORCES)
 
 
+def test_slope_and_speed_stand_in_the_units_chosen_and_in_files_with_their_own():
+    """The title said deg and km/h beside a form in % and m/s."""
+    work = OpenDocument(FORKLIFT)
+    work.put("stop.slope", "30 %")
+    work.put("stop.speed", "5 m/s")
+    assert work.solve(VEHICLE)
+    answer = work.answered[VEHICLE.name].answer
+    ((truck,),) = VEHICLE.drawings(answer, 1.0)
+    assert truck.title.startswith("stops within") and "deg" not in truck.title
+    for figure in (VEHICLE.draw(answer, 1.0), answer.figure()):
+        assert figure.axes[0].get_title().startswith("16.7 deg, 18 km/h: stops within")
+
+
 @pytest.mark.parametrize("name", NAMED)
 def test_every_named_caliper_has_a_form(name):
     work = OpenDocument(CALIPER)
@@ -219,6 +232,54 @@ def test_extreme_entries_give_an_answer_or_a_sentence(path, given):
                 assert isinstance(drawn(screen, answer, 1.0), str)
             else:
                 assert all(said for said in work.mistakes[screen.name].values())
+
+
+@pytest.mark.parametrize(
+    "path, given",
+    [
+        ("stop.speed", "1e300 km/h"),
+        ("stop.rise_time", "1e300 s"),
+        ("stop.gravity", "1e300 m/s2"),
+        ("brake.drum_radius", "1e300 mm"),
+        ("forces.piston_force", "1e-300 N"),
+    ],
+)
+def test_numbers_beyond_all_range_are_named_as_they_stand_there(path, given):
+    """They were "overflow encountered in scalar multiply", or "(34, 'Numerical result out of range')"."""
+    said = [
+        sentence
+        for document, screen in PLACES
+        for sentence in _refusals(OpenDocument(document), screen, path, given)
+    ]
+    assert any(f"{path} = " in s and "the results leave the range of numbers" in s for s in said), said
+    assert all(word not in sentence for word in ("encountered", "(34") for sentence in said)
+
+
+@pytest.mark.parametrize(
+    "path, given, words",
+    [
+        ("shoe.drum_radius", "7 mm", "from the centre = 111.803 mm: more than two drum radii; give mm"),
+        ("brake.drum_radius", "7 mm", "distance of tip from the centre = 119.38 mm"),
+        ("second_shoe.pivot_offset", "500 mm", "second_shoe: distance of the pivot from the centre = 511."),
+        ("dimensions.pivot_radius", "0 mm", "give the radius of the pivot"),
+    ],
+)
+def test_refused_lengths_are_in_mm(path, given, words):
+    said = " ".join(
+        sentence
+        for document, screen in PLACES
+        for sentence in _refusals(OpenDocument(document), screen, path, given)
+    )
+    assert words in said and not said.endswith(" m")
+
+
+def _refusals(work, screen, path, given):
+    if path not in work.entries or path.partition(".")[0] not in screen.needs:
+        return []
+    work.put(path, given)
+    if work.solve(screen):
+        return []
+    return [sentence for said in work.mistakes[screen.name].values() for sentence in said]
 
 
 # Entries ------------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from beamdyn.common.app.form_entries import tables_of
+from beamdyn.common.app.lists import gone_with
 from beamdyn.common.app.open_document import OpenDocument, OpenEntries
 from brakes.app.caliper import MECHANISM
 from brakes.app.mechanism_lists import add, advice, covers, empty, groups, put, remove
@@ -141,15 +142,33 @@ def test_what_names_a_thing_follows_when_it_is_renamed(old, new):
     assert f'"{old.removeprefix("force ")}"' not in str(renamed.values()).replace("'", "")
 
 
-def test_what_is_removed_is_gone_and_said_where_it_is_missed():
+def test_what_drives_the_stroke_no_longer_does_when_it_is_removed():
     entries = MECHANISM.opened(CLAMP, "clamp")
-    without = remove(entries, item(entries, "force hand"))
-    assert "driver" not in tables(without).get("run", {})
-    lost = remove(entries, item(entries, "C"))
-    work = OpenDocument(MECHANISM)
-    work.show(lost)
-    assert not work.solve(SCREEN)
-    assert any("C" in s for said in work.mistakes[SCREEN.name].values() for s in said)
+    assert "driver" not in tables(remove(entries, item(entries, "force hand"))).get("run", {})
+
+
+@pytest.mark.parametrize(
+    "name, along",
+    [
+        ("handle", ["pin B", "bar CD", "force hand"]),
+        ("arm", ["pin A", "pin B", "force work"]),
+        ("C", ["bar CD"]),
+        ("grip", ["force hand"]),
+        ("force work", []),
+    ],
+)
+def test_what_names_a_body_or_point_goes_with_it(name, along):
+    entries = MECHANISM.opened(CLAMP, "clamp")
+    gone = item(entries, name)
+    left = remove(entries, gone)
+    assert gone_with(gone, groups(entries), groups(left)) == along
+    assert all(name not in part.values() for part in _parts_of(left))
+    assert "driver" not in tables(left).get("run", {}) or "force hand" not in along
+
+
+def _parts_of(entries):
+    given = tables(entries)
+    return [part for kind in ("pin", "bar", "force") for part in given.get(kind, [])]
 
 
 def test_bare_numbers_take_the_unit_shown_and_decimal_commas_are_read():
@@ -164,35 +183,55 @@ def test_bare_numbers_take_the_unit_shown_and_decimal_commas_are_read():
 # On the page --------------------------------------------------------------------------------------------
 
 
+def press(user, words):
+    """Click the first button of these words."""
+    found = [
+        e for e in user.client.elements.values()
+        if e.tag == "q-btn" and words in (e.props.get("aria-label"), getattr(e, "text", None))
+    ]  # fmt: skip
+    with user.client:
+        for listener in list(found[0]._event_listeners.values()):
+            if listener.type == "click":
+                found[0]._handle_event({"listener_id": listener.id, "args": {}})
+
+
 def test_buttons_add_and_remove_and_lists_write_into_the_document(simulate, fields):
     async def body(another):
         user = await another()
         page = fields(user)
         page.go("Mechanism")
 
-        def click(words):
-            found = [
-                e for e in user.client.elements.values()
-                if e.tag == "q-btn" and words in (e.props.get("aria-label"), getattr(e, "text", None))
-            ]  # fmt: skip
-            with user.client:
-                for listener in list(found[0]._event_listeners.values()):
-                    if listener.type == "click":
-                        found[0]._handle_event({"listener_id": listener.id, "args": {}})
-
-        click("Start from nothing")
+        press(user, "Start from nothing")
         assert "held by the ground" in page.text()
-        click("add pin")
+        press(user, "add pin")
         assert page.field("pin.0.body").value == "body 1"
         with user.client:
             page.field("pin.0.at").set_value("A")
-        click("add point")
+        press(user, "add point")
         assert page.field("points.C.x").value == "40 mm"
-        click("remove C")
+        press(user, "remove C")
         with pytest.raises(IndexError):
             page.field("points.C.x")
-        click("add force")
+        press(user, "add force")
         assert "without magnitude" in page.text()
+
+    simulate(BRAKES, body)
+
+
+def test_what_goes_along_with_a_body_is_said_and_undo_brings_all_back(simulate, fields):
+    async def body(another):
+        user = await another()
+        page = fields(user)
+        page.go("Mechanism")
+        press(user, "remove handle")
+        assert user.notify.messages == [
+            "Removed along with handle: pin B, bar CD, force hand. Undo brings all back."
+        ]
+        with pytest.raises(IndexError):
+            page.field("pin.1.body")
+        press(user, "Undo (Ctrl-Z)")
+        assert (page.field("pin.1.other").value, page.field("bar.0.at").value) == ("handle", "C")
+        assert page.field("run.driver").value == "hand"
 
     simulate(BRAKES, body)
 

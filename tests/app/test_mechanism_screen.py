@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamdyn.common.app.document_report import drawn
+from beamdyn.common.app.document_report import drawn, inputs_html
 from beamdyn.common.app.form_entries import entries_of, tables_of, toml_of
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError, parse
@@ -214,6 +214,34 @@ def test_a_file_of_parts_opens_on_its_screen_and_a_caliper_on_its_own(simulate, 
         assert "not a number with a unit" not in page.text()
 
     simulate(BRAKES, body)
+
+
+def test_fields_of_a_caliper_are_shown_where_loads_are_its_cable_and_pads(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        page.go("Mechanism")
+        field = page.field("caliper.cable")
+        idle = ("run.finger", "run.wear", "stop.mass")
+
+        def shown():
+            return [all(each.visible for each in page.field(p).ancestors()) for p in idle]
+
+        assert shown() == [False, False, False]
+        page.enter("caliper.cable", "hand")
+        assert shown() == [True, True, True]
+        assert page.field("caliper.cable") is field  # which is typed into, and keeps the focus
+        page.enter("caliper.cable", "")
+        assert shown() == [False, False, False]
+
+    simulate(BRAKES, body)
+
+
+def test_what_a_file_gives_though_it_means_nothing_is_kept_and_shown():
+    work = opened(FILES["toggle-clamp"].replace("[run]", '[run]\nfinger = "30 N"\n'))
+    assert work.entries["run.finger"] == "30 N" and 'finger = "30 N"' in work.text()
+    assert work.idle >= {"run.wear", "stop.mass"} and "run.finger" not in work.idle
+    page = inputs_html(work)
+    assert "thicknesses lost" not in page and "force of the finger" in page
 
 
 def test_free_bodies_are_drawn_when_they_are_opened(simulate, fields):

@@ -8,7 +8,16 @@ import pytest
 
 from beamdyn.common.array_checks import numbers, pair
 from beamdyn.common.array_checks import positive as positive_numbers
-from beamdyn.common.checks import InvalidValue, ascending, one_of, positive, real, refuse
+from beamdyn.common.checks import (
+    OUT_OF_RANGE,
+    InvalidValue,
+    ascending,
+    one_of,
+    positive,
+    real,
+    reason_of,
+    refuse,
+)
 from beamdyn.common.edge.config import MissingValue, path_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 
@@ -91,3 +100,11 @@ def test_the_input_that_a_refusal_is_about(field, table, path):
     paths = ["stop.slope", "brake.radius", "wheel.radius"]
     assert path_of(InvalidValue(field, 1.0, "no"), paths, table) == path
     assert path_of(ValueError("no"), paths, table) == ""
+
+
+@pytest.mark.parametrize("failing", ["1.0 / 0.0", "2.0**5000", "np.float64(1e300) * 1e300", "0.0 + 1 // 0"])
+def test_numbers_out_of_range_are_said_in_the_words_of_a_user(failing):
+    with np.errstate(all="raise"), pytest.raises(ArithmeticError) as raised:
+        eval(failing)
+    assert reason_of(raised.value) == OUT_OF_RANGE
+    assert reason_of(ArithmeticError("buckles")) == "buckles"

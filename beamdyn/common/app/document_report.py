@@ -58,7 +58,9 @@ def _answers(work: OpenDocument) -> Iterator[_Part]:
 
 def inputs_html(work: OpenDocument) -> str:
     """A table of every input in HTML: name and symbol, value, whether it was given, and meaning."""
-    rows = "".join(_input_row(entry, work.entries.get(entry.path, "").strip()) for entry in work.inputs)
+    idle = work.idle
+    shown = [entry for entry in work.inputs if entry.path not in idle]
+    rows = "".join(_input_row(entry, work.entries.get(entry.path, "").strip()) for entry in shown)
     heads = "".join(f'<th class="words">{head}</th>' for head in ("input", "value", "", "meaning"))
     head = f"<thead><tr>{heads}</tr></thead>"
     return f'<div class="scrolls" tabindex="0"><table>{head}<tbody>{rows}</tbody></table></div>'

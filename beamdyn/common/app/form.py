@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -74,6 +74,7 @@ class Form:
         self._units: dict[str, str] = {}  # in which a bare number is taken, by path
         self._headings = headings
         self._tables: dict[str, Any] = {}
+        self._places: dict[str, Any] = {}  # of the fields
         self._changed = changed
         self._hold, self._held = hold, False
         self._drags = {drag.path: drag for drag in drags}
@@ -89,7 +90,7 @@ class Form:
         table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
         with table.props("dense"):
             for entry in inputs:
-                with ui.element("div"):
+                with ui.element("div") as self._places[entry.path]:
                     self._field(entry, entries.get(entry.path, ""))
         self._tables[section] = table
 
@@ -230,6 +231,14 @@ class Form:
         with self._writer.writing(*fields.values()):
             for path, field in fields.items():
                 field.set_value(texts[path])
+
+    def hide(self, paths: Collection[str]) -> None:
+        """Hide these fields, and tables that have no others; show the rest."""
+        shown = {table_of(path) for path in self.fields if path not in paths}
+        for path, place in self._places.items():
+            place.set_visibility(path not in paths)
+        for section, table in self._tables.items():
+            table.set_visibility(section in shown)
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
         """Mark the fields with mistakes, clear the others, and open folded tables with a mistake."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.checks import InvalidValue, reason_of
 from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of
 
@@ -158,7 +158,7 @@ def by_field(
         path = path_of(error, paths)
         if isinstance(error, InvalidValue) and path in entries:
             return {path: [said_of(error, path, entries[path])]}
-        return {path: [str(error)]}
+        return {path: [reason_of(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
         sentences.setdefault(_field(place, paths), []).append(sentence)

@@ -15,6 +15,7 @@ import numpy as np
 from beamdyn.common.app.comparison import with_ghost
 from beamdyn.common.app.form_entries import Entries, tables_of, toml_value, units_for
 from beamdyn.common.app.screens import Handle, Screen
+from beamdyn.common.checks import reason_of
 from beamdyn.common.drawing.layout import Layout
 from beamdyn.common.drawing.sheet import WIDTH, Paper, Rows, lay_out
 from beamdyn.common.drawing.svg import as_file, element
@@ -158,7 +159,7 @@ def draw_sheet(
             width = _NARROW if narrow else WIDTH
             return _sheet_of_drawings(rows, tuple(screen.handles(answer, progress)), view, width)
     except (ValueError, ArithmeticError) as error:
-        return Sheet(f"There is no drawing: {error}")
+        return Sheet(f"There is no drawing: {reason_of(error)}")
 
 
 def _with_room(screen: Screen, answer: Any, rows: Rows) -> Rows:

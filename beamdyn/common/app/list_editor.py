@@ -10,8 +10,10 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.app.list_rows import ItemRow, Put
-from beamdyn.common.app.lists import Entries, Item, ListGroup, Lists
+from beamdyn.common.app.lists import Entries, Item, ListGroup, Lists, gone_with
 from beamdyn.common.app.page_writer import PageWriter
+
+_READ = 10_000  # how long a notice stays [ms]
 
 STYLE = """
 .listed { display: flex; gap: 4px; align-items: start; width: 100%; }
@@ -130,7 +132,11 @@ class ListEditor:
         self._take(self._lists.add(self._now(), kind))
 
     def _remove(self, item: Item) -> None:
-        self._take(self._lists.remove(self._now(), item))
+        before, left = self._now(), self._lists.remove(self._now(), item)
+        self._take(left)
+        if gone := gone_with(item, self._lists.groups(before), self._lists.groups(left)):
+            said = f"Removed along with {item.name}: {', '.join(gone)}. Undo brings all back."
+            ui.notify(said, timeout=_READ, close_button="Close")
 
     def _empty(self) -> None:
         self._take(self._lists.empty(self._now()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -61,6 +62,15 @@ class ListGroup:
     kinds: Mapping[str, str]
 
 
+def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup]) -> list[str]:
+    """Names of what has been removed along with an item that it names."""
+
+    def names(groups: Sequence[ListGroup]) -> Counter[str]:
+        return Counter(one.name for group in groups for one in group.items)
+
+    return [*(names(before) - names(after) - Counter([item.name])).elements()]
+
+
 @dataclass(frozen=True)
 class Lists:
     """What a screen shows as lists.
@@ -76,7 +86,7 @@ class Lists:
     add : callable
         Entries and kind in; entries with one more out.
     remove : callable
-        Entries and item in; entries without it out.
+        Entries and item in; entries without it, and without what names it, out.
     advice : callable
         Entries in; what is still missing out, a sentence each.
     empty : callable

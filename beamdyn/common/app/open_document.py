@@ -119,6 +119,11 @@ class OpenDocument:
         """Descriptions of the inputs."""
         return self.document.inputs(self.entries)
 
+    @property
+    def idle(self) -> set[str]:
+        """Paths of inputs that mean nothing beside the others, and are not given."""
+        return {path for path in self.document.idle(self.entries) if not self.entries.get(path, "").strip()}
+
     def open(self, text: str, source: str) -> None:
         """Replace the design by the text of a file; on `ConfigError` nothing changes."""
         opened = self.document.opened(text, source)

@@ -147,6 +147,7 @@ class ScreenView:
         self._shape = [entry.path for entry in self._fielded]
         self._choices = {entry.path for entry in self._fielded if options_of(entry)}
         self.form.mark(self.work.mistakes.get(self.screen.name, {}))
+        self.form.hide(self.work.idle)
         self.state()
 
     def _make_lists(self) -> ListEditor | None:
@@ -176,6 +177,7 @@ class ScreenView:
             self.rebuild()
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
+        self.form.hide(self.work.idle)
         self.solve(held=self._holds)
         if not self._holds:  # what is written on the way is neither stored nor told to other screens
             self._edited()
@@ -206,6 +208,7 @@ class ScreenView:
         if not self._has_shape:
             return self.rebuild()
         self.form.put(self.work.entries)
+        self.form.hide(self.work.idle)
         if self._sketch is not None:
             self._sketch.show(self.work.entries)
 

@@ -246,6 +246,8 @@ class Document:
         The tables of a file as the form has them, each value at the path of its input.
     headings : mapping
         Words above the tables of the form; those of a table's name where there are none.
+    idle : callable
+        Entries in, paths of inputs out that mean nothing beside them: shown only where something is given.
     """
 
     name: str
@@ -256,6 +258,7 @@ class Document:
     aside: Mapping[str, str] = field(default_factory=dict)
     in_fields: Callable[[dict[str, Any]], dict[str, Any]] = lambda tables: tables
     headings: Mapping[str, str] = field(default_factory=dict)
+    idle: Callable[[Mapping[str, str]], Iterable[str]] = lambda _: ()
 
     def opened(self, text: str, source: str) -> Entries:
         """Entries for the text of a file, which the parser of the commands accepts.

@@ -9,6 +9,7 @@ from beamdyn.common.app.document_report import drawn, report_of
 from beamdyn.common.app.form_entries import Entries, tables_of
 from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.screens import Document, Screen
+from beamdyn.common.checks import reason_of
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.rendering import drawing, picture, png
@@ -35,7 +36,7 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
     try:
         return screen.sweeps.run(tables_of(work.needed(screen), work.inputs), text, results)
     except (ValueError, ArithmeticError, NoAnswer) as error:
-        return str(error)
+        return reason_of(error)
 
 
 # Pictures by matplotlib, which take long -----------------------------------------------------------------

@@ -19,6 +19,7 @@ from pydantic_core import ErrorDetails
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.inputs import Section, describe
 from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_written
+from beamdyn.common.edge.wording import in_millimetres
 from beamdyn.common.files import as_path
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -178,7 +179,8 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
         inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
         return said_of(reason, f"{place}.{inner}".lstrip("."), _found(given, inner)), key
-    return f"{place or 'model'}: {reason}", path
+    said = in_millimetres(reason) if isinstance(reason, InvalidValue) else reason
+    return f"{place or 'model'}: {said}", path
 
 
 def _place_in(field: str, key: str) -> str:
@@ -208,7 +210,7 @@ def _found(given: Any, place: str) -> Any:
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
     """What a refusal by the core says of what is given at a place of a file, as that has it."""
-    kind = InvalidInput if type(refusal) is InvalidValue else type(refusal)
+    kind = type(refusal) if isinstance(refusal, InvalidInput) else InvalidInput
     said: dict[str, Any] = vars(refusal) | {"field": place}
     return str(_as_written(kind(**said), given))
 

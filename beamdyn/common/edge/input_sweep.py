@@ -11,6 +11,7 @@ from typing import Any, get_args, get_origin
 
 import numpy as np
 
+from beamdyn.common.checks import reason_of
 from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.edge.inputs import Input, Section, parts_of
 from beamdyn.common.edge.program import NoAnswer
@@ -444,7 +445,7 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
             answer = solve(design)
             values[:, case] = [float(wanted[name].shown(answer)) for name in task.outputs]
         except (ValueError, ArithmeticError, NoAnswer) as error:
-            refused[case] = str(error)
+            refused[case] = reason_of(error)
     return SolvedCases(values, tuple(refused), tuple(refused.values()))
 
 

@@ -65,7 +65,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
         with _as_sentences(name), at_work(" ".join([name, *given[:1]])):
             _call(app, given)
     except (NoAnswer, ArithmeticError) as error:
-        return _complain(name, f"no answer: {as_typed(str(error))}", NO_ANSWER)
+        return _no_answer(name, error)
     except MemoryError as error:
         return _complain(
             name, f"not enough memory: {error}; ask for a shorter run or for fewer modes", BAD_INPUT
@@ -105,6 +105,12 @@ def _as_sentences(name: str) -> Iterator[None]:
         warnings.simplefilter("ignore", OutsideLinearTheory)  # a command prints the warnings of its result
         warnings.showwarning = show
         yield
+
+
+def _no_answer(name: str, error: Exception) -> int:
+    from beamdyn.common.checks import reason_of
+
+    return _complain(name, f"no answer: {as_typed(reason_of(error))}", NO_ANSWER)
 
 
 def _refused(name: str, error: Exception) -> int:

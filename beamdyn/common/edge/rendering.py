@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.checks import reason_of
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
@@ -46,7 +48,7 @@ def drawing(draw: Callable[[], Figure]) -> str:
             warnings.simplefilter("ignore", RuntimeWarning)
             return svg(draw())
     except (ValueError, ArithmeticError) as error:
-        return f"There is no drawing: {error}"
+        return f"There is no drawing: {reason_of(error)}"
 
 
 def picture(text: str, words: str) -> str:

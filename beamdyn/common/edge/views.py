@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import Console, Group, RenderableType
 
+from beamdyn.common.checks import reason_of
 from beamdyn.common.described import descriptions
 from beamdyn.common.display_units import in_display_units
 from beamdyn.common.edge.rendering import html, png
@@ -176,7 +177,7 @@ def _picture(result: Result) -> str:
             return ""
         content = base64.b64encode(png(figure)).decode()
     except (ValueError, ArithmeticError, LookupError) as error:  # numbers too large, nothing that is finite
-        return f"<p>{escape(f'There is no picture: {error}')}</p>"
+        return f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
     return f'<img alt="{escape(repr(result))}" src="data:image/png;base64,{content}">'
 
 

@@ -9,13 +9,18 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
+from pydantic import BaseModel
 
-from beamdyn.common.checks import InvalidValue, RefusedCases
+from beamdyn.common.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
+from beamdyn.common.edge.inputs import describe
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(
     rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
 )
+_SUSPECT = 12.0  # powers of ten by which a number is far from 1
+_FAR = "far too large or too small beside the others: the results leave the range of numbers"
+_CHECK = "check its exponent and its unit"
 _SMALLER = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}
 
 
@@ -38,13 +43,43 @@ def of_file(keys: Mapping[str, str]) -> Iterator[None]:
 
 
 @contextmanager
-def in_range() -> Iterator[None]:
-    """Within it, numbers that overflow are a ValueError: a mistyped exponent has no answer."""
+def in_range(design: BaseModel) -> Iterator[None]:
+    """Within it, numbers that overflow are a ValueError: a mistyped exponent has no answer.
+
+    Parameters
+    ----------
+    design : BaseModel
+        What is computed. The message names its number that is the farthest from 1, if it is a likely cause.
+    """
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             yield
-    except (OverflowError, FloatingPointError, ZeroDivisionError) as error:
-        raise ValueError(f"the numbers are out of range ({error}); check the size of each value") from None
+    except (OverflowError, FloatingPointError, ZeroDivisionError):
+        path, number = max(_numbers(dict(design)), key=lambda found: _decades(found[1]), default=("", 1.0))
+        if _decades(number) < _SUSPECT:
+            raise ValueError(OUT_OF_RANGE) from None
+        units = {entry.path: entry.quantity.unit for entry in describe(type(design))}
+        raise InvalidValue(path, number, _FAR, _CHECK, units.get(path, "")) from None
+
+
+def _numbers(given: object, path: str = "") -> Iterator[tuple[str, float]]:
+    """The numbers of a design, each with its path, such as "pad[0]"."""
+    match given:
+        case float():
+            yield path, given
+        case np.ndarray():
+            yield from ((path, float(number)) for number in given.ravel())
+        case BaseModel() | dict():
+            for key, value in dict(given).items():
+                yield from _numbers(value, f"{path}.{key}".removeprefix("."))
+        case list() | tuple():
+            for i, value in enumerate(given):
+                yield from _numbers(value, f"{path}[{i}]")
+
+
+def _decades(number: float) -> float:
+    """How far a size is from 1, in powers of ten; 0 of zero."""
+    return abs(math.log10(abs(number))) if number and math.isfinite(number) else 0.0
 
 
 def in_degrees(error: InvalidValue) -> InvalidValue:
@@ -52,6 +87,14 @@ def in_degrees(error: InvalidValue) -> InvalidValue:
     value = math.degrees(error.value) if isinstance(error.value, float) else error.value
     limit = None if error.limit is None else math.degrees(error.limit)
     return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
+
+
+def in_millimetres(error: InvalidValue) -> InvalidValue:
+    """The same about a length below a metre in mm; any other as it is."""
+    if error.unit != "m" or not isinstance(error.value, float) or abs(error.value) >= 1:
+        return error
+    limit = None if error.limit is None else 1e3 * error.limit
+    return replace(error, value=1e3 * error.value, limit=limit, unit="mm", cases=None)
 
 
 def in_small_units(sentence: str) -> str:
