@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
 from typing import Any, ClassVar, Generic, TypeVar
@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from rich.console import RenderableType
 
 from beamdyn._version import __version__
+from beamdyn.common.app.folded_parts import FoldedPart
 from beamdyn.common.app.screens import Handle, KeyResult, Slider
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
@@ -227,8 +228,8 @@ class BrakeType(ABC, Generic[FileModel]):
         Results of a sweep if none are named, separated by commas.
     slider : Slider, optional
         What its figure follows.
-    more : tuple of (title, callable)
-        Further drawings: answer in, figure out.
+    more : tuple of FoldedPart
+        Drawings and tables that fold out on its screen.
     most_cases : int
         Cases of a sweep that are solved.
     key_results : tuple of (words, name)
@@ -245,7 +246,7 @@ class BrakeType(ABC, Generic[FileModel]):
     example_sweep: str
     sweep_results: str
     slider: Slider | None = None
-    more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
+    more: tuple[FoldedPart, ...] = ()
     most_cases: int = MOST_ONE_BY_ONE
     key_results: tuple[tuple[str, str], ...] = ()
 

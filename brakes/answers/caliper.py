@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
+from beamdyn.common.app.folded_parts import FoldedDrawings
 from beamdyn.common.app.screens import Slider
 from beamdyn.common.described import descriptions
 from beamdyn.common.drawing.chart import Chart
@@ -42,6 +43,7 @@ from brakes.config.mechanism import MechanismInput, mechanism_from_dict
 from brakes.config.mechanism_inputs import PARTS, idle_inputs, inputs_of_tables, named_text
 from brakes.drawings.caliper import caliper_drawing, caliper_figure, stroke_charts, title_of
 from brakes.drawings.caliper_sketches import caliper_sketch, mechanism_sketch
+from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.diagnosis import OppositeTravelError, join_names
 
@@ -286,7 +288,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     example_sweep = "points.C.x=17:20:13 mm"
     sweep_results = "work"
     slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
-    more = (("Free bodies", PlanarAnswer.free_bodies),)
+    more = (FoldedDrawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
         """Tables and text of a file, or of the caliper of a name."""

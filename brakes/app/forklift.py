@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
+from rich.console import RenderableType
 
+from beamdyn.common.app.folded_parts import FoldedTable
+from beamdyn.common.edge.tables import table
 from brakes.answers import forklift
 from brakes.answers.forklift import ForkliftAnswer, stage_outputs
+from brakes.answers.tables import list_outputs
 from brakes.app.screens import make_document, make_screen
-from brakes.reproduce.forklift import compare
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 
-def draw_as_printed(answer: ForkliftAnswer) -> Figure:
+def table_as_printed(answer: ForkliftAnswer) -> RenderableType:
     """Results beside those that follow from the paper's stop."""
-    printed = answer_as_printed(answer.design, answer.stages)
-    return compare(stage_outputs(answer.stages), answer, printed or answer)
+    printed = answer_as_printed(answer.design, answer.stages) or answer
+    rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
+    return table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))
 
 
-_PAPER = ("As the paper prints", draw_as_printed)
+_PAPER = FoldedTable("As the paper prints", table_as_printed)
 VEHICLE = make_screen(forklift.TYPES["vehicle"], _PAPER)
 KINEMATICS = make_screen(forklift.TYPES["kinematics"])
 FORCES = make_screen(forklift.TYPES["forces"], _PAPER)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from matplotlib.figure import Figure
-
+from beamdyn.common.app.folded_parts import FoldedPart
 from beamdyn.common.app.screens import Document, Screen, Sweeps
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.input_sweep import InputSweep
@@ -66,8 +65,8 @@ def _nest(entries: Mapping[str, str]) -> dict[str, Any]:
     return tables
 
 
-def make_screen(brake: BrakeType[Any], *more: tuple[str, Callable[[Any], Figure]]) -> Screen:
-    """Make the screen of a type of brake; `more` are titles and drawings of answers that fold out on it."""
+def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
+    """Make the screen of a type of brake; `more` are further parts that fold out on it."""
     return Screen(
         brake.title,
         brake.purpose,

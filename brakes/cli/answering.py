@@ -130,7 +130,7 @@ def run_command(
         raise ValueError(f"--what goes with --vary or {OPTION}: without them, all results are shown")
     answer = brake.answer(tables, file)
     shown = answer.tables()
-    more = [(title, partial(draw, answer)) for title, draw in brake.more]
+    more = [(part.title, partial(part.in_report, answer)) for part in brake.more]
     report = Report(question, shown, [*answer.refusals, *answer.warnings], more)
     write(answer, outputs, answer.rows(), answer.figure, report)
     for path, save in (further or {}).values():

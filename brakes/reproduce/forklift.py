@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.transforms import Bbox
 from rich.console import Group
 
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.sheet import Paper
-from beamdyn.common.edge.input_sweep import Output
-from brakes.answers.tables import list_outputs
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.drawings.forklift import distances, forces_over, truck
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, follow_shoes, internal_forces, stop
@@ -287,27 +284,4 @@ def _over() -> Figure:
         ax.set_title(f"Table {name[-1]} (circles: printed)", fontsize=11)
     for ax in figure.axes[1:]:
         ax.set_ylabel("")
-    return figure
-
-
-def compare(outputs: Sequence[Output], corrected: object, printed: object) -> Figure:
-    """Draw a table of results by the right mechanics beside those by the paper's.
-
-    Parameters
-    ----------
-    outputs : sequence of Output
-        Results to show.
-    corrected, printed : object
-        The two answers that have them, of one case.
-    """
-    figure = Figure(figsize=(9.0, 0.3 * (len(outputs) + 1)), layout="constrained")
-    ax = figure.subplots()
-    ax.set_axis_off()
-    made = ax.table(
-        list_outputs(outputs, [corrected, printed]), colLabels=["", "corrected", "as printed", "unit"],
-        colWidths=[0.55, 0.17, 0.17, 0.11],
-        cellLoc="right", bbox=Bbox.unit(), edges="horizontal",
-    )  # fmt: skip
-    made.auto_set_font_size(False)
-    made.set_fontsize(9)
     return figure

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from rich.console import Group
 
+from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.open_document import OpenDocument
 from brakes.app.program import BRAKES
@@ -85,3 +86,13 @@ def test_the_position_that_is_drawn_has_its_table():
         (drawing,) = screen.drawings(answer, place)[0]
         assert where in drawing.title
         assert any("forces" in title and where in title for title in titles)
+
+
+def test_the_chart_has_room_for_the_other_design():
+    """A larger clearance takes a longer stroke: the axis holds it, and its curve is pale."""
+    here, there = charts("Caliper"), charts("Caliper", **{"dimensions.clearance": "2 mm"})
+    for chart, one, other in zip(with_other_curves(here, there, "other"), here, there, strict=True):
+        assert chart.x.high == other.x.high > one.x.high
+        assert [curve.pale for curve in chart.curves] == [False] * len(one.curves) + [True] * len(
+            other.curves
+        )

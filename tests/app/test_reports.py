@@ -12,6 +12,7 @@ from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app import tasks
 from beamdyn.common.app.document_report import report_of
+from beamdyn.common.app.folded_parts import FoldedDrawings
 from beamdyn.common.app.input_words import NOT_GIVEN, default_words, label
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.rendering import html
@@ -38,7 +39,9 @@ def inputs(page):
 def test_report_has_inputs_results_drawings_and_version(document):
     work = solved(document)
     page = report_of(work, "Mine")
-    drawings = sum(1 + len(screen.more) for screen in document.screens)
+    more = [part for screen in document.screens for part in screen.more]
+    assert all(f"<h3>{part.title}</h3>" in page for part in more)
+    drawings = len(document.screens) + sum(isinstance(part, FoldedDrawings) for part in more)
     assert page.count("data:image/svg+xml;base64,") == drawings
     assert inputs(page) == tomllib.loads(work.text()) == tomllib.loads(document.base)
     assert f"beamdyn {__version__}" in page

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,7 +12,7 @@ from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.history import differing
 from beamdyn.common.app.input_words import given_or_default, label
 from beamdyn.common.app.screens import KeyResult
-from beamdyn.common.drawing.chart import Chart, ChartCurve
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.inputs import Input
@@ -153,12 +153,29 @@ def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str
     """Charts with the curves of another design's, pale and dashed, where these have the same axes."""
     if [chart.x.title + chart.y.title for chart in charts] != [c.x.title + c.y.title for c in other]:
         return charts
-    return [
-        replace(
-            chart, curves=[*chart.curves, *(_pale(curve, name) for curve in there.curves if not curve.pale)]
-        )
-        for chart, there in zip(charts, other, strict=True)
-    ]
+    return [_with_curves(chart, there, name) for chart, there in zip(charts, other, strict=True)]
+
+
+def _with_curves(chart: Chart, there: Chart, name: str) -> Chart:
+    """A chart with the curves of another one, and axes that hold both."""
+    pale = [_pale(curve, name) for curve in there.curves if not curve.pale]
+    return replace(
+        chart,
+        x=_around_both(chart.x, there.x),
+        y=_around_both(chart.y, there.y),
+        curves=[*chart.curves, *pale],
+    )
+
+
+def _around_both(axis: ChartAxis, there: ChartAxis) -> ChartAxis:
+    """An axis as long as two; where one of them ends by its curves, it does so, too."""
+    lows, highs = (axis.low, there.low), (axis.high, there.high)
+    return replace(axis, low=_if_given(min, lows), high=_if_given(max, highs))
+
+
+def _if_given(choose: Callable[..., float], ends: tuple[float | None, float | None]) -> float | None:
+    known = [end for end in ends if end is not None]
+    return choose(known) if len(known) == len(ends) else None
 
 
 def _pale(curve: ChartCurve, name: str) -> ChartCurve:

@@ -52,7 +52,7 @@ def _answers(work: OpenDocument) -> Iterator[_Part]:
             answered = work.answered[screen.name]
             answer = answered.answer
             made = picture(drawn(screen, answer, screen.last), screen.name)
-            more = further((name, partial(draw, answer)) for name, draw in screen.more)
+            more = further((part.title, partial(part.in_report, answer)) for part in screen.more)
             yield screen.name, answered.notes, html(answered.tables) + more, made
 
 

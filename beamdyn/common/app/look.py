@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from beamdyn.common.app.chart_board import STYLE as CHARTS
 from beamdyn.common.app.draggable_drawing import STYLE as BOARD
+from beamdyn.common.app.folded_panel import STYLE as FOLDED
 from beamdyn.common.app.list_editor import STYLE as LISTS
 from beamdyn.common.app.player import STYLE as PLAYER
 from beamdyn.common.app.sketch_panel import STYLE as SKETCH
@@ -22,9 +23,7 @@ body.body--dark { --soft: #b9bdc3; --edge: #4a5059; --wrong: #ff9c85; --careful:
   /* before those that the page sets as its own style */
   --q-primary: #62b8ee !important; --q-negative: #ff9c85 !important; }
 """
-# A picture whose colours are fixed is turned over on dark ground: its hues stay.
 _DARK = """
-body.body--dark img.drawing { filter: invert(0.91) hue-rotate(180deg); }
 .shown tbody tr:nth-child(even) { background: var(--stripe); }
 .shown .beyond { color: var(--beyond); }
 body.body--dark .q-field--outlined .q-field__control:before { border-color: var(--edge); }
@@ -121,6 +120,6 @@ _NARROW = """
 }
 """
 STYLE = (
-    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH
+    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH + FOLDED
 )  # the later rules count
 STYLE += page_colours("body.body--dark", dark=True)

@@ -21,7 +21,7 @@ from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
 from beamdyn.common.app.downloads import download
 from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.draggable_drawing import DraggableDrawing
-from beamdyn.common.app.folded_drawing import FoldedDrawing
+from beamdyn.common.app.folded_panel import FoldedPanel
 from beamdyn.common.app.form import Form
 from beamdyn.common.app.form_entries import Entries
 from beamdyn.common.app.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
@@ -104,8 +104,8 @@ class ScreenView:
                 self.comparison = ComparisonPanel(self.work, self.screen)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full")
                 self._more = [
-                    FoldedDrawing(title, partial(self._further, number))
-                    for number, (title, _) in enumerate(self.screen.more)
+                    FoldedPanel(part.title, partial(self._folded, number))
+                    for number, part in enumerate(self.screen.more)
                 ]
         with ui.column().classes("after w-full gap-2"):
             self._exports()
@@ -418,9 +418,9 @@ class ScreenView:
         """Have something made for this screen."""
         return self._solver.submit(task, self.work.document, self.screen, *given)
 
-    def _further(self, number: int, answer: Any) -> asyncio.Future[str]:
-        """Have one of the further drawings made."""
-        return self._make(tasks.further, answer, number)
+    def _folded(self, number: int, answer: Any) -> asyncio.Future[str]:
+        """Have one of the parts made that fold out."""
+        return self._make(tasks.folded, answer, number)
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
         """Write the new place of a handle into the fields, and solve."""

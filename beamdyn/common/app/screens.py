@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.app.courses import BackAndForth, Course
+from beamdyn.common.app.folded_parts import FoldedPart
 from beamdyn.common.app.form_entries import Entries, entries_of
 from beamdyn.common.app.lists import Lists
 from beamdyn.common.curves import sweep_figure
@@ -169,8 +170,8 @@ class Screen:
         Its sweeps.
     drags : tuple of Drag
         Sliders in its form.
-    more : tuple of (title, callable)
-        Further drawings: answer in, figure out; drawn when they are wanted.
+    more : tuple of FoldedPart
+        Drawings and tables that fold out; made when they are wanted.
     handles : callable
         Answer and place of the slider in; points of the first drawing that can be moved out.
     drawings : callable
@@ -206,7 +207,7 @@ class Screen:
     slider: Slider | None = None
     sweeps: Sweeps | None = None
     drags: tuple[Drag, ...] = ()
-    more: tuple[tuple[str, Callable[[Any], Figure]], ...] = ()
+    more: tuple[FoldedPart, ...] = ()
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
     drawings: Callable[[Any, float], Rows] = lambda *_: ()
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables

@@ -42,10 +42,9 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
 # Pictures by matplotlib, which take long -----------------------------------------------------------------
 
 
-def further(document: Document, screen: Screen, answer: Any, number: int) -> str:
-    """One of the further drawings of an answer in HTML."""
-    title, draw = screen.more[number]
-    return picture(drawing(lambda: draw(answer)), title)
+def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
+    """One of the parts of an answer that fold out, in HTML."""
+    return screen.more[number].on_page(answer)
 
 
 def drawing_file(document: Document, screen: Screen, answer: Any, place: float, kind: str) -> bytes:

@@ -159,4 +159,6 @@ class Chart:
         """What it shows, for those who do not see it."""
         names = ", ".join(each.name for each in (*self.curves, *self.points))
         marks = "; ".join(mark.text.replace("\n", " ") for mark in self.marks)
-        return f"{self.title}: {self.y.title} over {self.x.title}; {names}" + (f"; {marks}" if marks else "")
+        over = f"{self.y.title} over {self.x.title}"
+        head = over if self.title == over else f"{self.title}: {over}"
+        return "; ".join(filter(None, (head, names, marks)))

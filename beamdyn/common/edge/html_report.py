@@ -77,13 +77,13 @@ class Report:
     warnings : sequence of str
         Warnings, and why there is no answer.
     more : sequence of (title, callable)
-        Further drawings.
+        Further parts, whose callables give HTML.
     """
 
     question: Question
     tables: Sequence[RenderableType]
     warnings: Sequence[str] = ()
-    more: Sequence[tuple[str, Callable[[], Figure]]] = ()
+    more: Sequence[tuple[str, Callable[[], str]]] = ()
 
     def page(self, draw: Callable[[], Figure] | None) -> str:
         """The report as HTML; without its main drawing where there is none."""
@@ -94,9 +94,9 @@ class Report:
         return report_page(title, self.question.inputs, [part])
 
 
-def further(drawings: Iterable[tuple[str, Callable[[], Figure]]]) -> str:
-    """Further drawings, each under its title, in HTML."""
-    return "\n".join(f"<h3>{escape(title)}</h3>{picture(drawing(draw), title)}" for title, draw in drawings)
+def further(parts: Iterable[tuple[str, Callable[[], str]]]) -> str:
+    """Further parts, each under its title, in HTML."""
+    return "\n".join(f"<h3>{escape(title)}</h3>{make()}" for title, make in parts)
 
 
 def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:

@@ -1,0 +1,90 @@
+"""What folds out below the numbers of a screen: further drawings, and further tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
+from beamdyn.common.drawing.svg import element
+from beamdyn.common.edge.rendering import drawing, html, picture
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+PANEL = 320.0  # width and height of each drawing [pt]
+
+
+class FoldedPart(Protocol):
+    """A part of a screen that folds out; it is made when it is wanted."""
+
+    @property
+    def title(self) -> str:
+        """What it shows."""
+        ...
+
+    def on_page(self, answer: Any) -> str:
+        """The part in HTML, in the colours of the page."""
+        ...
+
+    def in_report(self, answer: Any) -> str:
+        """The part in HTML, for a page that has no colours of its own."""
+        ...
+
+
+@dataclass(frozen=True)
+class FoldedDrawings:
+    """Drawings.
+
+    Parameters
+    ----------
+    title : str
+        What they show.
+    rows : callable
+        Answer in, rows of drawings out.
+    """
+
+    title: str
+    rows: Callable[[Any], Rows]
+
+    def on_page(self, answer: Any) -> str:
+        """The drawings as SVG."""
+        rows = self.rows(answer)
+        paper = paper_of(rows)
+        return element(lay_out(rows, paper), paper)
+
+    def in_report(self, answer: Any) -> str:
+        """The drawings as a picture."""
+        rows = self.rows(answer)
+        return picture(drawing(lambda: figure_of(rows, paper_of(rows))), self.title)
+
+
+@dataclass(frozen=True)
+class FoldedTable:
+    """A table.
+
+    Parameters
+    ----------
+    title : str
+        What it shows.
+    table : callable
+        Answer in, the table out.
+    """
+
+    title: str
+    table: Callable[[Any], RenderableType]
+
+    def on_page(self, answer: Any) -> str:
+        """The table."""
+        return html([self.table(answer)])
+
+    def in_report(self, answer: Any) -> str:
+        """The table."""
+        return self.on_page(answer)
+
+
+def paper_of(rows: Rows) -> Paper:
+    """Paper with a square for each drawing."""
+    return Paper(PANEL * max(map(len, rows)), (PANEL,) * len(rows))
