@@ -3,7 +3,8 @@
 Prints how long each screen's drawing takes to be laid out and written as SVG, and how large that is, and how
 long labels take.  With --browser instead, in Chromium, how many different pictures of a solved position are
 painted a second while a point or a slider is dragged, told by the id of the position in the page; how much
-of the processor each takes; how soon all is solved after the release, or a screen that takes long says so.
+of the processor each takes; how soon all is solved after the release, or a screen that takes long says so;
+and how often a picture changes while a slider is played.
 """
 
 from __future__ import annotations
@@ -46,6 +47,7 @@ POINTS = {
 SLIDER = "radius, r [mm]"
 SLIDERS = {"Frequencies": "", "Rotor": "tip: setting angle", "Mode shapes": ""}  # each slider, and this point
 LONG = ("Steady response", "Transient")
+PLAYED = {"brakes": ("Kinematics", "Caliper", "Mechanism"), "beamdyn": ("Mode shapes", "Transient")}
 # Counts each solved position whose picture is there when a frame is painted, once.
 COUNT = """() => {
   window.pictures = new Set();
@@ -55,6 +57,19 @@ COUNT = """() => {
   window.counting.observe(document.body, {subtree: true, attributeFilter: ["data-solved"]});
 }"""
 COUNTED = "() => { window.counting.disconnect(); return window.pictures.size; }"
+# Counts for some seconds how often another picture is there when a frame is painted.
+CHANGES = """(seconds) => new Promise((done) => {
+  const end = performance.now() + 1000 * seconds;
+  let last = "", count = 0;
+  const look = (now) => {
+    const shown = [...document.querySelectorAll(".board svg.machine")].filter((e) => e.checkVisibility());
+    const name = shown.map((e) => e.id).join();
+    if (name !== last) count += 1;
+    last = name;
+    if (now < end) requestAnimationFrame(look); else done(count);
+  };
+  requestAnimationFrame(look);
+})"""
 # Waits for some events, and then for words of the page, or, if wanted, for a new answer, which may come
 # before them; in `window.told` the time between them [ms].
 WATCH = """([events, words, answer]) => {
@@ -141,6 +156,24 @@ def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
                     "",
                 )
                 yield "... from release to the full answer [ms]", f"{late:.0f}", f"{AT_REST}"
+    finally:
+        stop(process)
+
+
+def play(program: str, names: Iterable[str]) -> Iterator[Row]:
+    """How often the picture of each screen changes while its slider is played."""
+    process = start(port := free_port(), program)
+    try:
+        with browser() as made:
+            page = open_page(made.new_context(viewport={"width": 1280, "height": 900}), port)
+            for name in names:
+                go(page, name)
+                rest(process.pid)
+                button = page.locator(".player:visible").first
+                button.click()
+                found = page.evaluate(CHANGES, DRAG)
+                button.click()
+                yield f"{name}, played: pictures painted a second", f"{found / DRAG:.1f}", f"{PAINTED}"
     finally:
         stop(process)
 
@@ -239,7 +272,8 @@ PARTS = time_labels, time_screens
 def main() -> None:
     if "--browser" in sys.argv[1:]:
         # each at once: a browser on a machine that does much else takes its time
-        for row in chain(drag("brakes", POINTS), drag("beamdyn", SLIDERS), wait_for_sign()):
+        played = chain.from_iterable(play(*which) for which in PLAYED.items())
+        for row in chain(drag("brakes", POINTS), drag("beamdyn", SLIDERS), played, wait_for_sign()):
             print("  ".join(row), flush=True)
     else:
         show("drawings", *PARTS)

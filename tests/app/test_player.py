@@ -9,6 +9,7 @@ pytest.importorskip("nicegui")
 
 from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.app.courses import BackAndForth, Onward
+from beamdyn.common.app.page_writer import PageWriter
 from brakes.app.program import BRAKES
 from tests.app.browsing import go
 from tests.app.serving import IN_BROWSER
@@ -103,6 +104,29 @@ def test_the_button_plays_and_pauses_and_a_hand_on_the_slider_pauses(simulate, f
     simulate(BRAKES, body)
 
 
+def test_pictures_and_places_are_written_past_the_toolkit_and_told_to_it_at_rest(
+    simulate, fields, monkeypatch
+):
+    """The toolkit renders the whole page for each change that it is told: half as many pictures."""
+
+    async def body(another):
+        user = await another()
+        written, told = [], []
+        user.javascript_rules[PAINTED] = lambda _: "moving"
+        monkeypatch.setattr(PageWriter, "write", lambda _, __, changed: written.extend(changed))
+        it = Played(user, fields, "Kinematics")
+        update = type(it.slider).update
+        monkeypatch.setattr(type(it.slider), "update", lambda self: told.append(self.value) or update(self))
+        it.press()
+        await places(it.slider, 4)
+        assert min(written.count("place"), written.count("innerHTML")) >= 3
+        assert not told
+        it.press()
+        assert told and {*told} == {it.slider.value}
+
+    simulate(BRAKES, body)
+
+
 def test_no_picture_before_the_last_was_painted_and_none_where_nobody_looks(simulate, fields):
     async def body(another):
         user = await another()
@@ -115,6 +139,35 @@ def test_no_picture_before_the_last_was_painted_and_none_where_nobody_looks(simu
         assert asked == [1] and it.slider.value == before and it.words == "play stage"
 
     simulate(BRAKES, body)
+
+
+@IN_BROWSER[0]
+@IN_BROWSER[1]
+def test_the_slider_stands_where_it_was_paused_and_is_dragged_from_there(page):
+    go(page, "Kinematics")
+    slider = page.locator(".stroke .q-slider").locator("visible=true").first
+    picture = page.locator(".board svg.machine").locator("visible=true").first
+
+    def shown():
+        return float(slider.get_attribute("aria-valuenow")), picture.get_attribute("id")
+
+    page.get_by_role("button", name="play stage").locator("visible=true").click()
+    page.wait_for_timeout(1200)
+    page.get_by_role("button", name="pause stage").locator("visible=true").click()
+    page.wait_for_timeout(300)
+    paused = shown()
+    assert 0 <= paused[0] < 2
+    page.wait_for_timeout(500)
+    assert shown() == paused
+    box = slider.bounding_box()
+    held = slider.locator(".q-slider__thumb").bounding_box()
+    page.mouse.move(held["x"] + held["width"] / 2, held["y"] + held["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.25 * box["width"], held["y"], steps=10)
+    page.mouse.up()
+    page.wait_for_timeout(500)
+    place, name = shown()
+    assert place == pytest.approx(0.5, abs=0.1) and name != paused[1]
 
 
 @IN_BROWSER[0]

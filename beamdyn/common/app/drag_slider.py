@@ -7,6 +7,8 @@ from typing import Any
 
 from nicegui import ui
 
+from beamdyn.common.app.page_writer import PageWriter
+
 _OFTEN = 0.03  # least time between two messages of a slider that is dragged [s]
 
 
@@ -26,3 +28,10 @@ class DragSlider(ui.slider, component="drag_slider.js"):
         assert self.component is not None
         self.tag = self.component.tag
         self.on("drag", lambda e: dragged(*e.args), throttle=_OFTEN)
+
+    def put(self, place: float, writer: PageWriter) -> None:
+        """Move it to a place, past the toolkit while the writer is ahead of that."""
+        with writer.writing(self):
+            self.set_value(place)
+        if writer.is_ahead:
+            writer.write(self, {"place": place})

@@ -39,7 +39,8 @@ SCRIPT = """<script>
         else if (name === "value") {
           Vue.toRaw(getElement(id).$data).inputValue = value;  // for when it is rendered again
           (shown.querySelector("input, textarea") ?? shown).value = value;
-        } else if (name === "options") {
+        } else if (name === "place") getElement(id).at = value;
+        else if (name === "options") {
           getElement(id).chart?.setOption(value, {replaceMerge: ["series"], lazyUpdate: true});
         } else put(shown, name, value);
       }

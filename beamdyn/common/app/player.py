@@ -10,6 +10,8 @@ from typing import Any
 from nicegui import background_tasks, ui
 
 from beamdyn.common.app.courses import Course
+from beamdyn.common.app.drag_slider import DragSlider
+from beamdyn.common.app.page_writer import PageWriter
 
 STYLE = """
 .stroke { flex-wrap: nowrap; align-items: center; gap: 0; }
@@ -37,20 +39,28 @@ class Player:
 
     Parameters
     ----------
-    slider : ui.slider
+    slider : DragSlider
         The slider; whoever draws follows its changes.
     label : str
         What is played, such as "stroke".
     course : Course
         How the place follows from the time.
+    writer : PageWriter
+        What writes into the page while it plays.
     rested : callable
         Called when it has been paused.
     """
 
     def __init__(
-        self, slider: Any, label: str, course: Course, rested: Callable[[], object] = lambda: None
+        self,
+        slider: DragSlider,
+        label: str,
+        course: Course,
+        writer: PageWriter,
+        rested: Callable[[], object] = lambda: None,
     ) -> None:
-        self._slider, self._label, self._course, self._rested = slider, label, course, rested
+        self._slider, self._label, self._course = slider, label, course
+        self._writer, self._rested = writer, rested
         self._task: asyncio.Task[None] | None = None
         self._sets = False
         self._button: Any = ui.button(on_click=self.toggle).props("flat round dense").classes("player")
@@ -76,6 +86,7 @@ class Player:
         task, self._task = self._task, None
         if task is not None:
             self._show()
+            self._writer.synchronize()
             self._rested()
 
     def _by_hand(self) -> None:
@@ -90,7 +101,7 @@ class Player:
 
     async def _play(self) -> None:
         task = asyncio.current_task()
-        elapsed, last = self._course.elapsed(self._slider.value), time.monotonic()
+        elapsed, last = self._course.elapsed(self._slider.value or 0.0), time.monotonic()
         while self._task is task and not self._slider.is_deleted:
             seen = await self._painted()
             if self._task is not task:
@@ -108,7 +119,7 @@ class Player:
     def _put(self, place: float) -> None:
         self._sets = True
         try:
-            self._slider.set_value(place)
+            self._slider.put(place, self._writer)
         finally:
             self._sets = False
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from html import escape
+from time import monotonic
 from typing import Any
 from zlib import crc32
 
@@ -18,6 +19,7 @@ from beamdyn.common.app.chart_board import ChartBoard
 from beamdyn.common.app.comparison import with_other_curves
 from beamdyn.common.app.comparison_panel import ComparisonPanel, headline_of
 from beamdyn.common.app.downloads import download
+from beamdyn.common.app.drag_slider import DragSlider
 from beamdyn.common.app.draggable_drawing import DraggableDrawing
 from beamdyn.common.app.folded_panel import FoldedPanel
 from beamdyn.common.app.form import Form
@@ -39,6 +41,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text, html
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
+_CHARTS_APART = 0.1  # pictures of charts while the slider is played: a browser takes 5 to 10 ms for each [s]
 
 
 class ScreenView:
@@ -65,7 +68,9 @@ class ScreenView:
         self._sentences: tuple[list[str], list[str]] = [], []
         self._way = UnderWay(self._settle, self._fail, self.state)
         self._holds = False  # a slider of the form
-        self._writer = PageWriter(lambda: self.dragged)
+        self._charted = 0.0  # when the charts were shown last [s]
+        self._swings = False  # the slider above the drawing
+        self._writer = PageWriter(lambda: self.dragged or self._swings or self._plays)
         self._partial = False  # whether the tables shown are those of an answer before
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
@@ -116,11 +121,15 @@ class ScreenView:
         marks = ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(slider.marks))
         last = self.screen.last
         with ui.row().classes("stroke w-full"):
-            self._at = ui.slider(min=0, max=last, step=slider.step, value=last, on_change=self._turn)
+            self._at = DragSlider(
+                self._swing, min=0, max=last, step=slider.step, value=last, on_change=self._turn
+            )
             self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1').classes(
                 "slider"
             )
-            self._player = Player(self._at, slider.label, slider.course(last, slider.seconds))
+            self._player = Player(
+                self._at, slider.label, slider.course(last, slider.seconds), self._writer, self._turn
+            )
 
     def _exports(self) -> None:
         with ui.row().classes("gap-2"):
@@ -356,6 +365,17 @@ class ScreenView:
         if self.work.answered.get(self.screen.name):
             self._show()
 
+    @property
+    def _plays(self) -> bool:
+        """Whether the slider above the drawing is played."""
+        return self._player is not None and self._player.plays
+
+    def _swing(self, place: float, done: bool) -> None:
+        """The slider above the drawing has been moved; or let go."""
+        self._swings = not done
+        with self._writer.writing(self._at):
+            self._at.set_value(place)
+
     def _turn(self) -> None:
         """Draw at the slider's new place, to the same scale."""
         self._draw(self.board.view)
@@ -371,7 +391,8 @@ class ScreenView:
             self.screen, answer, self.progress, self.board.held or view, other, name, self.narrow
         )
         self._drawn = made.name or self.screen.name
-        self._chart(answer)
+        if not self._plays or monotonic() - self._charted >= _CHARTS_APART:
+            self._chart(answer)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
 
     def _drawn_answer(self, answered: Answered) -> Any:
@@ -387,6 +408,7 @@ class ScreenView:
         """Show the charts, also while a point is moved: they are light."""
         if self.screen.charts is None:
             return
+        self._charted = monotonic()
         charts, there = self.screen.charts(answer, self.progress), self._other_answer()
         if there is not None and self.work.other is not None:
             charts = with_other_curves(charts, self.screen.charts(there, self.progress), self.work.other.name)
