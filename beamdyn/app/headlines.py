@@ -45,10 +45,15 @@ def of_steady(response: SteadyResponse) -> Iterator[KeyResult]:
     yield KeyResult("at the speed", _in(units.speed_unit(), response.speeds[at]))
 
 
-def of_modes(modes: Modes) -> Iterator[KeyResult]:
-    """The first frequency, and the largest errors of all modes: of the numbers and of the model."""
+def of_numbers(modes: Modes) -> Iterator[KeyResult]:
+    """The first frequency, and the largest numerical error of all modes."""
     yield KeyResult("first frequency", _said(modes.frequency[0], "Hz"))
     yield KeyResult("numerical error at most", f"{float(np.max(modes.error)):.0e}")
+
+
+def of_modes(modes: Modes) -> Iterator[KeyResult]:
+    """The same, and the largest model error, which takes longer than the modes."""
+    yield from of_numbers(modes)
     if np.isfinite(modes.model_error).any():
         yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))
 

@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from beamdyn import natural_modes
 from beamdyn.app.bent_beam import bent_beam
-from beamdyn.app.headlines import of_modes
+from beamdyn.app.headlines import of_modes, of_numbers
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_at_speed
 from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
@@ -85,6 +85,7 @@ MODE_SHAPES = Screen(
     drags=(Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     drawings=drawings,
     headline=lambda modes: [*of_modes(modes)],
+    quick_headline=lambda modes: [*of_numbers(modes)],
     effort=EFFORT,
     sketch=sketch,
 )

@@ -5,13 +5,14 @@ import json
 import re
 import tomllib
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.app.program import BEAMDYN
+from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.app import tasks
 from beamdyn.common.app.browser_memory import named_designs, read_typed, refused_name
 from beamdyn.common.app.comparison import (
@@ -23,6 +24,7 @@ from beamdyn.common.app.comparison import (
     result_differences,
     with_ghost,
 )
+from beamdyn.common.app.comparison_panel import headline_of
 from beamdyn.common.app.design_link import LinkedDesign
 from beamdyn.common.app.examples import examples_of
 from beamdyn.common.app.handles import draw_sheet
@@ -257,6 +259,20 @@ def test_each_screen_has_a_headline(document):
         found = screen.headline(work.answered[screen.name].answer)
         assert len(found) <= 4 and (found or screen.name == "Rotor")  # which draws the inputs
         assert all(result.words and result.value for result in found)
+
+
+def test_the_page_shows_the_headline_that_comes_with_the_answer():
+    """Of an answer that comes from another process the page would have to compute the model error anew."""
+
+    def fail(answer):
+        raise AssertionError("computed in the process that serves")
+
+    work = OpenDocument(SCENE)
+    (screen,) = (screen for screen in SCENE.screens if screen.name == "Mode shapes")
+    held, full = (task(SCENE, screen, work.entries) for task in (tasks.glance, tasks.solve))
+    shown = replace(screen, headline=fail, quick_headline=fail)
+    assert "model error at most" in headline_of(work, shown, full)
+    assert "first frequency" in (quick := headline_of(work, shown, held)) and "model error" not in quick
 
 
 def test_headline_of_a_truck_that_never_stops():

@@ -70,7 +70,7 @@ def test_port_that_is_none(said, port):
 
 
 def test_port_that_is_no_number(said):
-    assert "--port" in (sentence := said("--port", "http")) and "int" in sentence
+    assert "--port" in (sentence := said("--port", "http")) and "whole number" in sentence
 
 
 @needs_server

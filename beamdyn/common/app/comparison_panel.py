@@ -55,5 +55,5 @@ class ComparisonPanel:
 def headline_of(work: OpenDocument, screen: Screen, answered: Answered) -> str:
     """The most important results of an answer in HTML, beside those of the design it is compared with."""
     there = work.compared.get(screen.name)
-    other = () if there is None else screen.headline(there.answer)
-    return headline_html(screen.headline(answered.answer), other, work.other.name if work.other else "")
+    other = () if there is None else there.headline
+    return headline_html(answered.headline, other, work.other.name if work.other else "")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from beamdyn.common.app.comparison import OtherDesign
 from beamdyn.common.app.form_entries import Entries, by_field, tables_of, toml_of
 from beamdyn.common.app.history import History
-from beamdyn.common.app.screens import Document, Screen
+from beamdyn.common.app.screens import Document, KeyResult, Screen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 
@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Answered:
-    """An answer, what is said of it, and the entries that it belongs to."""
+    """An answer, what is said of it, the entries that it belongs to, and the results that matter most."""
 
     answer: Any
     tables: Sequence[RenderableType]
     notes: Sequence[str]
     entries: Entries
+    headline: Sequence[KeyResult] = ()
 
 
 @dataclass(frozen=True)
@@ -50,18 +51,20 @@ class OpenEntries:
         try:
             answer = self.screen.solve(tables_of(self.entries, self.inputs, self.screen.needs))
             tables, notes = [*self.screen.tables(answer)], [*self.screen.notes(answer)]
+            headline = [*self.screen.headline(answer)]
         except (ValueError, ArithmeticError, NoAnswer) as error:
             return by_field(error, self.inputs, self.entries)
-        return Answered(answer, tables, notes, self.entries)
+        return Answered(answer, tables, notes, self.entries, headline)
 
-    def glance(self, last: Answered) -> Answered | Mapping[str, list[str]]:
-        """The answer as far as a drawing shows it, with the tables and notes of the last one."""
+    def glance(self) -> Answered | Mapping[str, list[str]]:
+        """The answer as far as a drawing shows it, without tables and notes."""
         try:
             tables = tables_of(self.entries, self.inputs, self.screen.needs)
             answer = self.screen.solve(self.screen.coarser(tables))
+            headline = [*(self.screen.quick_headline or self.screen.headline)(answer)]
         except (ValueError, ArithmeticError, NoAnswer) as error:
             return by_field(error, self.inputs, self.entries)
-        return Answered(answer, last.tables, last.notes, self.entries)
+        return Answered(answer, (), (), self.entries, headline)
 
 
 @dataclass
@@ -190,9 +193,3 @@ class OpenDocument:
     def solve(self, screen: Screen) -> bool:
         """Solve the present entries; on failure the last answer is kept, and `mistakes` says why."""
         return self.keep(screen, self.attempt(screen).solve())
-
-    def glance(self, screen: Screen) -> bool:
-        """Solve for the drawing alone, as `solve`; in full where there is no answer yet."""
-        last = self.answered.get(screen.name)
-        attempt = self.attempt(screen)
-        return self.keep(screen, attempt.solve() if last is None else attempt.glance(last))

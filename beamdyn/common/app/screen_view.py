@@ -38,7 +38,7 @@ from beamdyn.common.app.sweep_panel import SweepPanel
 from beamdyn.common.app.under_way import UnderWay
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.rendering import csv_text, html
+from beamdyn.common.edge.rendering import html
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
 _CHARTS_APART = 0.1  # pictures of charts while the slider is played: a browser takes 5 to 10 ms for each [s]
@@ -455,9 +455,10 @@ class ScreenView:
             await download(made, f"{self._name}.{kind}")
 
     async def _csv(self) -> None:
+        """Download the numbers."""
         await self.settled()
         if answered := self.work.answered.get(self.screen.name):
-            ui.download.content(csv_text(self.screen.rows(answered.answer)).encode(), f"{self._name}.csv")
+            await download(self._make(tasks.rows_file, answered.answer), f"{self._name}.csv")
 
     @property
     def _name(self) -> str:

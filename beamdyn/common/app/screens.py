@@ -183,6 +183,8 @@ class Screen:
         Lists of named things that stand above its form.
     headline : callable
         Answer in; the two to four results that matter most out, each in a few words.
+    quick_headline : callable, optional
+        The same while something is held, without what takes time; the headline if not given.
     effort : str
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional
@@ -213,6 +215,7 @@ class Screen:
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
     lists: Lists | None = None
     headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
+    quick_headline: Callable[[Any], Sequence[KeyResult]] | None = None
     effort: str = ""
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
     branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}

@@ -12,7 +12,7 @@ from beamdyn.common.app.screens import Document, Screen
 from beamdyn.common.checks import reason_of
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.rendering import drawing, picture, png
+from beamdyn.common.edge.rendering import csv_text, drawing, picture, png
 
 Outcome = Answered | Mapping[str, list[str]]  # an answer, or what is wrong, by field
 Swept = InputSweep | str  # a sweep, or why there is none
@@ -25,8 +25,7 @@ def solve(document: Document, screen: Screen, entries: Entries) -> Outcome:
 
 def glance(document: Document, screen: Screen, entries: Entries) -> Outcome:
     """The answer as far as a drawing shows it, without tables and notes."""
-    attempt = _opened(document, entries).attempt(screen)
-    return attempt.glance(Answered(None, (), (), {}))
+    return _opened(document, entries).attempt(screen).glance()
 
 
 def sweep(document: Document, screen: Screen, entries: Entries, text: str, results: str) -> Swept:
@@ -45,6 +44,11 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
     """One of the parts of an answer that fold out, in HTML."""
     return screen.more[number].on_page(answer)
+
+
+def rows_file(document: Document, screen: Screen, answer: Any) -> str:
+    """The numbers of an answer as a CSV file; of the beam's with its model error, which takes time."""
+    return csv_text(screen.rows(answer))
 
 
 def drawing_file(document: Document, screen: Screen, answer: Any, place: float, kind: str) -> bytes:
