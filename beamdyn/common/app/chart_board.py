@@ -42,6 +42,50 @@ _KEYS = """(event) => {
 _NO_SIGNS = {"toolbox": {"show": False}}  # while something is held: they are made anew for each picture
 
 
+class _ShownChart:
+    """A chart below its heading on the page, zoomed and moved by keys; it is kept and given new data."""
+
+    def __init__(self, writer: PageWriter) -> None:
+        self._writer = writer
+        self._options: dict[str, Any] = {}
+        self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
+        self._element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
+        self._element.on("keydown", js_handler=_KEYS % self._element.id)
+
+    @property
+    def id(self) -> int:
+        """Number of its element."""
+        return self._element.id
+
+    def set_visibility(self, visible: bool) -> None:
+        """Show it, or hide it."""
+        for part in (self.heading, self._element):
+            part.set_visibility(visible)
+
+    def fill(self, chart: Chart) -> None:
+        """Show another chart."""
+        self.heading.set_text(chart.title)
+        last, self._options = self._options, options_of(chart)
+        with self._element.props.suspend_updates():
+            self._element.props["aria-label"] = chart.words
+        if self._writer.is_ahead:
+            others = {name: value for name, value in self._options.items() if last.get(name) != value}
+            self._writer.write(self._element, {"options": _without_scripts(others) | _NO_SIGNS})
+            self._writer.tell_later(self)
+        else:
+            self.update()
+
+    def update(self) -> None:
+        """Tell the toolkit what is shown; not while something is held, as it wraps each number of a curve."""
+        with self._element.props.suspend_updates():
+            self._element.props["options"] = self._options
+        self._element.update()
+
+    def move_cursor(self, chart: Chart) -> None:
+        """Show the marks of a chart, of which nothing else has changed."""
+        self._element.run_chart_method("setOption", {"series": [marks_of(chart)]})
+
+
 class ChartBoard:
     """Charts below one another; each is kept and given new data, so that zooming lasts.
 
@@ -55,7 +99,7 @@ class ChartBoard:
 
     def __init__(self, words: str, writer: PageWriter) -> None:
         self._writer = writer
-        self._made: list[tuple[Any, Any]] = []  # headings and charts
+        self._made: list[_ShownChart] = []
         self._shown: list[dict[str, Any]] = []  # options, but for what moves with the player
         self._column: Any = ui.column().classes("w-full gap-0 charts")
         self._column.props["data-words"] = words
@@ -66,43 +110,23 @@ class ChartBoard:
         """Show these charts in place of the last ones."""
         while len(self._made) < len(charts):
             with self._column:
-                self._made.append(self._make())
-        with self._writer.writing(self._column, self._how, *(heading for heading, _ in self._made)):
+                self._made.append(_ShownChart(self._writer))
+        with self._writer.writing(self._column, self._how, *(made.heading for made in self._made)):
             self._put(charts)
 
     def _put(self, charts: Sequence[Chart]) -> None:
-        for i, parts in enumerate(self._made):
-            for part in parts:
-                part.set_visibility(i < len(charts))
+        for i, made in enumerate(self._made):
+            made.set_visibility(i < len(charts))
         last, self._shown = self._shown, [options_of(replace(chart, cursor=None)) for chart in charts]
         if last != self._shown:
             self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
             self._column.update()
             self._how.set_visibility(bool(charts))
-        for i, ((heading, made), chart) in enumerate(zip(self._made, charts, strict=False)):
-            if last[i : i + 1] == [self._shown[i]]:  # the cursor alone has moved
-                made.run_chart_method("setOption", {"series": [marks_of(chart)]})
-                continue
-            heading.set_text(chart.title)
-            self._fill(made, chart)
-
-    def _fill(self, made: Any, chart: Chart) -> None:
-        with made.props.suspend_updates():
-            made.props["aria-label"] = chart.words
-            last, made.props["options"] = made.props["options"], (options := options_of(chart))
-        if self._writer.is_ahead:
-            others = {name: value for name, value in options.items() if last.get(name) != value}
-            self._writer.write(made, {"options": _without_scripts(others) | _NO_SIGNS})
-            self._writer.tell_later(made)
-        else:
-            made.update()
-
-    def _make(self) -> tuple[Any, Any]:
-        """A heading, and a chart below it that keys zoom and move."""
-        heading = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
-        chart = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
-        chart.on("keydown", js_handler=_KEYS % chart.id)
-        return heading, chart
+        for i, (made, chart) in enumerate(zip(self._made, charts, strict=False)):
+            if last[i : i + 1] == [self._shown[i]]:
+                made.move_cursor(chart)
+            else:
+                made.fill(chart)
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:

@@ -200,13 +200,26 @@ def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -
     -------
     list of Input
     """
-    made = _described(model, prefix) if choose is _each else _describe_all(model, prefix, choose)
-    return list(made)
+    chosen = choose is not _each and _has_alternatives(model)
+    return list(_describe_all(model, prefix, choose) if chosen else _described(model, prefix))
 
 
 @lru_cache(maxsize=256)  # forms ask for them at each change of a field
 def _described(model: type[BaseModel], prefix: str) -> tuple[Input, ...]:
     return tuple(_describe_all(model, prefix, _each))
+
+
+@lru_cache(maxsize=256)
+def _has_alternatives(model: type[BaseModel]) -> bool:
+    """Whether a table within it has several models."""
+    tables = [_models_of(field) for field in model.model_fields.values()]
+    return any(len(models) > 1 or any(map(_has_alternatives, models)) for models in tables)
+
+
+def _models_of(field: FieldInfo) -> list[type[BaseModel]]:
+    """The models that describe a table."""
+    parts = [*parts_of(field.annotation), *field.metadata]
+    return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
 
 
 def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> Iterator[Input]:
@@ -215,11 +228,10 @@ def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> Iterat
 
 
 def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Choice) -> list[Input]:
-    parts = [*parts_of(field.annotation), *field.metadata]
-    models = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
-    if models:
+    if models := _models_of(field):
         chosen = choose(path, models) if len(models) > 1 else models
         return [entry for model in chosen for entry in describe(model, path + ".", choose)]
+    parts = [*parts_of(field.annotation), *field.metadata]
     described = next((p for p in parts if isinstance(p, Quantity)), Quantity(meaning=field.description or ""))
     choices = next((get_args(p) for p in parts if get_origin(p) is Literal), ())
     required = field.is_required()
