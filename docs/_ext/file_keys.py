@@ -83,7 +83,14 @@ def write_tables(app, docname: str, source: list[str]) -> None:
     if not MARK.search(source[0]):
         return
     source[0] = MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2])), source[0])
-    for file in _described_in():
+
+
+def note_sources(app, docname: str, source: list[str]) -> None:
+    """The page is written anew when what describes its keys has changed."""
+    marks = [*MARK.finditer(source[0])]
+    for mark in marks:
+        import_module(mark[1])
+    for file in _described_in() if marks else ():
         app.env.note_dependency(file)
 
 
@@ -95,5 +102,6 @@ def _described_in() -> Iterator[str]:
 
 
 def setup(app) -> dict[str, bool]:
+    app.connect("source-read", note_sources)  # before the marks are replaced
     app.connect("source-read", write_tables)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -83,7 +83,7 @@ def commands():
     from brakes.config.forklift import load_forklift
 
     yield pytest.param(
-        lambda: FORKLIFT.solve(load_forklift(ROOT / "examples" / "forklift.toml"))._all_drawings(),
+        lambda: FORKLIFT.solve(load_forklift(ROOT / "examples" / "forklift.toml"))._drawn(None),
         id="forklift",
     )
 

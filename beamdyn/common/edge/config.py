@@ -210,7 +210,7 @@ def _found(given: Any, place: str) -> Any:
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
     """What a refusal by the core says of what is given at a place of a file, as that has it."""
-    kind = type(refusal) if isinstance(refusal, InvalidInput) else InvalidInput
+    kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal) | {"field": place}
     return str(_as_written(kind(**said), given))
 
