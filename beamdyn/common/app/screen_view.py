@@ -41,7 +41,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import html
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
-_CHARTS_APART = 0.1  # pictures of charts while the slider is played: a browser takes 5 to 10 ms for each [s]
+_CHARTS_APART = 0.1  # pictures of charts beside a drawing that moves: a browser takes 5 to 10 ms for each [s]
 
 
 class ScreenView:
@@ -391,7 +391,8 @@ class ScreenView:
             self.screen, answer, self.progress, self.board.held or view, other, name, self.narrow
         )
         self._drawn = made.name or self.screen.name
-        if not self._plays or monotonic() - self._charted >= _CHARTS_APART:
+        moves = self._plays or (self.dragged and made.view is not None)
+        if not moves or monotonic() - self._charted >= _CHARTS_APART:
             self._chart(answer)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
 
