@@ -27,7 +27,6 @@ _ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # where on a member its label m
 _CABLE = (5.0, 3.0)
 _SPRING = (1.5, 2.0)
 _BODIES, _MEMBERS, _FORCES = 1, 2, 3  # priorities of labels
-_PANEL = 320.0  # width and height of a free body's panel [pt]
 _ROOM = 45.0  # around a mechanism that moves [pt]
 _COUPLE = 1e-12  # couples below are rounding [N m]
 
@@ -269,7 +268,7 @@ def free_body_diagrams(equilibria: Mapping[str, Equilibrium]) -> Figure:
     from beamdyn.common.drawing.sheet import Paper
 
     rows = free_body_drawings(equilibria)
-    return figure_of(rows, Paper(_PANEL * max(map(len, rows)), (_PANEL,) * len(rows)))
+    return figure_of(rows, Paper.of_squares(rows))
 
 
 def free_body_drawings(equilibria: Mapping[str, Equilibrium]) -> list[list[Drawing]]:

@@ -14,8 +14,6 @@ from beamdyn.common.edge.rendering import drawing, html, picture
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-PANEL = 320.0  # width and height of each drawing [pt]
-
 
 class FoldedPart(Protocol):
     """A part of a screen that folds out; it is made when it is wanted."""
@@ -52,13 +50,13 @@ class FoldedDrawings:
     def on_page(self, answer: Any) -> str:
         """The drawings as SVG."""
         rows = self.rows(answer)
-        paper = paper_of(rows)
+        paper = Paper.of_squares(rows)
         return element(lay_out(rows, paper), paper)
 
     def in_report(self, answer: Any) -> str:
         """The drawings as a picture."""
         rows = self.rows(answer)
-        return picture(drawing(lambda: figure_of(rows, paper_of(rows))), self.title)
+        return picture(drawing(lambda: figure_of(rows, Paper.of_squares(rows))), self.title)
 
 
 @dataclass(frozen=True)
@@ -83,8 +81,3 @@ class FoldedTable:
     def in_report(self, answer: Any) -> str:
         """The table."""
         return self.on_page(answer)
-
-
-def paper_of(rows: Rows) -> Paper:
-    """Paper with a square for each drawing."""
-    return Paper(PANEL * max(map(len, rows)), (PANEL,) * len(rows))

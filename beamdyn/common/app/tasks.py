@@ -38,7 +38,7 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
         return reason_of(error)
 
 
-# Pictures by matplotlib, which take long -----------------------------------------------------------------
+# What is made of an answer and takes long: it would hold up the pages -------------------------------------
 
 
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:

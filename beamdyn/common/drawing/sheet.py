@@ -14,6 +14,7 @@ WIDTH = 680.0  # of a sheet
 _LOWEST, _HIGHEST = 300.0, 600.0  # heights of a row
 _DETAIL = 0.65  # width of a detail over that of a drawing beside it
 _AROUND = 100.0  # room for title, key and labels around what is drawn
+_SQUARE = 320.0  # side of a drawing of its own [pt]
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,11 @@ class Paper:
     def of(cls, rows: Rows, width: float = WIDTH) -> Paper:
         """Paper for drawings: rows as high as what is drawn in them asks for, within bounds."""
         return cls(width, tuple(_height(row, width) for row in rows))
+
+    @classmethod
+    def of_squares(cls, rows: Rows) -> Paper:
+        """Paper with a square for each drawing, as for free bodies."""
+        return cls(_SQUARE * max(map(len, rows)), (_SQUARE,) * len(rows))
 
 
 def _widths(row: Sequence[Drawing], width: float) -> list[float]:
