@@ -6,11 +6,12 @@ import re
 from collections.abc import Sequence
 from typing import Literal, get_args, get_origin
 
-from cyclopts import App, CycloptsError, UnknownOptionError, UnusedCliTokensError
+from cyclopts import App, CoercionError, CycloptsError, UnknownOptionError, UnusedCliTokensError
 
 _OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # under which options are looked for
 _KINDS = {"float": "is not a number", "int": "is not a whole number", "bool": "is no value of a switch"}
-_CONVERSION = re.compile(r'unable to convert (".*") into (\w+)')
+_CONVERSION = re.compile(r'unable to convert "(.*)" into (\w+)')
+_QUOTED_OPTION = re.compile(r'"(--?[\w-]+)"')  # as the lowest version admitted writes them
 
 
 def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
@@ -26,7 +27,8 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
         The words after the program's name.
     """
     command = [word for word in given[:1] if word in set(app.resolved_commands())]
-    return f"{_say(error, given)} See {' '.join([app.name[0], *command])} --help."
+    said = _QUOTED_OPTION.sub(r"\1", _say(error, given))
+    return f"{said} See {' '.join([app.name[0], *command])} --help."
 
 
 def _say(error: CycloptsError, given: Sequence[str]) -> str:
@@ -34,7 +36,18 @@ def _say(error: CycloptsError, given: Sequence[str]) -> str:
         return _with_meant_option(error, given)
     if isinstance(error, UnusedCliTokensError) and error.unused_tokens:
         return _say_too_many(error.unused_tokens, given)
-    return _CONVERSION.sub(lambda found: f"{found[1]} {_KINDS.get(found[2], 'is none')}", f"{error}")
+    if isinstance(error, CoercionError):
+        return _say_kind(error, given)
+    return f"{error}"
+
+
+def _say_kind(error: CoercionError, given: Sequence[str]) -> str:
+    """What a value is not; the lowest version admitted leaves out what a switch is given."""
+    start = f"{error.token.keyword}=" if error.token else "="
+    joined = next((text.removeprefix(start) for text in given if text.startswith(start)), "")
+    return _CONVERSION.sub(
+        lambda found: f'"{found[1] or joined}" {_KINDS.get(found[2], "is none")}', f"{error}"
+    )
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
