@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import BeyondModel, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
@@ -128,6 +129,7 @@ def _label(harmonic: int) -> str:
     return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
 
 
+@announced_of_plain_beam
 def frequency_response(
     scene: Scene,
     speed: float,
