@@ -194,7 +194,7 @@ def frequency_response(
     start = perf_counter()
     given = ascending("frequencies", frequencies)
     refuse(given < 0, "frequencies", given, "Hz", "give 0 or more")
-    refuse(given > _HIGHEST, "frequencies", given, "Hz", "give at most {limit}", limit=_HIGHEST)
+    refuse(given > _HIGHEST, "frequencies", given, "Hz", "at most {limit}", limit=_HIGHEST)
     drive, seen = as_excitation("input", input), as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
 
