@@ -395,3 +395,22 @@ def test_any_value_anywhere_is_a_scene_or_refused(scene, path, value):
 def test_any_text_is_a_scene_or_refused(text):
     with pytest.raises(ConfigError):
         parse_scene(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("a = " + "[" * 100_000, "its lists or tables are nested too deeply"),
+        ("a = " + "5" * 5000, "a number has thousands of digits"),
+        ("[beam]\nlength = 1979-05-27", "beam.length = 1979-05-27: not a number with a unit"),
+        ('["a\\nb"]', '"a\\nb": unknown key'),
+        ('["\\u001b[31mred"]', '"\\u001b[31mred": unknown key'),
+        ("[" + "x" * 100_000 + "]", '"' + "x" * 56 + "...: unknown key"),
+    ],
+)
+def test_files_that_are_odd_are_told_so_in_plain_words(tmp_path, text, said):
+    (tmp_path / "odd.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigError) as refused:
+        load_scene(tmp_path / "odd.toml")
+    assert said in str(refused.value)
+    assert max(map(len, str(refused.value).splitlines())) < 500

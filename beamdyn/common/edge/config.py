@@ -110,7 +110,13 @@ def parse(text: str, source: str) -> dict[str, Any]:
     """
     try:
         return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
+    except RecursionError:
+        raise ConfigError(
+            source, ["its lists or tables are nested too deeply; give a file of tables"]
+        ) from None
+    except ValueError as error:
+        if "set_int_max_str_digits" in f"{error}":  # of Python, to its programmers
+            raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None
         remedy = 'a quantity stands in quotes: length = "50 mm"'
         if re.match("Cannot (overwrite|declare|mutate)", f"{error}"):
             remedy = "give each key and each [table] once"
@@ -141,6 +147,7 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
         raise ConfigError(source, [*mistakes], [*mistakes.values()]) from None
 
 
+_LONGEST_KEY = 60  # that is shown whole
 _WORDS = {
     "bool_type": "give true or false",
     "dict_type": "give a table",
@@ -285,7 +292,8 @@ def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     prefix = table and f"{table}."
     inside = [i.path.removeprefix(prefix) for i in describe(model) if i.path.startswith(prefix)]
     known = list(dict.fromkeys(path.partition(".")[0] for path in inside))
-    place = f"{_path(loc[:-1])}.{key}".removeprefix(".")
+    shown = key if key.isprintable() and len(key) <= _LONGEST_KEY else show(key)
+    place = f"{_path(loc[:-1])}.{shown}".removeprefix(".")
     return (
         f"{place}: unknown key; {_nearest(model, table, key, known or ['polynomial', 'stations', 'values'])}"
     )

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable
+from datetime import date, time
 from decimal import Decimal
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
@@ -141,6 +142,8 @@ def _toml(value: object, depth: int) -> str:
             return f"[{', '.join(show(v, depth - 1) for v in value)}]"
         case dict() if value:
             return f"{{ {', '.join(f'{k} = {show(v, depth - 1)}' for k, v in value.items())} }}"
+        case date() | time():
+            return value.isoformat()
     return repr(value)
 
 
