@@ -108,3 +108,10 @@ def test_a_size_below_all_bounds_is_told_the_bound_in_its_unit(tmp_path, capsys)
     (tmp_path / "small.toml").write_text(small)
     assert main(["modes", str(tmp_path / "small.toml")]) == BAD_INPUT
     assert 'beam.length = "1e-60 mm": give a size of 1e-47 mm or more' in capsys.readouterr().err
+
+
+def test_a_cell_longer_than_any_number_is_refused_by_its_line(tmp_path):
+    """It was a traceback."""
+    (tmp_path / "long.csv").write_text("f [Hz], psd [m2/s4/Hz]\n1, 1\n" + "5" * 200_000 + ", 1\n")
+    with pytest.raises(ConfigError, match=r"line 3: a cell has more than \d+ characters"):
+        read_spectrum(tmp_path / "long.csv", "m2/s4/Hz")

@@ -109,7 +109,11 @@ def _delimiter(heads: str) -> str:
 
 
 def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
-    (cells,) = csv.reader([text.lines[line - 1]], delimiter=delimiter, skipinitialspace=True)
+    try:
+        (cells,) = csv.reader([text.lines[line - 1]], delimiter=delimiter, skipinitialspace=True)
+    except csv.Error:  # the one that there is of a single line of text
+        most = csv.field_size_limit()
+        raise text.refusal(line, f"a cell has more than {most} characters; give a number in each") from None
     return [cell.strip() for cell in cells]
 
 
