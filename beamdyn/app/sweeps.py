@@ -20,17 +20,9 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.designs import check_designs
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.input_sweep import (
-    MOST_ONE_BY_ONE,
-    InputSweep,
-    Output,
-    chosen,
-    designs_of,
-    numbers,
-    one_by_one,
-    parse_axis,
-    solve_cases,
-)
+from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen
+from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, one_by_one, solve_cases
+from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
 from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR
 from beamdyn.output.notes import note_below
 from beamdyn.scene.scene import Scene

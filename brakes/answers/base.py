@@ -22,23 +22,11 @@ from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import parse, read, validated
-from beamdyn.common.edge.input_sweep import (
-    MOST_AT_ONCE,
-    MOST_ONE_BY_ONE,
-    Axis,
-    CaseTask,
-    InputSweep,
-    Output,
-    SolvedCases,
-    chosen,
-    designs_of,
-    one_by_one,
-    parse_axis,
-    solve_cases,
-    swept,
-)
+from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, swept
 from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, CaseTask, SolvedCases, one_by_one, solve_cases
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.one_line import counted, error_at_most
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results import Provenance, Result, plain

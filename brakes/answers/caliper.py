@@ -19,10 +19,11 @@ from beamdyn.common.described import descriptions
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
-from beamdyn.common.edge.input_sweep import Output, numbers
+from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs

@@ -22,9 +22,10 @@ from beamdyn.common.app.processes import TakesTooLong, TaskTaker
 from beamdyn.common.app.screens import Screen, Sweeps
 from beamdyn.common.app.sweep_charts import sweep_charts
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
+from beamdyn.common.edge.input_sweep import InputSweep, sweep_csv
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text
+from beamdyn.common.edge.varied_inputs import Coordinate, numbers
 
 _USUAL = {"m": "mm", "rad": "deg"}  # where no unit is given
 _COUNT, _AROUND = 21, 0.2  # values of a sweep to begin with, and how far they go, as a part of the value

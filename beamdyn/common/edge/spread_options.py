@@ -101,7 +101,7 @@ def parse_spreads(
     ValueError
         If there is no such input, it is given twice, or its tolerance is none.
     """
-    from beamdyn.common.edge.input_sweep import find_input
+    from beamdyn.common.edge.varied_inputs import find_input
 
     made: dict[str, SpreadInput] = {}
     for text in texts:
