@@ -1,4 +1,4 @@
-"""How the page of an interactive program looks: its layout by width, its colours on light and dark ground."""
+"""Style of an interactive program's page: layout by width, colours for light and dark."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ body {{ font-size: 15px; }}
 body:has(#popup[aria-hidden="false"]) #app {{ opacity: 0.5; pointer-events: none;
   transition: opacity 0.5s 2s; }}
 """
-# On a narrow page: what comes out and its picture first, then the form, then the tables.
+# On a narrow page: the main results and the picture first, then the form, then the tables.
 _NARROW = """
 @media (max-width: 1000px) {
   .nicegui-header { flex-wrap: wrap; }
