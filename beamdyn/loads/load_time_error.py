@@ -29,7 +29,7 @@ def time_errors_of_rows(rows: LoadRows, system: ModalSystem, path: Path, of_tip:
 def largest_per_coordinate(
     rows: LoadRows, system: ModalSystem, path: Trajectory, frequencies: np.ndarray
 ) -> np.ndarray:
-    """Largest load over the run per unit of the amplitude of each coordinate: shape (S, K, n)."""
+    """Largest load over the run per unit amplitude of each coordinate: shape (S, K, n)."""
     root = system.root(path.samples[0])  # several in each step: steps are short where a shock acts
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):
