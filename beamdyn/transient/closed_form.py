@@ -197,19 +197,13 @@ def _free(
     direction of the shape, in which the exponent changes instead.
     """
     n, sums = len(K), harmonics.sums(order)
-    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
-    upper = np.imag(values) > 0
-    if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:
+    unmodulated = _unmodulated(C, K)
+    if unmodulated is None or n * len(sums) > 4 * _MOST_HARMONICS:
         return None
-    exponent, shape = values[upper], vectors[:n, upper].T
-    shape = shape / np.linalg.norm(shape, axis=1)[:, None]
+    exponent, shape = unmodulated
     own = int(np.abs(sums).argmin())
     inverse = np.linalg.inv(_stiffness_beside(exponent, 1j * sums, own, C, K))
-    border = np.empty((n, n + 1, n + 1), complex)
-    border[:, :n, :n] = _stiffness(exponent, C, K)
-    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
-    border[:, n, :n], border[:, n, n] = shape.conj(), 0
-    bordered = np.linalg.inv(border)
+    bordered = np.linalg.inv(_bordered_stiffness(exponent, shape, C, K))
     P = np.zeros((n, len(sums), n), complex)
     P[:, own] = shape
     coupling, before = harmonics.coupling(sums), np.inf
@@ -225,6 +219,27 @@ def _free(
             break
         before = change
     return exponent[:, None] + 1j * sums, P
+
+
+def _unmodulated(C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Exponents (n,) and unit shapes (n, n) of free vibrations by C and K; None if one does not oscillate."""
+    n = len(K)
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
+    upper = np.imag(values) > 0
+    if upper.sum() != n:
+        return None
+    shape = vectors[:n, upper].T
+    return values[upper], shape / np.linalg.norm(shape, axis=1)[:, None]
+
+
+def _bordered_stiffness(exponent: np.ndarray, shape: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Dynamic stiffness at n exponents, bordered by its change with the exponent, and by the shape."""
+    n = len(K)
+    border = np.empty((n, n + 1, n + 1), complex)
+    border[:, :n, :n] = _stiffness(exponent, C, K)
+    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
+    border[:, n, :n], border[:, n, n] = shape.conj(), 0
+    return border
 
 
 def _stiffness_beside(

@@ -17,7 +17,7 @@ from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgetrf, dgetrs
 
 from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
-from beamdyn.transient.gauss import BLOCK, Segment, Tableau, tableau
+from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, tableau
 
 _ITERATIONS = 30  # of Newton's method
 _CONVERGED = 1e-13  # error of the accelerations over their size that may be left
@@ -66,9 +66,7 @@ def propagate_elastica(
     """
     h, n = (t1 - t0) / steps, system.size
     step = _Step(system, h, tableau(stages))
-    state = np.empty((steps + 1, 2 * n + 1))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    acceleration = np.empty((steps, stages, n))
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
     known = None if like is None else at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
     with np.errstate(over="ignore", invalid="ignore"):  # of a step that is too long, which is refused

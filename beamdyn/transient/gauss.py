@@ -304,17 +304,22 @@ def propagate(
     -------
     Segment
     """
-    h, n = (t1 - t0) / steps, system.size
-    state = np.empty((steps + 1, 2 * n + 1))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    acceleration = np.empty((steps, stages, n))
-    powers = None
+    h, powers = (t1 - t0) / steps, None
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
     for first in range(0, steps, BLOCK):
         block = slice(first, min(first + BLOCK, steps))
         maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
         powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
         acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
     return Segment(t0, h, state, acceleration)
+
+
+def allocate_steps(steps: int, stages: int, q0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Allocate the arrays `state` and `acceleration` of a segment, of which the first state is known."""
+    n = len(q0)
+    state = np.empty((steps + 1, 2 * n + 1))
+    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    return state, np.empty((steps, stages, n))
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:

@@ -25,6 +25,7 @@ from beamdyn.transient.gauss import (
     StepMaps,
     Tableau,
     advance,
+    allocate_steps,
     components,
     interpolate,
     interpolate_each,
@@ -275,9 +276,7 @@ def propagate_record(
     Many equal steps, each between two samples, take maps that are expanded about the mean motion of a block
     of them; `accuracy` is the relative error that the truncated series may cause in all.
     """
-    N, n = len(steps), system.size
-    state, acceleration = np.empty((N + 1, 2 * n + 1)), np.empty((N, stages, n))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    state, acceleration = allocate_steps(len(steps), stages, q0, v0)
     for block in steps.blocks:
         ends = slice(block.start, block.stop + 1)
         if not _expand(system, steps, block, state[ends], acceleration[block], accuracy):

@@ -9,7 +9,7 @@ a factorisation of its own, and the maps of many steps are one product of matric
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, reduce
 
@@ -20,6 +20,7 @@ from beamdyn.transient.gauss import (
     Tableau,
     add_drift,
     advance,
+    allocate_steps,
     increment,
     left_side,
     right_side,
@@ -411,35 +412,46 @@ def propagate_modulated(
     Segment or None
         None if the stiffness varies too strongly for the series, or too fast for the polynomials.
     """
-    h, n, table = (t1 - t0) / steps, len(q0), tableau(stages)
+    h, table = (t1 - t0) / steps, tableau(stages)
     expansion = _expand(system, t0, h, steps, table, accuracy)
     if expansion is None:
         return None
-    state, acceleration = np.empty((steps + 1, 2 * n + 1)), np.empty((steps, stages, n))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    all_e = all_g = np.empty(0)
-    for first in range(0, steps, _STEPS):
-        block = slice(first, min(first + _STEPS, steps))
-        k = np.arange(block.start, block.stop)
-        if first % _SAMPLED == 0:
-            sampled = np.arange(first, min(first + _SAMPLED, steps))
-            all_e, all_g = system.scalars(t0 + h * (sampled[:, None] + table.c))
-        here = slice(first % _SAMPLED, first % _SAMPLED + len(k))
-        e, g = all_e[here], all_g[here]
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
+    for block, e, g in _blocks(system, t0, h, steps, table):
         if steps * (expansion.ratio * np.abs(e).max(axis=(0, 1))).sum() ** 3 > accuracy:
             return None
-        start, end = (2 * x / max(steps - 1, 1) - 1 for x in (int(k[0]), int(k[-1])))
-        local = expansion.over(start, end)
-        T = local.polynomials(2 * (k - k[0]) / max(len(k) - 1, 1) - 1)
-        e, g = np.moveaxis(e, 2, 1).reshape(len(k), -1), g.reshape(len(k), -1)  # e over (step, (m, node))
-        maps = local.steps(T, e)
-        affine = np.empty((len(k), 2 * n, 2 * n + 1))
-        np.matmul(maps[:, :, 2 * n :], g[:, :, None], out=affine[:, :, :1])
-        affine[:, :, 1:] = maps[:, :, : 2 * n]
-        advance(affine, state[first : block.stop + 1])
-        z = np.concatenate([state[block, 1:], g], axis=1)
-        acceleration[block] = local.accelerations(T, e, z).reshape(len(k), stages, n)
+        start, end = (2 * k / max(steps - 1, 1) - 1 for k in (block.start, block.stop - 1))
+        ends = slice(block.start, block.stop + 1)
+        _advance_block(expansion.over(start, end), e, g, state[ends], acceleration[block])
     return Segment(t0, h, state, acceleration)
+
+
+def _blocks(
+    system: ModulatedSystem, t0: float, h: float, steps: int, table: Tableau
+) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+    """Yield blocks of steps, with e (N, s, m) and g (N, s, l) at the nodes of their N steps."""
+    for first in range(0, steps, _SAMPLED):
+        last = min(first + _SAMPLED, steps)
+        e, g = system.scalars(t0 + h * (np.arange(first, last)[:, None] + table.c))
+        for k in range(first, last, _STEPS):
+            here = slice(k - first, min(k + _STEPS, last) - first)
+            yield slice(k, min(k + _STEPS, last)), e[here], g[here]
+
+
+def _advance_block(
+    local: _Block, e: np.ndarray, g: np.ndarray, state: np.ndarray, acceleration: np.ndarray
+) -> None:
+    """Fill state[1:] of a block of N steps from state[0], and the accelerations at their nodes."""
+    N, columns = len(e), state.shape[1]
+    T = local.polynomials(2 * np.arange(N) / max(N - 1, 1) - 1)
+    e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)  # e over (step, (m, node))
+    maps = local.steps(T, e)
+    affine = np.empty((N, columns - 1, columns))
+    np.matmul(maps[:, :, columns - 1 :], g[:, :, None], out=affine[:, :, :1])
+    affine[:, :, 1:] = maps[:, :, : columns - 1]
+    advance(affine, state)
+    z = np.concatenate([state[:-1, 1:], g], axis=1)
+    acceleration[:] = local.accelerations(T, e, z).reshape(acceleration.shape)
 
 
 def _expand(
