@@ -30,12 +30,12 @@ from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.modes import Modes
 
 Kept = TypeVar("Kept")
-_COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the largest, how often these close in
+_COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, about the largest amplitude, and refinements of these
 
 
 @dataclass(frozen=True)
 class SweepCase:
-    """A case of a sweep: a scene, and how far and with how many modes; answers are computed when wanted.
+    """A case of a sweep: a scene with top speed and number of modes; answers are computed when wanted.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class SweepCase:
     top : float
         Top speed [rad/s].
     modes : int
-        How many modes.
+        Number of modes.
     """
 
     scene: Scene
@@ -81,7 +81,7 @@ class SweepCase:
 
     @property
     def first_resonance(self) -> float:
-        """The lowest of them; inf if there is none."""
+        """The lowest resonance speed [rad/s]; inf if there is none."""
         return float(self.crossings.min(initial=np.inf))
 
     def amplitudes(self, speeds: np.ndarray) -> np.ndarray:
@@ -159,7 +159,7 @@ def _frequency(mode: int, share: float, case: SweepCase) -> float:
 
 
 def steady_outputs(_: int) -> list[Output]:
-    """The steady amplitude at the top speed, and the largest on the way there."""
+    """The steady amplitude at the top speed, and the largest one up to there."""
     return [
         Output(
             "amplitude",
@@ -193,7 +193,7 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
 
 
 def _draw(swept: InputSweep) -> Figure:
-    """The sweep, its warnings below it: it may be taken away without the page."""
+    """The sweep with its warnings below it, as a picture may be used without the page."""
     return note_below(sweep_figure(swept), swept.warnings)
 
 

@@ -77,7 +77,7 @@ def _member_rows(equilibrium: Equilibrium) -> Iterable[Sequence[str]]:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """A force as text; not a number is what statics does not determine, and any force where friction jams."""
+    """A force as text; nan stands for a force that statics does not determine, or where friction jams."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"
