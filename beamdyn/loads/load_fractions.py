@@ -95,7 +95,7 @@ class LoadFractions:
 
 
 @dataclass(frozen=True)
-class Drives:
+class LinearLoads:
     """Loads at stations of a linear model: transfer functions from an excitation, and steady loads.
 
     Parameters
