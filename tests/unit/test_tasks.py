@@ -3,11 +3,15 @@
 import os
 import sys
 import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 
+PATIENCE = 60.0  # with a process that starts, on a machine that does much else [s]
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes of Unix")
 
 
@@ -17,13 +21,13 @@ def who(seconds: float) -> int:
     return os.getpid()
 
 
-def solvers(workers: int, seconds: list[float]) -> dict[int, int]:
+def solvers(workers: int, parts: list[Any], solve: Callable[[Any], int] = who) -> dict[int, int]:
     """The process that has solved each task, by the task's place."""
     found: dict[int, int] = {}
-    tasks = [Task(lambda s=s: s, 1, k) for k, s in enumerate(seconds)]
+    tasks = [Task(lambda part=part: part, 1, k) for k, part in enumerate(parts)]
     runner = TaskRunner(workers)
-    with runner.prepared(who, len(tasks)):
-        runner.run(who, tasks, found.__setitem__)
+    with runner.prepared(solve, len(tasks)):
+        runner.run(solve, tasks, found.__setitem__)
     return found
 
 
@@ -34,9 +38,20 @@ def test_the_caller_solves_beside_one_process_fewer_than_there_are_workers() -> 
     assert len(others) == 1 and os.getpid() in found.values()
 
 
-def test_tasks_that_wait_for_a_busy_worker_are_taken_back() -> None:
+def meet(part: tuple[Path, str]) -> int:
+    """The process that solves a part: the first waits for the second, the third for the first."""
+    folder, name = part
+    (folder / name).touch()
+    awaited = {"first": "second", "third": "first"}.get(name)
+    deadline = time.monotonic() + PATIENCE
+    while awaited and not (folder / awaited).exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return os.getpid()
+
+
+def test_tasks_that_wait_for_a_busy_worker_are_taken_back(tmp_path: Path) -> None:
     """The second waits behind the first, when the caller is done with the third."""
-    found = solvers(2, [4.0, 0.0, 2.0])
+    found = solvers(2, [(tmp_path, name) for name in ("first", "second", "third")], meet)
     assert found[0] != os.getpid()
     assert found[1] == found[2] == os.getpid()
 
