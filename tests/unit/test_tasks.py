@@ -15,10 +15,16 @@ PATIENCE = 60.0  # with a process that starts, on a machine that does much else 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes of Unix")
 
 
-def who(seconds: float) -> int:
-    """The process that solves a task of some duration."""
-    time.sleep(seconds)
+def who(_: object) -> int:
+    """The process that solves a task."""
     return os.getpid()
+
+
+def wait_until(true: Callable[[], bool]) -> None:
+    """Wait until something is true, or for as long as there is patience."""
+    deadline = time.monotonic() + PATIENCE
+    while not true() and time.monotonic() < deadline:
+        time.sleep(0.01)
 
 
 def solvers(workers: int, parts: list[Any], solve: Callable[[Any], int] = who) -> dict[int, int]:
@@ -31,8 +37,15 @@ def solvers(workers: int, parts: list[Any], solve: Callable[[Any], int] = who) -
     return found
 
 
-def test_the_caller_solves_beside_one_process_fewer_than_there_are_workers() -> None:
-    found = solvers(2, [0.05] * 40)
+def wait_for_both(folder: Path) -> int:
+    """The process that solves a part, when two processes have begun with one."""
+    (folder / str(os.getpid())).touch()
+    wait_until(lambda: len([*folder.iterdir()]) > 1)
+    return os.getpid()
+
+
+def test_the_caller_solves_beside_one_process_fewer_than_there_are_workers(tmp_path: Path) -> None:
+    found = solvers(2, [tmp_path] * 40, wait_for_both)
     assert sorted(found) == list(range(40))
     others = set(found.values()) - {os.getpid()}
     assert len(others) == 1 and os.getpid() in found.values()
@@ -43,9 +56,7 @@ def meet(part: tuple[Path, str]) -> int:
     folder, name = part
     (folder / name).touch()
     awaited = {"first": "second", "third": "first"}.get(name)
-    deadline = time.monotonic() + PATIENCE
-    while awaited and not (folder / awaited).exists() and time.monotonic() < deadline:
-        time.sleep(0.01)
+    wait_until(lambda: not awaited or (folder / awaited).exists())
     return os.getpid()
 
 
@@ -57,4 +68,4 @@ def test_tasks_that_wait_for_a_busy_worker_are_taken_back(tmp_path: Path) -> Non
 
 
 def test_one_worker_is_the_caller() -> None:
-    assert set(solvers(1, [0.0] * 3).values()) == {os.getpid()}
+    assert set(solvers(1, [None] * 3).values()) == {os.getpid()}
