@@ -102,7 +102,7 @@ def solve(tables: Mapping[str, Any]) -> Frequencies:
 
 
 def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The same with fewer speeds and digits, for a picture of it."""
+    """Tables of a coarser solution, with fewer speeds and digits, for the drawing."""
     return {**tables, _COARSE: {}}
 
 
@@ -161,7 +161,7 @@ def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
 
 
 def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
-    """Frequencies over speed with what is known of them."""
+    """Frequencies over speed, with lines, crossings, margins and the critical speed."""
     same = answer.have_same_physics
     return [
         frequency_chart(

@@ -70,7 +70,7 @@ class Trade:
         return 10.0**-self.digits
 
     def cheapest(self, diagram: Diagram) -> Digit | None:
-        """The cheapest measurement with so many digits; None if none has them."""
+        """The cheapest measurement with as many digits as asked for; None if none has them."""
         each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _ROUNDING)
         return next(each, None)
 

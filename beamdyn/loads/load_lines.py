@@ -113,7 +113,7 @@ def _solve(
 
 
 def _harmonics_that_matter(response: SteadyResponse) -> list[Pair]:
-    """Harmonics of the response, and their opposites, without those that are below rounding at all speeds."""
+    """Harmonics of the response, and their opposites, without those within rounding error at all speeds."""
     size = np.abs(response.line_amplitude) + np.abs(response.line_amplitude_across)
     matter = (np.nan_to_num(size) > _NEGLIGIBLE * np.nan_to_num(response.bound)[:, None]).any(axis=0)
     both = ((sign * int(j), sign * int(k)) for j, k in response.harmonics[matter] for sign in (1, -1))

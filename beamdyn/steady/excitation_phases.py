@@ -70,7 +70,7 @@ def periodic_system_of_each(
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Arrays of each speed as one; a view where all are the same."""
+    """Stack the arrays of all speeds; a view if they are one and the same array."""
     if all(array is arrays[0] for array in arrays):
         return np.broadcast_to(arrays[0], (len(arrays), *arrays[0].shape))
     return np.array(arrays)

@@ -44,7 +44,7 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
 
 
 def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """The same by one matrix over all harmonics, at each pair of rates."""
+    """Solve for some harmonics of the response by one matrix over all of them, at each pair of rates."""
     T = _real_basis(harmonics)
     y = _solve(*_assemble(system, harmonics, T))
     return T @ y.reshape(-1, len(harmonics), system.size)

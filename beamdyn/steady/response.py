@@ -355,7 +355,7 @@ class ResponseRequest(FieldsOnly):
         return Provenance(__version__, method, estimated, perf_counter() - start)
 
     def solve_with(self, scene: Scene, _: str = "") -> Answer:
-        """Amplitudes of another scene, with as many modes, or where it is of another kind at least those."""
+        """Amplitudes of another scene with as many modes, or more if only one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:

@@ -50,7 +50,7 @@ def solve_parts(
 def _solve_harmonics(
     system: PeriodicSystem, tips: np.ndarray, interactions: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed solved with as many as it needs."""
+    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed with the harmonics it needs."""
     S, d = tips.shape[:2]
     if not system.load_harmonics:
         return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
@@ -74,7 +74,7 @@ def _solve_harmonics(
 
 
 def _split(rows: np.ndarray, unknowns: int) -> list[np.ndarray]:
-    """Split indices of speeds, of so many unknowns each, into parts that fit into the cache."""
+    """Split indices of speeds, with `unknowns` each, into parts that fit into the cache."""
     return [p for p in np.array_split(rows, 1 + len(rows) * unknowns // _MOST_UNKNOWNS) if len(p)]
 
 

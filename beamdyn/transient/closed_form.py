@@ -22,13 +22,13 @@ from beamdyn.transient.time_error import (
 )
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
-_WORTH_IT = 200  # steps, below which they cost no more
+_WORTH_IT = 200  # number of steps below which these cost no more
 _ORDERS = (3, 5)  # powers of e that are tried
-_FIT_TIMES = 8  # for each harmonic of e and g, at which these are fitted
+_FIT_TIMES = 8  # times for each harmonic of e and g at which these are fitted
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 _FIT_ERROR = 1e-3  # of e and g, over the accuracy
-_SAME = 1e-9  # difference of frequencies that are the same, over the largest
-_ABSENT = 1e-12  # factor of a line over the largest, which the rounding of the fit alone makes
+_SAME = 1e-9  # difference of frequencies that count as equal, over the largest
+_ABSENT = 1e-12  # factor of a line, over the largest, that is rounding error of the fit
 _MOST_HARMONICS = 400
 _ITERATIONS = 30
 _CONVERGED = 1e-15
@@ -80,7 +80,7 @@ class _Harmonics:
         return cls(lines, np.tensordot(found[:, :m], system.G, axes=1), load, mean)
 
     def sums(self, order: int) -> np.ndarray:
-        """Sums of up to so many frequencies of the stiffness, ascending: shape (k,)."""
+        """Sums of up to `order` frequencies of the stiffness, ascending: shape (k,)."""
         varying = self.frequency[np.abs(self.stiffness).any(axis=(1, 2))]
         found = np.zeros(1)
         for _ in range(order):
@@ -88,7 +88,7 @@ class _Harmonics:
         return found
 
     def coupling(self, sums: np.ndarray) -> _Coupling:
-        """Which of some sums the varying stiffness couples."""
+        """The coupling of some sums of frequencies (k,) by the varying stiffness."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
         source = _places(sums, sums - self.frequency[varying, None])
         return _Coupling(source, self.stiffness[varying].swapaxes(1, 2))
@@ -96,7 +96,7 @@ class _Harmonics:
 
 @dataclass(frozen=True)
 class _Coupling:
-    """What the varying stiffness makes of a motion at some sums of frequencies.
+    """Forces of the varying stiffness on a motion, between sums of frequencies.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _distinct(frequencies: np.ndarray) -> np.ndarray:
 
 
 def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Indices of wanted frequencies, of any shape, among k ascending sums; k where none is the same."""
+    """Indices of wanted frequencies, of any shape, among k ascending sums; k where none is equal."""
     after = np.searchsorted(sums, wanted - 10 * _SAME * np.abs(sums).max())
     missing = np.abs(np.append(sums, np.inf)[after] - wanted) > 10 * _SAME * np.abs(sums).max()
     return np.where(missing, len(sums), after)

@@ -13,7 +13,7 @@ _FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below whic
 
 
 def initial_state(initial: str | np.ndarray, system: ModalSystem | ElasticaSystem) -> np.ndarray:
-    """Coordinates and velocities (2 n,) that "rest", "equilibrium" or an array stand for.
+    """Coordinates and velocities (2 n,) at "rest", in "equilibrium", or as given by an array.
 
     Raises
     ------

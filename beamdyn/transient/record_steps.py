@@ -69,7 +69,7 @@ def smooth_piece_ends(motion: Motion, t_end: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class RecordSteps:
-    """Steps of unequal length, and the pieces in them on which the motion is smooth.
+    """Steps of unequal length, and the pieces of each on which the motion is smooth.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class RecordSteps:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Blocks of steps: equal ones, each in one piece, as many as are integrated at once; and others."""
+        """Blocks of steps that are integrated at once: of equal steps of one piece each, and of others."""
         single = self.counts == 1
         cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
         runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
@@ -117,10 +117,10 @@ class RecordSteps:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     def are_equal(self, block: slice) -> bool:
-        """Whether the steps of a block are each in one piece and end where as many equal steps do."""
+        """Whether the steps of a block have one piece each and equal lengths, also in their sums."""
         ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
         grid = np.linspace(ends[0], ends[-1], len(ends))
-        off = np.abs(ends - grid).max()  # lengths that drift are the next one's each, and yet not equal
+        off = np.abs(ends - grid).max()  # lengths that drift differ little from one to the next, but add up
         return bool(off <= _SAME_LENGTH * (grid[1] - grid[0]) and (self.counts[block] == 1).all())
 
     def select(self, which: np.ndarray) -> RecordSteps:

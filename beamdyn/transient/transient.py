@@ -116,7 +116,7 @@ class Transient(StatesModelError):
         return self.request.scene
 
     def without_waiting(self) -> Transient:
-        """The same; its modal truncation error, too, is left out if it was not asked for."""
+        """A copy that shows no error that has yet to be computed: also without the modal truncation error."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
         return shown
 

@@ -108,7 +108,7 @@ class _StepMapSeries:
         return cls(Y, np.concatenate([Y @ free, Y @ loads], axis=2), R, Z, h, table)
 
     def every(self, stride: int) -> _StepMapSeries:
-        """The same for some of the points."""
+        """The series at every `stride`-th point."""
         return replace(self, Y=self.Y[::stride], X0=self.X0[::stride])
 
     @property
@@ -174,11 +174,11 @@ class _Polynomials:
 
     @property
     def ends_early(self) -> bool:
-        """Whether so many points suffice: the last term may be left out."""
+        """Whether the number of points suffices, so that the last term may be left out."""
         return len(self.size) == 1 or bool(self.size[-1] <= self.allowed)
 
     def shortened(self, rough: bool) -> _Polynomials:
-        """Without the last terms that are far below what is allowed; in single precision if rough."""
+        """The sum without last terms far below what is allowed; in single precision if `rough`."""
         left_out = np.cumsum(self.size[::-1])[::-1]
         count = max(1, int((left_out > _NEGLIGIBLE * self.allowed).sum()))
         values = self.values[:count]
@@ -228,9 +228,9 @@ class _Expansion:
         table: Tableau,
         accuracy: float,
     ) -> _Expansion | None:
-        """Expand the maps of some steps of h, the first beginning at `first` [s], so many points.
+        """Expand the maps of steps of length h from `first` on [s], with a number of Chebyshev points.
 
-        None if the polynomials of so many points are not within the accuracy after all steps.
+        None if the polynomials through these points are not within the accuracy after all steps.
         """
         begin = first + (steps - 1) * h * (1 + _extrema(points)) / 2
         point = _StepMapSeries.at(system, begin, h, table)
@@ -294,7 +294,7 @@ class _Block:
     point: _StepMapSeries
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
-        """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""
+        """The p Chebyshev polynomials that the block needs, at x (N,) in [-1, 1]: shape (N, p)."""
         return _polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
@@ -325,7 +325,7 @@ class _Block:
 
 @lru_cache(maxsize=64)
 def _to_part(count: int, start: float, end: float) -> np.ndarray:
-    """Matrix from Chebyshev coefficients over [-1, 1], so many, to those over a part of it."""
+    """Matrix from `count` Chebyshev coefficients over [-1, 1] to those over a part of it."""
     T = _polynomials(start + (end - start) * (1 + _extrema(count)) / 2, count)
     return _to_coefficients(count) @ T
 
@@ -359,7 +359,7 @@ def _extrema(points: int) -> np.ndarray:
 
 
 def _polynomials(x: np.ndarray, count: int) -> np.ndarray:
-    """Chebyshev polynomials, so many of them, at x (N,) in [-1, 1]: shape (N, count)."""
+    """The first `count` Chebyshev polynomials at x (N,) in [-1, 1]: shape (N, count)."""
     return np.cos(np.arccos(np.clip(x, -1, 1))[:, None] * np.arange(count))
 
 

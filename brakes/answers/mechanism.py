@@ -110,7 +110,7 @@ class MechanismAnswer(PlanarAnswer):
     branch: str = WITHOUT
 
     def branches(self) -> Mapping[str, MechanismAnswer]:
-        """The same with the forces of each branch drawn: without friction, squeezing, releasing."""
+        """The answer with the forces of each branch drawn: without friction, squeezing, releasing."""
         return {name: replace(self, branch=name) for name in BRANCHES} if self.friction else {}
 
     @classmethod

@@ -40,7 +40,7 @@ def name_output(words: str) -> str:
 
 
 def select_rows(count: int) -> np.ndarray:
-    """Indices of the rows of a stroke's table, among so many positions."""
+    """Indices of the rows of a stroke's table, among `count` positions."""
     return np.unique(np.linspace(0, count - 1, _ROWS).round().astype(int))
 
 

@@ -25,7 +25,7 @@ def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Scre
 
 
 def _explained(reason: str, work: OpenDocument, screen: Screen) -> Mapping[str, list[str]]:
-    """Why an answer was given up; at their fields, the inputs that have changed since the last answer."""
+    """Why an answer was given up, and at their fields the inputs that have changed since the last answer."""
     known = f" {screen.effort}" if screen.effort else ""
     sentence = f"Given up: {reason}.{known}"
     before = work.answered.get(screen.name)
