@@ -20,10 +20,8 @@ from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, tableau
 
 _ITERATIONS = 30  # of Newton's method
-_CONVERGED = 1e-13  # error of the accelerations over their size that may be left
-_LEAST_REDUCTION = (
-    1e-3  # least reduction of the error by an iteration that is taken from the last two changes
-)
+_CONVERGED = 1e-13  # error of the accelerations, over their size, with which the iteration ends
+_LEAST_REDUCTION = 1e-3  # least ratio of errors by an iteration that the last two changes may show
 _STALLED = 1e-9  # error of the accelerations over their size below which a stalled iteration has converged
 _BALANCED = 1e-12  # the same for the residual over the elastic force, where accelerations are small beside it
 _FAST = 0.1  # reduction by an iteration up to which the derivatives are kept

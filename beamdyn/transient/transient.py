@@ -116,7 +116,7 @@ class Transient(StatesModelError):
         return self.request.scene
 
     def without_waiting(self) -> Transient:
-        """A copy that shows no error that has yet to be computed: also without the modal truncation error."""
+        """A copy to be shown at once, without model and modal truncation errors that are not computed yet."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
         return shown
 

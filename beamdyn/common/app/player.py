@@ -18,9 +18,7 @@ STYLE = """
 .stroke .player { order: -1; margin-bottom: 1.5rem; }
 """
 _LEAST = 0.03  # least time between two pictures [s]
-_LONGEST = (
-    0.2  # most time that a picture advances the motion, so that this does not jump after a slow one [s]
-)
+_LONGEST = 0.2  # most time by which one picture advances the motion, so that it does not jump [s]
 _STILL = 1.0  # time that each picture stays where reduced motion is preferred [s]
 _STILLS = 4  # pictures from one end to the other where reduced motion is preferred
 _PATIENCE = 3.0  # time after which a page that has painted nothing counts as not seen [s]
