@@ -71,7 +71,21 @@ class LoadLines:
 def lines_of_response(
     response: SteadyResponse, stations: SpanStations, outputs: StationOutputs | None = None
 ) -> LoadLines:
-    """Lines of the outputs at stations of a steady response, or of the forces and moments there."""
+    """Find the lines of loads in a steady response.
+
+    Parameters
+    ----------
+    response : SteadyResponse
+        The response at C speeds, of a straight beam.
+    stations : SpanStations
+        The S stations.
+    outputs : StationOutputs, optional
+        The K outputs at each station; forces and moments if not given.
+
+    Returns
+    -------
+    LoadLines
+    """
     request, speeds = response.request, response.speeds
     model, motion = request.model, check_steady_state(request.scene.motion)
     equations = model.modal_equations(request.basis)

@@ -51,7 +51,21 @@ def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarr
 
 
 def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: Pair = (0, 0)) -> np.ndarray:
-    """Matrices (S, H, H) of the product with a spectrum: its harmonic h - h' + shift is at (h, h')."""
+    """Matrices of the product with a function of the phases that is given by its spectrum.
+
+    Parameters
+    ----------
+    spectrum : ndarray of complex, shape (S, N, N)
+        Harmonics of the function.
+    harmonics : sequence of pair, length H
+        Harmonics of what it is multiplied with, and of the product.
+    shift : pair
+        Added to the harmonic h - h' of the spectrum that stands at (h, h').
+
+    Returns
+    -------
+    ndarray of complex, shape (S, H, H)
+    """
     h = np.array(harmonics)
     return select_harmonics(spectrum, h[:, None] - h[None, :] + np.array(shift))
 

@@ -67,7 +67,23 @@ class Vibration:
 
 
 def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray) -> Vibration:
-    """Equations of vibration of a model in a modal basis at speeds [rad/s] (S,)."""
+    """Equations of vibration of a model in a modal basis.
+
+    Parameters
+    ----------
+    model : Model
+        The discretized scene, of a straight beam or with large deflection.
+    basis : ModalBasis
+        The modal basis; about equilibria its number of modes, at each speed.
+    motion : Motion or None
+        The motion; None for rotation about a fixed centre.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    Vibration
+    """
     if isinstance(model.solver, DeflectedSolver):
         return _about_equilibria(model, basis, motion, speeds)
     return _of_straight_beam(model, basis, motion, speeds)

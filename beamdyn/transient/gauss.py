@@ -101,15 +101,48 @@ class StepMaps:
 
 
 def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> StepMaps:
-    """Solve the collocation equations of all steps that begin at `starts` [s] with length h [s]."""
+    """Solve the collocation equations of N steps.
+
+    Parameters
+    ----------
+    system : LinearSystem
+        The equations.
+    starts : ndarray, shape (N,)
+        Beginnings of the steps [s].
+    h : float
+        Step size [s].
+    table : Tableau
+        Coefficients of the collocation.
+
+    Returns
+    -------
+    StepMaps
+    """
     return solve_steps(*system.coefficients(starts[:, None] + h * table.c), h, table)
 
 
 def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> StepMaps:
-    """Solve the collocation equations of steps of length h [s], given C, K and f at their nodes.
+    """Solve the collocation equations of N steps, given the coefficients at their nodes.
 
     The accelerations a_i at the nodes satisfy
     a_i + C_i (v + h sum A_ij a_j) + K_i (q + c_i h v + h^2 sum A2_ij a_j) = f_i.
+
+    Parameters
+    ----------
+    C : ndarray, shape (N, s, n, n), or None
+        Damping; None if there is none.
+    K : ndarray, shape (N, s, n, n)
+        Stiffness.
+    f : ndarray, shape (N, s, n)
+        Loads.
+    h : float
+        Step size [s].
+    table : Tableau
+        Coefficients of the collocation.
+
+    Returns
+    -------
+    StepMaps
     """
     if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
         return _maps_of_equal_steps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))

@@ -55,7 +55,7 @@ class StepCounter(Protocol):
 
 
 def is_record(system: ModalSystem, t_end: float, step_size: StepCounter) -> bool:
-    """Whether a motion has breakpoints about as dense as the steps, as one given by samples has."""
+    """Whether a motion has breakpoints about as dense as the steps, as a motion given by samples has."""
     pieces = len(smooth_piece_ends(system.motion, t_end)) - 1
     few = _MOST_STEPS_IN_PIECE * pieces
     return pieces >= _FEWEST_PIECES and step_size.count_steps(system, 0.0, t_end) <= few
@@ -179,7 +179,7 @@ class _WantedSteps:
 
 
 def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounter) -> float:
-    """Number of steps that the step size wants between two samples, where it wants the most."""
+    """Largest number of steps between two neighbouring samples, by a step size."""
     ends = smooth_piece_ends(system.motion, t_end)
     return float(np.diff(_WantedSteps.of(system, t_end, step_size).before(ends)).max())
 
@@ -271,10 +271,27 @@ class RecordSegment:
 def propagate_record(
     system: ModalSystem, steps: RecordSteps, q0: np.ndarray, v0: np.ndarray, stages: int, accuracy: float
 ) -> RecordSegment:
-    """Integrate over unequal steps by Gauss collocation, from coordinates q0 and velocities v0.
+    """Integrate over unequal steps by Gauss collocation.
 
     Many equal steps, each between two samples, take maps that are expanded about the mean motion of a block
-    of them; `accuracy` is the relative error that the truncated series may cause in all.
+    of them.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        The equations.
+    steps : RecordSteps
+        The steps.
+    q0, v0 : ndarray, shape (n,)
+        Coordinates and velocities at the beginning.
+    stages : int
+        Stages of each step.
+    accuracy : float
+        Largest relative error by the truncated series of all expanded maps.
+
+    Returns
+    -------
+    RecordSegment
     """
     state, acceleration = allocate_steps(len(steps), stages, q0, v0)
     for block in steps.blocks:

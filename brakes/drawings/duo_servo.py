@@ -63,7 +63,22 @@ def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: st
 def moved(
     points: np.ndarray, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str
 ) -> np.ndarray:
-    """Move points of a shoe from the right side at rest to a side at a point of the motion, shape (n, 2)."""
+    """Move points of the right shoe at rest to where they are on a side at a point of the motion.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        Points of the right shoe at rest [m].
+    geometry, motion, progress
+        As for `duo_servo`.
+    side : {"right", "left"}
+        The side.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        [m]
+    """
     first, second = min(progress, 1.0), max(progress - 1.0, 0.0)
     pin = np.array(geometry.adjuster, dtype=float)
     turned = pin + _turned(np.asarray(points) - pin, -first * float(motion.seating_turn))

@@ -57,7 +57,7 @@ def _height(row: Sequence[Drawing], width: float) -> float:
 
 
 def frames_of(row: Sequence[Drawing], paper: Paper, number: int) -> list[Frame]:
-    """Frames of the drawings of a row, beside one another."""
+    """Frames of the drawings of the row of this number, beside one another [pt]."""
     top, ends = sum(paper.heights[:number]), [0.0, *accumulate(_widths(row, paper.width))]
     return [(left, top, right, top + paper.heights[number]) for left, right in pairwise(ends)]
 

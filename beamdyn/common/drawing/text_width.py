@@ -155,7 +155,7 @@ def wrapped(text: str, width: float, size: float) -> list[str]:
 
 
 def shortened(text: str, width: float, size: float) -> str:
-    """A text cut to a width [pt], with dots at its end."""
+    """A text, cut to a width [pt] with dots at its end if it is longer, in letters of a size [pt]."""
     if size * line_width(text) <= width:
         return text
     kept = text

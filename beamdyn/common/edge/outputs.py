@@ -101,7 +101,21 @@ def write(
     draw: Callable[[], Figure] | None = None,
     report: Report | None = None,
 ) -> None:
-    """Write the requested files; `rows` are those of the CSV file, `draw` makes the picture."""
+    """Write the requested files.
+
+    Parameters
+    ----------
+    result : Result
+        The result, for the JSON file.
+    outputs : Outputs
+        The files, which have been checked.
+    rows : iterable of sequence
+        Rows of the CSV file, heads first.
+    draw : callable, optional
+        Makes the picture.
+    report : Report, optional
+        Contents of the HTML report.
+    """
     if outputs.json is not None:
         write_text(outputs.json, result.to_json())
     if outputs.csv is not None:
