@@ -347,14 +347,6 @@ def propagate(
     return Segment(t0, h, state, acceleration)
 
 
-def allocate_steps(steps: int, stages: int, q0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Allocate the arrays `state` and `acceleration` of a segment, of which the first state is known."""
-    n = len(q0)
-    state = np.empty((steps + 1, 2 * n + 1))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    return state, np.empty((steps, stages, n))
-
-
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
     """Fill state[1:] from state[0]; equal steps by powers of their map, returned for the next block."""
     if maps.step_extended is not None:
@@ -370,6 +362,14 @@ def advance(steps: np.ndarray, state: np.ndarray) -> None:
     """Fill the augmented states state[1:] from state[0] by affine maps, one after the other."""
     for step, before, after in zip(steps, state[:-1], state[1:, 1:], strict=True):
         step.dot(before, out=after)
+
+
+def allocate_steps(steps: int, stages: int, q0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Allocate the arrays `state` and `acceleration` of a segment, of which the first state is known."""
+    n = len(q0)
+    state = np.empty((steps + 1, 2 * n + 1))
+    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    return state, np.empty((steps, stages, n))
 
 
 def _affine_powers(step: np.ndarray, count: int) -> np.ndarray:

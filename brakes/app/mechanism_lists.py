@@ -21,8 +21,8 @@ _PARTS: dict[str, type[Part]] = {part.key(): part for part in (*JOINTS, *LOADS)}
 _INPUTS = {key: describe(SECTIONS[key]) for key in _PARTS}
 _POINTS = ("at", "to", "on", "at_other", "points")  # keys whose values are points
 _BODIES = ("body", "other", "bodies")
-_UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # units of bare numbers, by SI unit
-_FIRST = {  # values of parts that are added
+_UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # in which a bare number is taken
+_FIRST = {  # of what is added
     "direction": "-90 deg",
     "along": "0 deg",
     "normal": "90 deg",

@@ -82,7 +82,7 @@ class _ShownChart:
         self._element.update()
 
     def move_cursor(self, chart: Chart) -> None:
-        """Show the marks and the cursor of a chart of which nothing else has changed."""
+        """Show the marks of a chart, of which nothing else has changed."""
         self._element.run_chart_method("setOption", {"series": [marks_of(chart)]})
 
 
