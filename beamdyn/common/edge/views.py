@@ -201,15 +201,13 @@ def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
     """Names, values and units of the public fields; arrays entry by entry."""
     yield "name", "value", "unit"
     for name, value, unit in _named_fields(result):
-        if isinstance(value, np.ndarray) and value.size > 1:
+        if not isinstance(value, np.ndarray) or not value.size:
+            yield name, plain(value), unit
+        elif value.size == 1:
+            yield name, plain(np.ravel(value)[0]), unit
+        else:
             for place, entry in np.ndenumerate(value):
                 yield f"{name}[{','.join(map(str, place))}]", plain(entry), unit
-        else:
-            yield (
-                name,
-                plain(np.ravel(value)[0] if isinstance(value, np.ndarray) and value.size else value),
-                unit,
-            )
 
 
 def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]:
