@@ -23,8 +23,8 @@ _STILL = 1.0  # how long each picture stays for those who want no motion [s]
 _STILLS = 4  # pictures for them on the way from one end to the other
 _PATIENCE = 3.0  # a page that paints nothing for so long is not looked at [s]
 
-# What has been sent is there when the script runs, and painted before the second of two frames.
-_PAINTED = """return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {{
+# What has been sent is there when the script runs, and painted after the next frame has been begun.
+_PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(() => {{
   const seen = getHtmlElement({id})?.offsetParent;
   done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");
 }})))"""
