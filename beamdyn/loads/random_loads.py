@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, ascending, positive, refuse, within
 from beamdyn.common.digits import percent, supported
 from beamdyn.common.one_line import counted, error_at_most, warned
@@ -266,7 +266,7 @@ class RandomLoads(SpanLoads):
         return values[:, self.outputs.places[quantity]]
 
 
-@announced
+@announced_of_plain_beam
 def random_loads(
     scene: Scene,
     speed: float,

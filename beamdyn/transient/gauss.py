@@ -19,6 +19,9 @@ from typing import Protocol
 import numpy as np
 from numpy.polynomial import legendre
 
+from beamdyn.common.checks import MOST
+from beamdyn.transient.limits import growth_without_bound
+
 BLOCK = 64  # steps solved as one batch, so that their matrices fit the processor's cache
 
 
@@ -342,9 +345,17 @@ def propagate(
     for first in range(0, steps, BLOCK):
         block = slice(first, min(first + BLOCK, steps))
         maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
-        powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
+        with np.errstate(over="ignore", invalid="ignore"):
+            powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
+        _check_bounded(t0 + h * block.stop, state[block.stop])
         acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
     return Segment(t0, h, state, acceleration)
+
+
+def _check_bounded(t: float, state: np.ndarray) -> None:
+    """Refuse a motion that has grown beyond all bounds."""
+    if not (np.abs(state) < MOST).all():
+        raise growth_without_bound(f"past {MOST:g} before t = {t:.4g} s")
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:

@@ -21,6 +21,7 @@ _PARTS: dict[str, type[Part]] = {part.key(): part for part in (*JOINTS, *LOADS)}
 _INPUTS = {key: describe(SECTIONS[key]) for key in _PARTS}
 _POINTS = ("at", "to", "on", "at_other", "points")  # keys whose values are points
 _BODIES = ("body", "other", "bodies")
+_ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are joints and loads
 _UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # in which a bare number is taken
 _FIRST = {  # of what is added
     "direction": "-90 deg",
@@ -256,7 +257,7 @@ def _with_part_renamed(tables: dict[str, Any], old: str, new: str) -> dict[str, 
     def other(value: Any) -> Any:
         return [other(part) for part in value] if isinstance(value, list) else new if value == old else value
 
-    named = {"run": ("driver",), "caliper": ("cable", "pads", "centring")}
+    named = {"run": ("driver",), "caliper": _ROLES}
     return tables | {
         table: {key: other(value) if key in keys else value for key, value in tables[table].items()}
         for table, keys in named.items()
@@ -332,7 +333,7 @@ def _without_users(tables: dict[str, Any], keys: Sequence[str], name: str) -> di
 
 
 def _without_parts(tables: dict[str, Any], gone: Collection[tuple[str, int]]) -> dict[str, Any]:
-    """Tables without the joints and loads of these kinds and numbers; a driver that goes ends the stroke."""
+    """Tables without joints and loads by kind and number; a driver that goes ends the stroke."""
     left: dict[str, Any] = {
         key: [part for number, part in enumerate(tables[key]) if (key, number) not in gone] for key, _ in gone
     }
@@ -340,7 +341,26 @@ def _without_parts(tables: dict[str, Any], gone: Collection[tuple[str, int]]) ->
     run = tables.get("run")
     if isinstance(run, dict) and run.get("driver") in names:
         left["run"] = {key: value for key, value in run.items() if key not in ("driver", "travel")}
-    return tables | left
+    return _without_roles(tables | left, names)
+
+
+def _without_roles(tables: dict[str, Any], names: Collection[Any]) -> dict[str, Any]:
+    """Tables whose [caliper] names none of these parts; without cable and pads it is no caliper."""
+    given = tables.get("caliper")
+    if not isinstance(given, dict):
+        return tables
+    roles = {key: _unnamed(value, names) if key in _ROLES else value for key, value in given.items()}
+    kept = {key: value for key, value in roles.items() if value not in ("", [])}
+    if kept.keys() & {"cable", "pads"}:
+        return tables | {"caliper": kept}
+    return {key: table for key, table in tables.items() if key != "caliper"}
+
+
+def _unnamed(value: Any, names: Collection[Any]) -> Any:
+    """A name, or a list of them, without those of some parts."""
+    if isinstance(value, list):
+        return [name for name in value if name not in names]
+    return "" if value in names else value
 
 
 def empty(entries: Mapping[str, str]) -> Entries:

@@ -26,6 +26,7 @@ from brakes.answers.forklift import solve_stages
 from brakes.cli import main
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
+from brakes.config.mechanism import mechanism_from_dict
 from brakes.config.sweeps import numeric_inputs, with_arrays
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
@@ -407,3 +408,10 @@ def test_a_point_beyond_every_mechanism_is_refused_by_name(tmp_path, capsys) -> 
     assert main(["caliper", str(tmp_path / "far.toml")]) == 2
     said = " ".join(capsys.readouterr().err.split())
     assert "points.right_bolt" in said and "give coordinates of at most 1e+06 m either way" in said
+
+
+def test_a_caliper_with_one_pad_is_told_how_many_there_are():
+    text = (EXAMPLES / "calipers" / "own-caliper.toml").read_text(encoding="utf-8")
+    one = text.replace('["right pad", "left pad"]', '["right pad"]')
+    with pytest.raises(ConfigError, match=r'caliper\.pads = \["right pad"\]: give at least 2 values'):
+        mechanism_from_dict(tomllib.loads(one), "own.toml")

@@ -23,8 +23,8 @@ _STILL = 1.0  # time that each picture stays where reduced motion is preferred [
 _STILLS = 4  # pictures from one end to the other where reduced motion is preferred
 _PATIENCE = 3.0  # time after which a page that has painted nothing counts as not seen [s]
 
-# What has been sent is there when the script runs, and painted before the second of two frames.
-_PAINTED = """return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {{
+# What has been sent is there when the script runs, and painted after the next frame has been begun.
+_PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(() => {{
   const seen = getHtmlElement({id})?.offsetParent;
   done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");
 }})))"""

@@ -12,9 +12,9 @@ from typing import Any
 from cyclopts import App, CycloptsError
 
 from beamdyn.common.announced import OutsideLinearTheory
-from beamdyn.common.edge.option_words import TYPED, as_typed
+from beamdyn.common.edge.option_words import TYPED, as_given, as_typed
 from beamdyn.common.edge.progress import at_work, quiet
-from beamdyn.common.edge.usage_words import say_mistake
+from beamdyn.common.edge.usage_words import check_names, say_mistake
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -84,6 +84,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 def _call(app: App, arguments: Sequence[str]) -> None:
     from beamdyn.common.edge.tables import Terminal, spell_output
 
+    check_names(arguments)
     if isinstance(sys.stdout, TextIOWrapper):
         spell_output(sys.stdout)
     app(arguments, console=Terminal(), exit_on_error=False, print_error=False, result_action="return_value")
@@ -120,10 +121,10 @@ def _refused(name: str, error: Exception) -> int:
     from beamdyn.common.checks import NoModelAnswer
 
     if isinstance(error, NoModelAnswer):
-        return _complain(name, f"no answer: {as_typed(str(error))}", NO_ANSWER)
+        return _complain(name, f"no answer: {as_typed(as_given(error))}", NO_ANSWER)
     if isinstance(error, LinAlgError):
         return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
-    return _complain(name, as_typed(str(error)), BAD_INPUT)
+    return _complain(name, as_typed(as_given(error)), BAD_INPUT)
 
 
 def _complain(name: str, sentence: str, code: int) -> int:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -117,6 +118,19 @@ def parse_spreads(
             raise ValueError(f"{words}: {entry.path} has a spread already; give each input once")
         made[entry.path] = _parse_spread(entry, text.partition("=")[2].strip(), *nominal(entry))
     return tuple(made.values())
+
+
+@contextmanager
+def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
+    """Within it, a refusal of what a tolerance reaches has the unit in which the tolerance was typed."""
+    from beamdyn.common.checks import InvalidValue
+    from beamdyn.common.edge.wording import in_unit_of
+
+    texts = {each.name: each.text for each in given}
+    try:
+        yield
+    except InvalidValue as error:
+        raise in_unit_of(error, texts.get(error.field, "")) from None
 
 
 def _parse_spread(entry: Input, tolerance: str, value: float, unit: str) -> SpreadInput:

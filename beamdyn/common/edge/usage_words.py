@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Literal, get_args, get_origin
 
 from cyclopts import App, CoercionError, CycloptsError, UnknownOptionError, UnusedCliTokensError
@@ -31,7 +32,15 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
     return f"{said} See {' '.join([app.name[0], *command])} --help."
 
 
+def check_names(given: Sequence[str]) -> None:
+    """Refuse an empty word in place of a file's name, which would be the current folder."""
+    if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
+        raise ValueError('one of the names is empty (""); give the name of a file')
+
+
 def _say(error: CycloptsError, given: Sequence[str]) -> str:
+    if "-" in given:
+        return "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
     if isinstance(error, UnknownOptionError):
         return _with_meant_option(error, given)
     if isinstance(error, UnusedCliTokensError) and error.unused_tokens:

@@ -13,11 +13,13 @@ from pydantic import BaseModel
 
 from beamdyn.common.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
 from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.units import unit_as_written
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(
     rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
 )
+_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # of several in a text
 _SUSPECT = 12.0  # powers of ten by which a number is far from 1
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
@@ -100,6 +102,16 @@ def in_millimetres(error: InvalidValue) -> InvalidValue:
         return error
     limit = None if error.limit is None else 1e3 * error.limit
     return replace(error, value=1e3 * error.value, limit=limit, unit="mm", cases=None)
+
+
+def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
+    """The same in the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
+    if not isinstance(error.value, float):
+        return error
+    last = _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
+    written, convert = unit_as_written(last, error.unit)
+    limit = None if error.limit is None else convert(error.limit)
+    return replace(error, value=convert(error.value), limit=limit, unit=written, cases=None)
 
 
 def in_small_units(sentence: str) -> str:
