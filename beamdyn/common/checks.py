@@ -384,7 +384,7 @@ def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.nda
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
     bound, remedy = "it follows {limit}; values must ascend without repeats", "pass numpy.unique({other})"
-    refuse(np.diff(array) <= 0, name, array[1:], "", bound, remedy, limit=array[:-1], other=name)
+    refuse(array[1:] <= array[:-1], name, array[1:], "", bound, remedy, limit=array[:-1], other=name)
     return array
 
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.edge.input_sweep import Axis, Coordinate, Output, chosen
+from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.spread_options import OPTION, in_units_of, parse_spreads
 from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.varied_inputs import Axis, Coordinate
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.result import Spread

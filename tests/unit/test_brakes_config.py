@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.edge import input_sweep
+from beamdyn.common.edge import input_sweep, varied_inputs
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
@@ -289,8 +289,8 @@ def test_angles_in_messages() -> None:
 # Sweeps -------------------------------------------------------------------------------------------------
 
 
-def parse_axis(design: Any, text: str) -> input_sweep.Axis:
-    return input_sweep.parse_axis(numeric_inputs(design), text)
+def parse_axis(design: Any, text: str) -> varied_inputs.Axis:
+    return varied_inputs.parse_axis(numeric_inputs(design), text)
 
 
 TORQUE = Output("torque", "torque", lambda r: r.torque, "N m")
@@ -364,7 +364,7 @@ def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
     answer = solve_stages(with_arrays(design, {axes[0].input.path: axes[0].values}))
-    found = input_sweep.swept(input_sweep.designs_of(axes), [DISTANCE], [DISTANCE.shown(answer)])
+    found = input_sweep.swept(varied_inputs.designs_of(axes), [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)
     assert found.to_dict()["inputs"] == ["truck.load_mass"]

@@ -115,6 +115,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
+            tailwind=False,  # it looks through the page after each change
             ws_per_message_deflate=False,  # each message would wait for it, on a way that is short
             reconnect_timeout=30.0,
         )

@@ -28,13 +28,13 @@ _EXAMPLES = "{}, in the folder of the source:"
 
 
 def examples(*lines: str) -> str:
-    """What follows the help of a command: lines that may be typed as they stand, and the exit codes."""
+    """The end of a command's help: examples, which can be typed as they stand, and the exit codes."""
     head = _EXAMPLES.format("Example" if len(lines) == 1 else "Examples")
     return "\n\n".join([head, *(f"`{line}`" for line in lines), EXIT_CODES])
 
 
 class NoAnswer(Exception):
-    """The model has no answer; the message says which part and where."""
+    """The model has no answer; the message says why, and where."""
 
 
 class Interrupted(Exception):
@@ -92,13 +92,13 @@ def _call(app: App, arguments: Sequence[str]) -> None:
 
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
-    """Within it, a warning of the packages is a sentence of the program, without a place in the code."""
+    """Within it, warnings of the packages are printed as sentences, without their place in the code."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
         if category is UserWarning:
             warn(name, [str(message)])
-        else:  # of another package, to its developers
+        else:  # a warning of another package, meant for developers
             usual(message, category, *place)
 
     with warnings.catch_warnings():

@@ -1,4 +1,4 @@
-"""A line on standard error that says what a command is busy with, after a second of silence."""
+"""A progress line on standard error, which appears when a command takes more than a second."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-SILENCE = 1.0  # after which the line appears [s]
+SILENCE = 1.0  # time after which the line appears [s]
 
-_LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)  # the one that may be shown
+_LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)  # the present line
 
 
 class Pace:
@@ -43,7 +43,7 @@ class Pace:
 
 
 class _ProgressLine:
-    """The line: the time that has passed, or a bar with the remaining time where steps are counted."""
+    """The line: the elapsed time, and a bar with the remaining time where steps are counted."""
 
     def __init__(self, what: str) -> None:
         self._what, self._began = what, time.monotonic()
@@ -57,7 +57,7 @@ class _ProgressLine:
         self._timer.start()
 
     def hide(self) -> None:
-        """Take it from the screen; what is counted meanwhile is kept."""
+        """Take it from the screen; counts are kept."""
         with self._lock:
             timer, self._timer = self._timer, None
             shown, self._shown = self._shown, None
@@ -67,7 +67,7 @@ class _ProgressLine:
             shown.stop()
 
     def count(self, done: int, total: int) -> None:
-        """Say how many steps of how many are done."""
+        """Set the numbers of steps that are done, and of all."""
         with self._lock:
             self._done, self._total = done, total
             self._pace.note(time.monotonic(), done)
@@ -117,17 +117,17 @@ def _bar(pace: Pace) -> Progress:
 
 @contextmanager
 def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Within it, a line on standard error, if that is a terminal, says what takes over a second.
+    """Within it, a line shows progress on standard error, if that is a terminal.
 
     Parameters
     ----------
     what : str
-        What is done, such as "designs". A line within another takes its place.
+        Name of the work, such as "designs". A line within another one takes its place.
 
     Yields
     ------
     callable
-        To be called with the numbers of steps that are done and of all; without, the line has the time alone.
+        To be called with the numbers of steps that are done and of all; the line has a bar only then.
     """
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda done, total: None
@@ -145,7 +145,7 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Within it, as where something is printed, no line is shown; afterwards again after a second."""
+    """Within it no line is shown, so that something can be printed; it returns after a second."""
     line = _LINE.get()
     if line is None:
         yield

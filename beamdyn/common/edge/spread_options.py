@@ -1,4 +1,4 @@
-"""Options of commands that give inputs a spread: which tolerances, how many random designs."""
+"""Options of commands for ranges over tolerances of inputs: the tolerances, the number of random designs."""
 
 from __future__ import annotations
 
@@ -86,23 +86,27 @@ def _key(text: str) -> str:
 def parse_spreads(
     inputs: Sequence[Input], texts: Sequence[str], nominal: Callable[[Input], tuple[float, str]]
 ) -> tuple[SpreadInput, ...]:
-    """Inputs with their tolerances.
+    """Read inputs with their tolerances.
 
     Parameters
     ----------
     inputs : sequence of Input
-        Those that may have one.
+        Those that may have a tolerance.
     texts : sequence of str
         KEY=TOLERANCE of each; the key as for `parse_axis`.
     nominal : callable
-        Value of an input and its unit, in SI.
+        ``nominal(input)``: value of an input in SI, and its SI unit.
+
+    Returns
+    -------
+    tuple of SpreadInput
 
     Raises
     ------
     ValueError
-        If there is no such input, it is given twice, or its tolerance is none.
+        If there is no such input, it is given twice, or its tolerance cannot be read.
     """
-    from beamdyn.common.edge.input_sweep import find_input
+    from beamdyn.common.edge.varied_inputs import find_input
 
     made: dict[str, SpreadInput] = {}
     for text in texts:
