@@ -187,3 +187,15 @@ def test_chart_is_zoomed_moved_and_shown_whole_by_keys(opened):
         page.keyboard.press("+")
     pressed("ArrowRight")
     assert pressed("0") == whole
+
+
+def test_all_of_a_chart_is_that_of_the_present_entries(opened):
+    page = opened("beamdyn")
+    chart = page.locator(".chart:visible").first
+    expect(chart.get_by_text("above: from 386 Hz")).to_be_visible()
+    field(page, "radius, r").fill("220 mm")
+    expect(chart.get_by_text("above: from 385.4 Hz")).to_be_visible()
+    box = chart.bounding_box()
+    page.mouse.click(box["x"] + box["width"] - 64, box["y"] + 25)  # the sign "all of it"
+    page.wait_for_timeout(1000)  # a chart of before would stay
+    assert chart.get_by_text("above: from 385.4 Hz").count() == 1

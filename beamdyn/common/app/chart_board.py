@@ -51,6 +51,8 @@ class _ShownChart:
         self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
         self._element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         self._element.on("keydown", js_handler=_KEYS % self._element.id)
+        # What the component restores is what it was given first: the present data follow.
+        self._element.on("chart:restore", self.update, args=[])
 
     @property
     def id(self) -> int:
@@ -83,7 +85,8 @@ class _ShownChart:
 
     def move_cursor(self, chart: Chart) -> None:
         """Show the marks of a chart, of which nothing else has changed."""
-        self._element.run_chart_method("setOption", {"series": [marks_of(chart)]})
+        self._options["series"][0] = marks_of(chart)
+        self._element.run_chart_method("setOption", {"series": self._options["series"][:1]})
 
 
 class ChartBoard:
