@@ -39,7 +39,7 @@ _MOST_PERIODS = 20_000  # of the first mode at rest in a run
 _PLACES, _TIMES = 41, 201  # along the beam, and in the close-up
 _SAMPLES = 40  # the largest ones, beside which the peak is
 _CLOSE = 4  # periods of the first mode on either side of the present one in the close-up
-_MOST_SENT = 1000  # points of the whole run on the page
+_MOST_SENT = 4000  # points of the whole run on the page: so many that its periods are seen when it is zoomed
 _MODES = 3  # whose resonances are marked
 NEEDS = ("run", *SCENE_TABLES)
 

@@ -39,6 +39,18 @@ _KEYS = """(event) => {
   chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
 }"""
 
+# Saves what is seen, on paper: programs that draw and write know neither the page's colours nor its letters.
+_SAVE = """(model, api) => {
+  const [head, ...seen] = api.getDataURL({excludeComponents: ["toolbox"]}).split(",");
+  const picture = decodeURIComponent(seen.join(",")).replace('fill="none"', 'fill="#ffffff"')
+    .replace(/var\\(--[\\w-]+,(#\\w+|none)\\)/g, "$1")
+    .replace(/font-family: ?inherit/g, "font-family:sans-serif");
+  const name = model.getComponent("toolbox").get(["feature", "mySave", "name"]);
+  const link = Object.assign(document.createElement("a"),
+    {href: `${head},${encodeURIComponent(picture)}`, download: `${name}.svg`});
+  link.click();
+}"""
+
 _NO_SIGNS = {"toolbox": {"show": False}}  # while something is held: they are made anew for each picture
 
 
@@ -67,7 +79,7 @@ class _ShownChart:
     def fill(self, chart: Chart) -> None:
         """Show another chart."""
         self.heading.set_text(chart.title)
-        last, self._options = self._options, options_of(chart)
+        last, self._options = self._options, _with_saving(options_of(chart))
         with self._element.props.suspend_updates():
             self._element.props["aria-label"] = chart.words
         if self._writer.is_ahead:
@@ -130,6 +142,12 @@ class ChartBoard:
                 made.move_cursor(chart)
             else:
                 made.fill(chart)
+
+
+def _with_saving(options: dict[str, Any]) -> dict[str, Any]:
+    """Options whose sign for saving does so."""
+    options["toolbox"]["feature"]["mySave"][":onclick"] = _SAVE
+    return options
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:

@@ -26,6 +26,7 @@ _FEW = 8  # decades of an axis up to which its small ticks are drawn, too
 _NAMED, _PALE = 12, 11  # sizes of letters [px]
 _WIDE_CHART = 700  # from which on a chart is wide [px]
 _LETTERS, _LETTERS_WIDE = 52, 100  # in a row of the legend of a narrow chart, and of a wide one
+_SAVE_SIGN = "path://M4.7,22.9L29.3,45.5L54.7,23.4M4.6,43.6L4.6,58L53.8,58L53.8,43.6M29.2,45.1L29.2,0"
 _DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # of curves that are compared with, in turn
 
 
@@ -200,11 +201,7 @@ def _toolbox(chart: Chart) -> dict[str, Any]:
         "feature": {
             "dataZoom": {"title": {"zoom": "zoom: draw a box", "back": "zoom back"}},
             "restore": {"title": "all of it"},
-            "saveAsImage": {
-                "title": "save as picture",
-                "name": name or "chart",
-                "backgroundColor": PAPER.area,
-            },
+            "mySave": {"title": "save as picture", "name": name or "chart", "icon": _SAVE_SIGN},
         },
     }
 
