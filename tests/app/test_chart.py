@@ -196,3 +196,9 @@ def test_colours_of_curves_are_told_apart(dark):
     colours = [channels(each) for each in (*(ink.dark_line if dark else ink.line for ink in inks), *more)]
     apart = [np.abs(a - b).max() for i, a in enumerate(colours) for b in colours[:i]]
     assert min(apart) >= 60
+
+
+def test_curves_stay_what_they_are_whichever_way_they_are_zoomed():
+    options = options_of(made())
+    zooms = [*options["dataZoom"], options["toolbox"]["feature"]["dataZoom"]]
+    assert [zoom["filterMode"] for zoom in zooms] == ["none", "none"]  # points outside are kept

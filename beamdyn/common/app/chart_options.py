@@ -199,7 +199,7 @@ def _toolbox(chart: Chart) -> dict[str, Any]:
         "iconStyle": {"borderColor": _paint("dimension")},
         "emphasis": {"iconStyle": {"borderColor": _paint("normal"), "textFill": _paint("text")}},
         "feature": {
-            "dataZoom": {"title": {"zoom": "zoom: draw a box", "back": "zoom back"}},
+            "dataZoom": {"title": {"zoom": "zoom: draw a box", "back": "zoom back"}, "filterMode": "none"},
             "restore": {"title": "all of it"},
             "mySave": {"title": "save as picture", "name": name or "chart", "icon": _SAVE_SIGN},
         },
