@@ -114,6 +114,7 @@ _NARROW = """
   .slider .q-slider__marker-labels { white-space: normal; width: 5.2rem; text-align: center;
     font-size: 0.8rem; line-height: 1.15; }
   .headline dd { font-size: 1.25rem; }
+  .shown .sentence { min-width: 11rem; }
   .nicegui-content { padding: 0.25rem 0.5rem 1rem; }
   .section .q-btn { min-width: 40px; min-height: 40px; }
   .handle::after { inset: -14px; }

@@ -155,6 +155,5 @@ STYLE = """
 .shown .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .shown .beyond { color: #767676; }
 .shown .words { text-align: left; }
-.shown .sentence { min-width: 11rem; }
 .shown tbody tr:nth-child(even) { background: #f4f4f4; }
 """
