@@ -31,6 +31,7 @@ from beamdyn.common.app.handles import draw_sheet
 from beamdyn.common.app.history import History
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.tables import table
 from brakes.app.program import BRAKES
 
 VEHICLE = BRAKES.documents[0]
@@ -200,6 +201,33 @@ def test_results_that_differ_are_those_of_the_answers(compared):
         [float(s.time) for s in stops], rel=1e-4
     )
     assert [*result_differences(here.tables, here.tables)] == []
+
+
+HEADS = "speed [rad/s]", "deflection [mm]", "status"
+
+
+@pytest.mark.parametrize(
+    "here, there, found",
+    [
+        (
+            [("1.0", "2", "stable"), ("5.0", "3", "stable"), ("7.0", "4", "stable"), ("9.0", "5", "stable")],
+            [("1.0", "2", "stable"), ("5.0", "6", "stable"), ("8.0", "7", "stable"), ("9.0", "8", "peak")],
+            [
+                ("speed [rad/s] 5.0, deflection [mm]", "3", "6"),
+                ("speed [rad/s] 9.0, deflection [mm]", "5", "8"),
+            ],
+        ),
+        (
+            [("1.0", "2", "road"), ("4.0", "3", "road")],
+            [("1.5", "2", "road"), ("4.0", "6", "road")],
+            [("road, row 1, speed [rad/s]", "1.0", "1.5"), ("road, row 2, deflection [mm]", "3", "6")],
+        ),
+    ],
+    ids=["curve", "few"],
+)
+def test_rows_that_have_the_same_words_are_compared_at_the_same_place(here, there, found):
+    tables = ([table("Response", HEADS, rows, left=(2,))] for rows in (here, there))
+    assert [(d.words, d.here, d.there) for d in result_differences(*tables)] == found
 
 
 @pytest.mark.parametrize(
