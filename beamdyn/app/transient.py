@@ -163,6 +163,7 @@ def _beam(answer: Playable, place: float, direction: int) -> Drawing:
         unit.say(float(shape[-1]), 3),
         (larger * low, larger * high),
         larger * run.largest,
+        scale,
     )
 
 

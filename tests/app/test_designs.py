@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamdyn.app.bent_beam import bent_beam
 from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.app import tasks
 from beamdyn.common.app.browser_memory import named_designs, read_typed, refused_name
@@ -270,6 +271,17 @@ def test_ghost_lies_beneath_and_keeps_to_its_role(compared):
     assert {shape.role for shape in drawn.shapes[:number]} == {"other"}
     assert drawn.shapes[number:] == list(here[0][0].shapes)
     assert drawn.legend["other"] == "fast"
+
+
+def test_ghost_of_a_bent_beam_says_its_scale_and_has_no_lines_that_are_not_drawn():
+    x = np.linspace(0.0, 1.0, 5)
+    here, there = (
+        bent_beam(x, 0.1 * x**2, "At 1 s", room=0.2, scale=f"drawn {n} times larger") for n in (2, 5)
+    )
+    drawn = with_ghost([[here]], [[there]], "thick")[0][0]
+    assert drawn.legend["other"] == "thick, drawn 5 times larger"
+    assert with_ghost([[here]], [[here]], "thick")[0][0].legend["other"] == "thick"
+    assert max(np.abs(np.asarray(s.points)[:, 1]).max() for s in drawn.shapes if s.role == "other") < 0.15
 
 
 def test_markup_in_names_and_values_stays_text():

@@ -224,7 +224,8 @@ def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
 
 def _with_ghost(drawing: Drawing, other: Drawing, name: str) -> Drawing:
     ghosts = [_ghost(s) for s in other.shapes if isinstance(s, Outline | Disc)]
-    key = {**drawing.key, "other": name[:40]}
+    said = [name[:40], other.scale] if other.scale != drawing.scale else [name[:40]]
+    key = {**drawing.key, "other": ", ".join(said)}
     return replace(drawing, shapes=[*ghosts, *drawing.shapes], key=key)
 
 

@@ -173,6 +173,8 @@ class Drawing:
         Points for which there is room beside what is drawn, such as those of other positions.
     own_scale : bool
         Whether it has a scale of its own beside others, as a detail has.
+    scale : str
+        In words, that of deflections, where they are not drawn to that of lengths.
     """
 
     shapes: Sequence[DrawnShape]
@@ -185,6 +187,7 @@ class Drawing:
     points: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     room: Any = ()
     own_scale: bool = False
+    scale: str = ""
 
     @property
     def legend(self) -> dict[str, str]:
